@@ -5,23 +5,28 @@ The combinations are confirmed on fresh seeds.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from math import inf, isclose
 
 from pytest_tarl.spaces import Point
+from pytest_tarl.stressing import chains
 from pytest_tarl.stressing.boundary import COARSE, bisect
-from pytest_tarl.stressing.evaluating import NEAREST, RAYS, SIZES, Evaluator
+from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, Evaluator
 from pytest_tarl.stressing.findings import Curve, Failure, MarginMap, confirmed, failure
-from pytest_tarl.stressing.nearest import EXPECTED, FIRM, NEAR, Nearest, Steps
+from pytest_tarl.stressing.nearest import EXPECTED, Nearest
 from pytest_tarl.stressing.rays import Ray, distance, joined
 
 # share of the distance to each boundary at which pairs are tested; each direction alone holds there
 INSIDE = 0.9
-FIRST = 0.55  # share of the budget for the first search for the nearest failing drift
+FIRST = 0.5  # share of the budget for the first search for the nearest failing drift
 CONFIRMED = 0.95  # share of the budget that the tests of a nearer failing drift may use
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
+REFINED = 0.08  # share of the budget for the search between the first chains of tests
+ATTEMPTS = 2  # number of chains to test until a drift is confirmed
+# shares of the risk of the first chains; each further chain has half of the rest
+SHARES = (0.2, 0.3, 0.2, 0.1)
 QUICK = SIZES[0]  # number of episodes at a confirmed failure
 
 
@@ -32,9 +37,10 @@ class Together:
     risk: float
     curves: Sequence[Curve]
     found: list[Failure] = field(default_factory=list)
-    tried: int = 0
+    tried: int = 0  # number of drifts in several directions that the search tried
     margin_map: MarginMap | None = None
-    tests: int = 0
+    chains: int = 0  # number of chains tested so far
+    tested: list[Point] = field(default_factory=list)  # the drifts of these chains that ran episodes
     # drifts that fail according to the model but are not confirmed
     expected: list[Failure] = field(default_factory=list)
 
@@ -43,26 +49,41 @@ class Together:
         """Return the confirmed failing drifts along single directions and in combination."""
         return [*confirmed(self.curves), *self.found]
 
-    def confirm(self, chain: Iterable[Point], evaluator: Evaluator) -> bool:
-        """Test drifts in order on fresh seeds until one is confirmed; the k-th test overall has risk / (k(k + 1)).
+    def confirm(self, chain: Sequence[Point], evaluator: Evaluator) -> bool:
+        """Test drifts on fresh seeds, farthest first, until one is not confirmed; return whether one was confirmed.
 
-        No drift was chosen with the seeds of the rays, so all tests share these seeds. Stop at a drift that contains a
-        confirmed failure: one that changes the same values at least as much. Return whether a drift was confirmed.
-        Raise BudgetSpentError.
+        Each test has the whole risk of the chain: if the guarantee holds at some of the drifts, an error needs the
+        confirmation of the first of these. The seeds are new for each chain, so its drifts may depend on the outcomes
+        of earlier chains, and the model learns from them afterwards. Skip drifts that contain a confirmed failure:
+        those that change the same values at least as much. Raise BudgetSpentError.
         """
-        for point in chain:
-            one = failure(evaluator.space, point)
-            known = any(_at_most(other.point, point, evaluator) for other in self.confirmed)
-            if not one.names or known:
-                return False
-            self.tests += 1
-            if evaluator.confirm(point, RAYS, self.risk / (self.tests * (self.tests + 1)), NEAREST):
-                if len(one.names) > 1:
-                    self.found.append(one)
-                else:
-                    self._along(one, evaluator)
-                return True
-        return False
+        usual, known = evaluator.space.nominal, self.confirmed
+        chain = [
+            point
+            for point in chain
+            if point != usual and not any(_at_most(other.point, point, evaluator) for other in known)
+        ]
+        if not chain:
+            return False
+        pool, risk = f"chain {self.chains}", self.risk * _share(self.chains)
+        self.chains += 1
+        found = False
+        try:
+            for point in chain:
+                self.tested.append(point)
+                if not evaluator.confirm(point, pool, risk, NEAREST, SPENT):
+                    break
+                found = True
+                self._add(failure(evaluator.space, point), evaluator)
+        finally:
+            evaluator.release(pool)
+        return found
+
+    def _add(self, found: Failure, evaluator: Evaluator) -> None:
+        if len(found.names) > 1:
+            self.found.append(found)
+        else:
+            self._along(found, evaluator)
 
     def _along(self, found: Failure, evaluator: Evaluator) -> None:
         """Add a confirmed failure along a single direction to its curve."""
@@ -70,8 +91,15 @@ class Together:
         for curve in self.curves:
             t = found.distance / curve.ray.length
             if curve.ray.names == (name,) and isclose(curve.ray.value(t), found.point[name]):
-                curve.evidence[t] = evaluator.examine(found.point, QUICK)
+                curve.evidence[t] = evaluator.examine(curve.ray.point(t), QUICK)
                 curve.confirmed = t
+
+
+def _share(number: int) -> float:
+    """Return the share of the risk of a chain, by its number from 0; the sum over all chains is 1."""
+    if number < len(SHARES):
+        return SHARES[number]
+    return (1.0 - sum(SHARES)) * 0.5 ** (number - len(SHARES) + 1)
 
 
 def _at_most(one: Point, other: Point, evaluator: Evaluator) -> bool:
@@ -87,7 +115,7 @@ class Combined:
 
     def __init__(self, evaluator: Evaluator, together: Together) -> None:
         self.evaluator, self.together = evaluator, together
-        self.nearest = Nearest(evaluator, together.curves, risk=together.risk)
+        self.nearest = Nearest(evaluator, together.curves, risk=together.risk * _share(1))
 
     def begin(self) -> None:
         """Run a few episodes on each ray, search for the nearest failing drift, and confirm it.
@@ -99,9 +127,12 @@ class Combined:
                 for t in curve.ray.places:
                     curve.evidence[t] = self.evaluator.glance(curve.ray.point(t))
             self.nearest.approach()
-        if self._confirm(FIRM):
-            with self.evaluator.limited(CONFIRMED):
-                self._confirm_nearer()
+        if not any(self._confirm(chains.FIRST) for _ in range(ATTEMPTS)):
+            self._test(chains.clear(self.nearest))
+        with self.evaluator.limited(CONFIRMED):
+            with self.evaluator.limited(self.evaluator.spent / self.evaluator.budget + REFINED):
+                self.nearest.refine()
+            self._confirm(chains.NEXT)
 
     def end(self) -> None:
         """Search for nearer failing drifts, test pairs, and confirm the results. Raise BudgetSpentError."""
@@ -109,9 +140,8 @@ class Combined:
         with self.evaluator.limited(LAST):
             self.nearest.improve()
             pairs(self.evaluator, self.together, proposed)
-        self._confirm_nearer()
-        for point in sorted(proposed, key=lambda one: distance(self.evaluator.space, one)):
-            self.together.confirm([point], self.evaluator)
+        self._confirm(chains.NEXT)
+        self._test(sorted(proposed, key=lambda one: -distance(self.evaluator.space, one)))
 
     def draw(self) -> None:
         """Predict the map and the nearest failures from all episodes, if every ray has some."""
@@ -120,18 +150,17 @@ class Combined:
             self.together.expected = [failure(self.evaluator.space, point) for point in found]
             self.together.margin_map = self.nearest.map()
 
-    def _confirm_nearer(self) -> None:
-        """Test drifts ever closer to the boundary, until one is not confirmed. Raise BudgetSpentError."""
-        for step in NEAR:
-            if not self._confirm([step]):
-                return
-
-    def _confirm(self, steps: Steps) -> bool:
+    def _confirm(self, plan: chains.Plan) -> bool:
+        """Test a chain that leads nearer to nominal than every confirmed drift. Raise BudgetSpentError."""
         limit = min((one.distance for one in self.together.confirmed), default=inf)
+        return self._test(chains.chain(self.nearest, plan, limit))
+
+    def _test(self, chain: Sequence[Point]) -> bool:
+        self.together.tried = len(self.nearest.tried)
         try:
-            return self.together.confirm(self.nearest.candidates(steps, limit), self.evaluator)
+            return self.together.confirm(chain, self.evaluator)
         finally:
-            self.together.tried = len(self.nearest.tried)
+            self.nearest.tested = self.together.tested
 
 
 def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> None:

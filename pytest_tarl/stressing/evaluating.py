@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from itertools import chain
 from time import monotonic
 
 from pytest_tarl.errors import RecordingError
@@ -29,8 +30,10 @@ TURNS = 16
 # numbers of fresh episodes after which a test of a combination checks for a decision; more episodes can
 # confirm failures nearer to the boundary
 NEAREST = (16, 32, 64)
+# shares of the risk that these tests spend; most of it is left for the last one, which can show the most
+SPENT = (0.1, 0.2, 0.7)
 SEARCH = "search"  # name of the seeds of the search
-RAYS = "rays"  # name of the fresh seeds that all rays share
+RAYS = "rays"  # name of the fresh seeds that all rays share; chains of combinations have seeds of their own
 
 Progress = Callable[[int, int, str], None]
 
@@ -60,6 +63,7 @@ class Evaluator:
     _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
     _first: dict[tuple[float, ...], int] = field(default_factory=dict)
     _measured: dict[tuple[float, ...], tuple[float, float]] = field(default_factory=dict)
+    _released: list[str] = field(default_factory=list)
 
     @contextmanager
     def limited(self, share: float) -> Iterator[None]:
@@ -106,20 +110,33 @@ class Evaluator:
             found = self._evidence(point, size)
         return found
 
-    def confirm(self, point: Point, pool: str, risk: float, sizes: Sequence[int] = FRESH) -> bool:
+    def known(self, point: Point) -> Evidence:
+        """Return the evidence at a point from the episodes of the search that already ran there."""
+        outcomes = self._known[(SEARCH, *point.values())]
+        return examined(self.guarantee, outcomes, self._paired(point, len(outcomes)))
+
+    def confirm(
+        self,
+        point: Point,
+        pool: str,
+        risk: float,
+        sizes: Sequence[int] = FRESH,
+        shares: Sequence[float] | None = None,
+    ) -> bool:
         """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails at a point.
 
         Episodes are paired by seed with nominal ones. Several points may share a pool if none of them was chosen by its
-        outcomes. `risk` is divided evenly among `sizes`, the numbers of episodes after which the test checks for a
-        decision. The test also stops once a failure can hardly be shown any more. Raise BudgetSpentError.
+        outcomes. The test checks for a decision after each of `sizes` episodes, at its share of `risk`; without
+        `shares`, `risk` is divided evenly. The test also stops once a failure can hardly be shown any more. Raise
+        BudgetSpentError.
         """
-        share = risk / len(sizes)
-        for size in sizes:
+        risks = [risk * share for share in shares or [1.0 / len(sizes)] * len(sizes)]
+        for size, share in zip(sizes, risks, strict=True):
             outcomes = self._of(pool, point, size)
             nominal = self._of(pool, self.space.nominal, size)
             if refuted(self.guarantee, outcomes, nominal, share):
                 return True
-            if hopeless(self.guarantee, outcomes, nominal, sizes[-1], share):
+            if hopeless(self.guarantee, outcomes, nominal, sizes[-1], risks[-1]):
                 return False
         return False
 
@@ -140,28 +157,67 @@ class Evaluator:
         return [nominal[row] for row in rows]
 
     def measured(self, point: Point) -> tuple[float, float]:
-        """Return the margin at a point and its approximate standard deviation, from all episodes of the search.
+        """Return the margin at a point and its approximate standard deviation, from the episodes of `losses`.
 
-        Raise KeyError if the search ran no episode there.
+        Raise KeyError if there is no such episode.
         """
-        outcomes = self._known[(SEARCH, *point.values())]
+        outcomes, nominal = self._learned(point)
         key = (len(outcomes), *point.values())
         if key not in self._measured:
-            self._measured[key] = margin_of(self.guarantee, outcomes, self._paired(point, len(outcomes)))
+            self._measured[key] = margin_of(self.guarantee, outcomes, nominal)
         return self._measured[key]
 
-    def losses(self, point: Point) -> tuple[list[float], int]:
-        """Return the loss of each episode that the search ran at a point, and how many of them failed.
+    def release(self, pool: str) -> None:
+        """Let the model of the search learn from the fresh episodes of a pool that no later test uses."""
+        self._released.append(pool)
 
-        A loss is the difference from the nominal episode with the same seed, in units of the tolerated loss; it is
-        positive if the episode earned less. Raise KeyError if the search ran no episode there.
+    def knows(self, point: Point) -> bool:
+        """Return whether `losses` has an episode at a point; the budget may have ended before."""
+        return any(self._pairs(pool, point)[0] for pool in (SEARCH, *self._released))
+
+    @property
+    def fresh_pools(self) -> list[str]:
+        """Return the pools of fresh seeds: that of the rays and the released ones."""
+        return [RAYS, *self._released]
+
+    def losses(self, point: Point) -> tuple[list[float], int]:
+        """Return the loss of each episode that the model may learn from at a point, and how many of them failed.
+
+        These are the episodes of the search and of the released pools. A loss is the difference from the nominal
+        episode with the same seed, in units of the tolerated loss; it is positive if the episode earned less. Raise
+        KeyError if there is no such episode.
         """
-        outcomes = self._known[(SEARCH, *point.values())]
         unit = self.guarantee.tolerance
-        pairs = zip(outcomes, self._paired(point, len(outcomes)), strict=True)
-        lost = [before.total - after.total for after, before in pairs]
+        outcomes, nominal = self._learned(point)
+        lost = [before.total - after.total for after, before in zip(outcomes, nominal, strict=True)]
         shares = [one / unit if unit > 0.0 else 2.0 * (one > 0.0) for one in lost]
         return shares, sum(not one.passed for one in outcomes)
+
+    def sources(self, point: Point) -> list[tuple[str, int]]:
+        """Return the pool and the number of the seed of each episode of `losses`, in the same order."""
+        return [
+            (pool, row)
+            for pool in (SEARCH, *self._released)
+            for row in self._rows(pool, point, len(self._pairs(pool, point)[0]))
+        ]
+
+    def _learned(self, point: Point) -> tuple[list[Outcome], list[Outcome]]:
+        """Return the outcomes that the model may learn from at a point, and the nominal ones with the same seeds."""
+        pairs = [self._pairs(pool, point) for pool in (SEARCH, *self._released)]
+        outcomes, nominal = ([*chain.from_iterable(part)] for part in zip(*pairs, strict=True))
+        if not outcomes:
+            raise KeyError(tuple(point.values()))
+        return outcomes, nominal
+
+    def _pairs(self, pool: str, point: Point) -> tuple[Sequence[Outcome], Sequence[Outcome]]:
+        """Return the known outcomes of a pool at a point that have a nominal one with the same seed, and these."""
+        outcomes = self._known.get((pool, *point.values()), [])
+        nominal = self._known.get((pool, *self.space.nominal.values()), [])
+        rows = [row for row in self._rows(pool, point, len(outcomes)) if row < len(nominal)]
+        return outcomes[: len(rows)], [nominal[row] for row in rows]
+
+    def _rows(self, pool: str, point: Point, count: int) -> Sequence[int]:
+        return self.rows(point, count) if pool == SEARCH else range(count)
 
     def common(self, point: Point, count: int) -> Sequence[Outcome]:
         """Return the outcomes of the first `count` seeds of the search at a point.

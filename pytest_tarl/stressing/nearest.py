@@ -20,13 +20,19 @@ import numpy as np
 from pytest_tarl import seeds
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
-from pytest_tarl.stressing.evaluating import NEAREST, SIZES, Evaluator
+from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, Evaluator
 from pytest_tarl.stressing.evolving import evolve
 from pytest_tarl.stressing.findings import Curve, MarginMap
 from pytest_tarl.stressing.generating import generate
 from pytest_tarl.stressing.guarantee import most_passed
 from pytest_tarl.stressing.mapping import margin_map
-from pytest_tarl.stressing.noise import cut_off, standard_error, typical_variance
+from pytest_tarl.stressing.noise import (
+    cut_off,
+    nominal_variance,
+    standard_error,
+    typical_variance,
+    variance_near,
+)
 from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
@@ -50,18 +56,15 @@ AMONG = 4  # number of candidates among which the model chooses one drift
 HOPE = 1.0  # number of standard deviations of the model that count in favour of a drift
 DESCENDED = 2  # number of drifts near the best one that are tried in each round
 AGAIN = 4  # number of rounds of the search that follows the single directions
-VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
 SAME = 0.02  # relative difference of drifts below which they count as the same
 TRIES = 24  # number of consecutive drifts without a nearer failure after which CMA-ES stops
 SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the best distance
 # Steps by which drifts are chosen: the errors of the model to allow for, in standard deviations, and the
-# excess over the guarantee, in units of what fresh episodes can show. FIRM is for the first confirmation,
-# NEAR for the next ones, and EXPECTED for drifts that are reported without confirmation.
-FIRM = ((0.5, 1.2), (1.0, 1.8), (1.5, 2.5))
-NEAR = ((0.35, 1.05), (0.15, 0.9))
+# excess over the guarantee, in units of what fresh episodes can show. EXPECTED is for drifts that are
+# reported without confirmation.
 EXPECTED = ((0.2, 0.9), (0.4, 1.0), (0.6, 1.2), (0.8, 1.5), (1.0, 2.0), (1.5, 2.5))
 # excess over the tolerated loss, in standard errors, that fresh episodes show in 4 of 5 cases
-STANDARD = 4.1
+STANDARD = 3.8
 # excess of a failure rate, in standard errors, that fresh episodes show in 4 of 5 cases; maximum failure rate
 POWER, IMPOSSIBLE = 0.6, 0.99
 # limits of the excess loss that fresh episodes can show, in units of the tolerated loss
@@ -69,7 +72,7 @@ SHALLOW, DEEP = 0.03, 1.2
 # share of the distance below which components may be noise; they are dropped before confirmation
 TRIFLE = 0.15
 
-Steps = Sequence[tuple[float, float]]  # the pairs of FIRM, NEAR or EXPECTED: errors of the model, excess
+Steps = Sequence[tuple[float, float]]  # pairs as in EXPECTED: errors of the model, excess
 
 
 @dataclass
@@ -79,7 +82,8 @@ class Nearest:
     evaluator: Evaluator
     curves: Sequence[Curve]
     tried: list[Point] = field(default_factory=list)
-    risk: float = 0.05  # error probability of the confirmation; it determines which failures can be shown
+    tested: list[Point] = field(default_factory=list)  # drifts with fresh episodes
+    risk: float = 0.01  # error probability of a test on fresh seeds; limits which failures can be shown
     _spread: Iterator[Vector] | None = None
     _fitted: tuple[int, Prediction] | None = None  # (number of episodes that the model was fitted to, model)
 
@@ -93,6 +97,12 @@ class Nearest:
             self._generate()
             self._predict()
         self._explore_and_predict(ROUNDS)
+
+    def refine(self) -> None:
+        """Predict again, and try drifts around the best one. Raise BudgetSpentError."""
+        for _ in range(ROUNDS):
+            self._predict()
+            self._descend()
 
     def improve(self) -> None:
         """Predict and explore again, then evolve and shrink the best drift.
@@ -112,15 +122,15 @@ class Nearest:
         The model of all episodes decides whether a drift fails, unless the drift's own episodes show it clearly. A
         drift with an option that is not nominal is outside the model; only its own episodes decide.
         """
-        coordinates = self._nominal()
-        own = [point for point in self._known() if coordinates.covers(point) and self._distance(point) > 0.0]
+        coordinates = self.nominal
+        own = [point for point in self._known() if coordinates.covers(point) and self.distance(point) > 0.0]
         other = [
             point
             for point in self._known()
             if not coordinates.covers(point) and self.evaluator.examine(point, SIZES[0]).result == "fails"
         ]
         if own and coordinates.spans:
-            model = self._model()
+            model = self.model()
             excess = model.excess(np.array([coordinates.vector(point) for point in own]))
             least = -SURE * model.shown.depth
             other += [
@@ -128,64 +138,15 @@ class Nearest:
                 for point, one in zip(own, excess, strict=True)
                 if one > least or self._clearly_fails(point)
             ]
-        return min(other, key=self._distance, default=None)
+        return min(other, key=self.distance, default=None)
 
-    def candidates(self, steps: Steps, limit: float) -> Iterator[Point]:
-        """Yield drifts to confirm, nearer than `limit`: one for each of `steps`, then drifts that failed farther away.
-
-        At the boundary, even many episodes rarely show a failure. The candidates therefore lie beyond the boundary, as
-        far as noise and errors of the model require. Each candidate is vetted first. Raise BudgetSpentError.
-        """
-        for point in self._candidates(steps):
-            if self._distance(point) >= NEARER * limit:
-                return
-            yield point
-
-    def _candidates(self, steps: Steps) -> Iterator[Point]:
-        best = self.best
-        if best is None:
-            return
-        if not self._nominal().covers(best):
-            yield best
-            return
-        last = 0.0
-        for errors, depth in steps:
-            point = self._vetted(errors, depth)
-            if point is not None and self._distance(point) > (1.0 + SAME) * last:
-                last = self._distance(point)
-                yield point
-        if last == 0.0:
-            last = self._distance(best)
-            yield best
-        yield from self._farther(last)
-
-    def _vetted(self, errors: float, depth: float) -> Point | None:
-        """Return the nearest drift that fails according to the model, even after further episodes there.
-
-        The nearest of many predicted drifts is often one at which the model errs. `errors` and `depth` are as in
-        `expected`. Return None if no drift fails. Raise BudgetSpentError.
-        """
-        evaluator, coordinates = self.evaluator, self._nominal()
-        draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} vetting {len(self.tried)}")
-        point: Point | None = None
-        for _ in range(VETTED):
-            point = self._nearest(errors, depth, draws)
-            if point is None or evaluator.left < SIZES[2] + 2 * NEAREST[-1]:
-                break
-            evaluator.common(point, SIZES[2])
-            self.tried.append(point)
-            vector = coordinates.vector(point)
-            if self._model().deeper(depth).excess(vector[None, :], errors)[0] >= 0.0:
-                break
-        return point
-
-    def _nearest(self, errors: float, depth: float, draws: np.random.Generator) -> Point | None:
-        """Return the nearest drift that fails according to the model, or None; parameters as in `expected`."""
-        model = self._model().deeper(depth)
+    def predicted(self, errors: float, depth: float, draws: np.random.Generator) -> Point | None:
+        """Return the nearest drift that fails according to the model, or None; parameters as in `Plan`."""
+        model = self.model().deeper(depth)
         vector = model.shortest(errors, LARGEST, draws)
         if vector is None:
             return None
-        return self._nominal().point(_without_trifles(vector, model, errors))
+        return self.nominal.point(_without_trifles(vector, model, errors))
 
     def expected(self, steps: Steps) -> list[Point]:
         """Return for each step the nearest drift that fails according to the model.
@@ -193,58 +154,46 @@ class Nearest:
         A step allows for errors of the model and demands an excess over the guarantee. Drifts that hardly differ are
         skipped. The result is empty if no tried drift fails.
         """
-        best, coordinates = self.best, self._nominal()
+        best, coordinates = self.best, self.nominal
         if best is None or not coordinates.covers(best):
             return []
         draws = seeds.generator(self.evaluator.seed, f"stress {self.evaluator.drift} chain {len(self.tried)}")
         near: list[Point] = []
         for errors, depth in steps:
-            point = self._nearest(errors, depth, draws)
+            point = self.predicted(errors, depth, draws)
             if point is not None and (
-                not near or self._distance(point) > (1.0 + SAME) * self._distance(near[-1])
+                not near or self.distance(point) > (1.0 + SAME) * self.distance(near[-1])
             ):
                 near.append(point)
         return near
 
     def map(self) -> MarginMap | None:
         """Return the map of margins that the model predicts, or None with fewer than two ranges."""
-        return margin_map(self.curves, self._model(), self._nominal())
-
-    def _farther(self, limit: float) -> list[Point]:
-        """Return up to three failing drifts farther than `limit` that change several directions, nearest first.
-
-        These drifts are tested if no nearer candidate is confirmed: the model may have been wrong, or a few
-        episodes may have failed by chance.
-        """
-        usual, coordinates = self.evaluator.space.nominal, self._nominal()
-        found = [
-            point
-            for point in self.tried
-            if self._distance(point) > limit
-            and coordinates.covers(point)
-            and sum(point[name] != usual[name] for name in usual) > 1
-            and self.evaluator.examine(point, SIZES[0]).result == "fails"
-        ]
-        found.sort(key=lambda point: (self._distance(point), *point.values()))
-        places = dict.fromkeys((0, len(found) // 4, len(found) // 2))
-        return [found[place] for place in places if place < len(found)]
+        return margin_map(self.curves, self.model(), self.nominal)
 
     def _clearly_fails(self, point: Point) -> bool:
         """Return whether a point's own episodes clearly show a failure, without the help of the model."""
         margin, spread = self.evaluator.measured(point)
         return margin + CLEAR * spread < 0.0
 
+    def vectors(self) -> list[Vector]:
+        """Return the vectors of all known drifts that the model covers."""
+        return [self.nominal.vector(point) for point in self._known() if self.nominal.covers(point)]
+
     def _known(self) -> list[Point]:
         single = [curve.ray.point(t) for curve in self.curves for t in curve.evidence]
-        return [*single, *self.tried]
+        tested = [point for point in self.tested if self.evaluator.knows(point)]
+        return [*single, *self.tried, *tested]
 
-    def _nominal(self) -> Coordinates:
+    @property
+    def nominal(self) -> Coordinates:
+        """Return the coordinates of the drifts with nominal options, which the model covers."""
         return Coordinates(self.evaluator.space, self.evaluator.space.nominal)
 
-    def _model(self) -> Prediction:
-        """Return the model of the drifts with nominal options."""
+    def model(self) -> Prediction:
+        """Return the model of the drifts with nominal options, fitted to all drifts known so far."""
         if self._fitted is None or self._fitted[0] != self.evaluator.spent:
-            evaluator, coordinates = self.evaluator, self._nominal()
+            evaluator, coordinates = self.evaluator, self.nominal
             unique = {tuple(point.values()): point for point in self._known() if coordinates.covers(point)}
             points = list(unique.values())
             measured = [evaluator.losses(point) for point in points]
@@ -256,11 +205,13 @@ class Nearest:
                     fmean(losses),
                     standard_error(cut, typical),
                     failed,
-                    evaluator.rows(point, len(losses)),
+                    evaluator.sources(point),
                 )
                 for point, (losses, failed), cut in zip(points, measured, within, strict=True)
             ]
-            model = Prediction(coordinates, evaluator.guarantee, samples, self._shown(sqrt(typical)), typical)
+            shown = self._shown(sqrt(variance_near(1.0, within, typical)))
+            paired = nominal_variance(evaluator.guarantee, typical)
+            model = Prediction(coordinates, evaluator.guarantee, samples, shown, typical, paired)
             self._fitted = evaluator.spent, model
         return self._fitted[1]
 
@@ -268,22 +219,23 @@ class Nearest:
     def _share(self) -> float:
         """Return the failure rate that the largest number of fresh episodes shows about 4 times in 5."""
         episodes = NEAREST[-1]
-        most = most_passed(self.evaluator.guarantee, episodes, self.risk / 2 / len(NEAREST))
+        most = most_passed(self.evaluator.guarantee, episodes, self.risk * SPENT[-1])
         if most < 0:
             return IMPOSSIBLE
         share = (episodes - most) / episodes
         return min(share + POWER * sqrt(share * (1.0 - share) / episodes), IMPOSSIBLE)
 
     def _shown(self, noise: float) -> Shown:
-        """Return what the largest number of fresh episodes can show; `noise` is the standard deviation of a loss."""
+        """Return what the largest number of fresh episodes can show; `noise` is that of a loss at the boundary."""
         depth = min(max(STANDARD * noise / sqrt(NEAREST[-1]), SHALLOW), DEEP)
         return Shown(depth, self._share)
 
     def _limit(self) -> float:
         best = self.best
-        return float("inf") if best is None else NEARER * self._distance(best)
+        return float("inf") if best is None else NEARER * self.distance(best)
 
-    def _distance(self, point: Point) -> float:
+    def distance(self, point: Point) -> float:
+        """Return the distance of a drift from nominal."""
         return distance(self.evaluator.space, point)
 
     def _probe(self, point: Point) -> float:
@@ -298,17 +250,17 @@ class Nearest:
 
     def _predict(self) -> None:
         """Try the nearest drifts that the model predicts to fail, with varying optimism, and learn from each."""
-        evaluator, coordinates = self.evaluator, self._nominal()
+        evaluator, coordinates = self.evaluator, self.nominal
         draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} prediction {len(self.tried)}")
         if len(coordinates.spans) < 2:
             return
         for number in range(PREDICTED):
             bold = BOLD[number % len(BOLD)]
-            vector = self._model().shortest(-bold, LARGEST, draws)
+            vector = self.model().shortest(-bold, LARGEST, draws)
             if vector is None:
                 best = self.best
-                limit = LARGEST if best is None else self._distance(best)
-                vector, gain = self._model().promising(limit, draws)
+                limit = LARGEST if best is None else self.distance(best)
+                vector, gain = self.model().promising(limit, draws)
                 if gain < GAIN * limit:
                     continue
             self._probe(coordinates.point(vector))
@@ -324,19 +276,24 @@ class Nearest:
         Some are chosen by the model, because losses that are tolerated show where a failing region may be. Then try a
         few drifts around the best one.
         """
-        evaluator, coordinates = self.evaluator, self._nominal()
+        evaluator, coordinates = self.evaluator, self.nominal
         if len(coordinates.spans) < 2:
             return
         if self._spread is None:
             draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} exploration")
             self._spread = spread(coordinates, draws)
-        limit, best = min(self._limit(), LARGEST), self.best
+        limit = min(self._limit(), LARGEST)
         vectors = [limit * vector for vector in islice(self._spread, EXPLORED)]
         among = np.array([limit * vector for vector in islice(self._spread, GUIDED * AMONG)])
-        hopes = self._model().excess(np.clip(among, coordinates.low, coordinates.high), -HOPE)
+        hopes = self.model().excess(np.clip(among, coordinates.low, coordinates.high), -HOPE)
         vectors += [among[place] for place in np.argsort(-hopes, kind="stable")[:GUIDED]]
         for vector in vectors:
             self._probe(coordinates.point(vector))
+        self._descend()
+
+    def _descend(self) -> None:
+        """Try a few drifts around the best one."""
+        evaluator, coordinates, best = self.evaluator, self.nominal, self.best
         if best is not None and coordinates.covers(best):
             draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} descent {len(self.tried)}")
             for vector in islice(around(coordinates, coordinates.vector(best), draws), DESCENDED):
@@ -379,7 +336,7 @@ class Nearest:
             start = (
                 coordinates.vector(best) if best is not None else 0.5 * (coordinates.high + coordinates.low)
             )
-            evolve(start, SPREAD * (self._distance(best) if best is not None else 1.0), draws, margin)
+            evolve(start, SPREAD * (self.distance(best) if best is not None else 1.0), draws, margin)
 
 
 def _without_trifles(vector: Vector, model: Prediction, errors: float) -> Vector:

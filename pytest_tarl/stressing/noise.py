@@ -9,9 +9,11 @@ from statistics import fmean, median
 import numpy as np
 
 from pytest_tarl.stressing.coordinates import Vector
-from pytest_tarl.stressing.guarantee import LOWEST
+from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
 
-HIGHEST = 1.0 - LOWEST  # larger losses count as this loss, because margins below LOWEST count as LOWEST
+HIGHEST = 1.0 - LOWEST  # losses beyond this count as this, because margins below LOWEST do
+WIDTH = 0.3  # standard deviation of the weights of drifts by their mean loss, in units of the tolerated loss
+LIKE = 2.0  # degrees of freedom of the typical variance where no drift has a similar mean loss
 PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
 
 
@@ -28,6 +30,32 @@ def typical_variance(every: Sequence[Vector]) -> float:
     """
     found = [float(np.var(one, ddof=1)) for one in every if len(one) > 1 and one.min() < HIGHEST]
     return max(fmean(min(one, 4.0 * median(found)) for one in found), 1e-6) if found else 1e-6
+
+
+def nominal_variance(given: Guarantee, typical: float) -> float:
+    """Return the variance that the nominal episode of a pair adds to a loss, at most half of the typical one.
+
+    Episodes with the same seed may have similar rewards, so the variance of the recorded rewards is an upper limit.
+    """
+    if len(given.totals) < 2 or given.tolerance <= 0.0:
+        return typical / 2.0
+    return min(typical / 2.0, float(np.var(given.totals, ddof=1)) / given.tolerance**2)
+
+
+def variance_near(loss: float, every: Sequence[Vector], typical: float) -> float:
+    """Return the variance of the losses of drifts whose mean loss is about `loss`.
+
+    Episodes often vary more at the boundary than near nominal. Each drift counts by its degrees of freedom and by how
+    near its mean is; the typical variance counts as `LIKE` degrees of freedom. The losses are cut off, and drifts far
+    beyond the boundary do not count.
+    """
+    known = [one for one in every if len(one) > 1 and one.min() < HIGHEST]
+    if not known:
+        return typical
+    means = np.array([one.mean() for one in known])
+    weights = np.array([len(one) - 1.0 for one in known]) * np.exp(-(((means - loss) / WIDTH) ** 2) / 2.0)
+    variances = np.array([np.var(one, ddof=1) for one in known])
+    return float((weights @ variances + LIKE * typical) / (weights.sum() + LIKE))
 
 
 def standard_error(losses: Vector, typical: float) -> float:

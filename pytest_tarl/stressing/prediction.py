@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass
+from itertools import chain
 from math import log
 from typing import TypeVar
 
@@ -33,7 +34,7 @@ LOGIT = 4.0  # difference of logits that counts as much as the whole tolerated l
 
 @dataclass(frozen=True)
 class Sample:
-    """A tried drift: its vector, mean loss, number of failed episodes, and the numbers of the seeds of its episodes.
+    """A tried drift: its vector, mean loss, number of failed episodes, and the pool and number of each episode's seed.
 
     `loss` is in units of the tolerated loss, and `spread` is its standard error.
     """
@@ -42,7 +43,7 @@ class Sample:
     loss: float
     spread: float
     failed: int
-    rows: Sequence[int]
+    sources: Sequence[tuple[str, int]]
 
 
 @dataclass(frozen=True)
@@ -75,21 +76,26 @@ class Prediction:
         samples: Sequence[Sample],
         shown: Shown,
         typical: float,
+        paired: float,
     ) -> None:
-        """Fit the model; `typical` is the variance of a loss, half of which comes from the nominal episode."""
+        """Fit the model; `typical` is the variance of a loss, `paired` the part of it that the nominal episode adds."""
         self.coordinates, self.given, self.shown = coordinates, given, shown
         self._vectors = np.array([one.vector for one in samples]).reshape(
             len(samples), len(coordinates.spans)
         )
         losses = np.array([min(max(one.loss, LOWEST), 1.0 - LOWEST) for one in samples])
-        counts = np.array([float(len(one.rows)) for one in samples])
+        counts = np.array([float(len(one.sources)) for one in samples])
         # drifts with the same seeds share the nominal episodes, so their errors are correlated
-        used = np.zeros((len(samples), 1 + max((max(one.rows) for one in samples), default=0)))
+        places = {
+            source: place
+            for place, source in enumerate(dict.fromkeys(chain(*(one.sources for one in samples))))
+        }
+        used = np.zeros((len(samples), len(places)))
         for row, one in zip(used, samples, strict=True):
-            row[list(one.rows)] = 1.0 / len(one.rows)
-        common = typical / 2.0 * (used @ used.T)
+            row[[places[source] for source in one.sources]] = 1.0 / len(one.sources)
+        common = paired * (used @ used.T)
         own = np.maximum(
-            np.array([one.spread**2 for one in samples]) - typical / 2.0 / counts, typical / 8.0 / counts
+            np.array([one.spread**2 for one in samples]) - paired / counts, typical / 8.0 / counts
         )
         self._units = [np.ones(len(coordinates.spans))] * 2
         self._losses, self._units[0] = _relevant(

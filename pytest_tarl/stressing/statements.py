@@ -112,11 +112,11 @@ def chosen(
     fails: list[list[EpisodePlan]] = []
     passes: list[list[EpisodePlan]] = []
     for one in failures:
-        known = evaluator.recalled(RAYS, one.point)
+        known = [episode for pool in evaluator.fresh_pools for episode in evaluator.recalled(pool, one.point)]
         fails.append([plan for plan, failed in known if failed])
         passes.append([plan for plan, failed in known if not failed])
     usual = evaluator.space.nominal
-    points: list[tuple[str, Point]] = [(RAYS, usual)]
+    points: list[tuple[str, Point]] = [(pool, usual) for pool in evaluator.fresh_pools]
     points += [(RAYS, curve.ray.point(curve.held)) for curve in curves if curve.held]
     points += [
         ("search", curve.ray.point(t))

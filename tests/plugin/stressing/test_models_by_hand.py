@@ -111,8 +111,9 @@ def test_the_prior_covariance_of_two_drifts_equals_the_formula() -> None:
 def model(samples: list[tuple[float, float]], failed: int = 0) -> prediction.Prediction:
     """Return the model of drifts along mud, each by its coordinate and its mean loss of 32 episodes."""
     coordinates = Coordinates(SPACE, SPACE.nominal)
-    tried = [prediction.Sample(np.array([-t, 0.0]), loss, 0.01, failed, range(32)) for t, loss in samples]
-    return prediction.Prediction(coordinates, GIVEN, tried, prediction.Shown(0.1, 0.5), 0.01)
+    sources = [("search", number) for number in range(32)]
+    tried = [prediction.Sample(np.array([-t, 0.0]), loss, 0.01, failed, sources) for t, loss in samples]
+    return prediction.Prediction(coordinates, GIVEN, tried, prediction.Shown(0.1, 0.5), 0.01, 0.005)
 
 
 def test_a_prediction_returns_the_losses_where_drifts_were_tried_and_less_on_the_way_to_nominal() -> None:

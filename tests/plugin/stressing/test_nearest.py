@@ -18,7 +18,6 @@ from pytest_tarl.stressing.evaluating import Evaluator
 from pytest_tarl.stressing.evolving import evolve
 from pytest_tarl.stressing.findings import Curve
 from pytest_tarl.stressing.generating import generate
-from pytest_tarl.stressing.nearest import Nearest
 from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
 from pytest_tarl.stressing.rays import distance, rays
 from pytest_tarl.stressing.spreading import CLOSEST, spread
@@ -45,10 +44,10 @@ def test_coordinates_are_distances_in_units_of_the_ranges(a: float, b: float, ca
     assert coordinates.within(np.array([a, b]), 0.9) is None or camera == 0.0
 
 
-def measured(evaluator: Evaluator, point: Point) -> tuple[float, float, int, range]:
-    """Return the mean loss, its standard deviation, the number of failed episodes and the numbers of the seeds."""
+def measured(evaluator: Evaluator, point: Point) -> tuple[float, float, int, list[tuple[str, int]]]:
+    """Return the mean loss, its standard deviation, the number of failed episodes and their seeds."""
     losses, failed = evaluator.losses(point)
-    return fmean(losses), 0.05, failed, range(len(losses))
+    return fmean(losses), 0.05, failed, evaluator.sources(point)
 
 
 def test_the_prediction_finds_the_nearest_failure_where_losses_add_up() -> None:
@@ -63,7 +62,9 @@ def test_the_prediction_finds_the_nearest_failure_where_losses_add_up() -> None:
     coordinates = Coordinates(space, space.nominal)
     points = [curve.ray.point(t) for curve in curves for t in curve.evidence]
     samples = [Sample(coordinates.vector(point), *measured(evaluator, point)) for point in points]
-    model = Prediction(coordinates, evaluator.guarantee, samples, Shown(0.05, 0.2), typical=0.01)
+    model = Prediction(
+        coordinates, evaluator.guarantee, samples, Shown(0.05, 0.2), typical=0.01, paired=0.005
+    )
     assert model.margins(np.array([[0.2, 0.4]]))[0] == pytest.approx(0.0, abs=0.1)
     vector, gain = model.promising(0.5, np.random.default_rng(0))
     assert gain > 0.0
@@ -86,7 +87,9 @@ def test_the_prediction_finds_the_nearest_failure_even_if_rewards_do_not_indicat
     for point in grid:
         evaluator.examine(point, 4)
     samples = [Sample(coordinates.vector(point), *measured(evaluator, point)) for point in grid]
-    model = Prediction(coordinates, evaluator.guarantee, samples, Shown(0.05, 0.2), typical=1e-6)
+    model = Prediction(
+        coordinates, evaluator.guarantee, samples, Shown(0.05, 0.2), typical=1e-6, paired=5e-07
+    )
     vector = model.shortest(0.0, 2.0, np.random.default_rng(0))
     assert vector is not None
     assert 0.6 <= vector.sum() <= 0.8  # the grid's points at 0.6 hold, those at 0.8 fail
@@ -158,18 +161,6 @@ def test_the_error_about_a_missing_extra_names_the_extra(monkeypatch: pytest.Mon
     assert extras.missing_stress("--tarl-stress") is None
     monkeypatch.setattr(extras, "STRESS", ("cma", "no_such_package"))
     assert "--tarl-stress needs no_such_package" in str(extras.missing_stress("--tarl-stress"))
-
-
-def test_clearly_failing_drifts_are_candidates_if_the_model_was_wrong_nearby() -> None:
-    space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
-    evaluator = evaluator_of(lambda point, _: (point["a"] + point["b"] < 0.9, 1.0), space)
-    points = [{"a": 0.1 * number, "b": 0.1 * number} for number in range(1, 10)]
-    nearest = Nearest(evaluator, [], [*points[::-1], {"a": 1.0, "b": 0.0}, {"a": 0.2, "b": 0.3}])
-    for point in nearest.tried:
-        evaluator.examine(point, 4)
-    assert nearest._farther(0.1) == [points[4], points[5], points[6]]
-    assert nearest._farther(distance(space, points[7])) == [points[8]]
-    assert nearest._farther(2.0) == []
 
 
 def test_spread_drifts_fill_all_directions_within_the_unit_ball() -> None:

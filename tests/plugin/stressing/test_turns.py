@@ -1,22 +1,18 @@
-"""Seeds that drifts of the search take turns in, drifts chosen by the model, and candidates that are vetted."""
+"""Seeds that drifts of the search take turns in, and drifts chosen by the model."""
 
 from __future__ import annotations
 
 from itertools import islice
-from math import inf
 
 import numpy as np
-import pytest
 
 from pytest_tarl import Drift
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.evaluating import GLANCE, SEARCH, TURNS
-from pytest_tarl.stressing.findings import Curve
-from pytest_tarl.stressing.nearest import DESCENDED, EXPLORED, FIRM, GUIDED, NEAR, Nearest
+from pytest_tarl.stressing.nearest import DESCENDED, EXPLORED, GUIDED, Nearest
 from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
-from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.spreading import SHORTER, around
 from tests.plugin.stressing.worlds import evaluator_of, space_of
 
@@ -61,8 +57,11 @@ def test_drifts_with_different_seeds_make_the_model_more_certain() -> None:
     given = evaluator_of(sloping, SQUARE).guarantee
 
     def deviation(rows: list[list[int]]) -> float:
-        samples = [Sample(vector, 1.0, 0.2, 0, row) for vector, row in zip(vectors, rows, strict=True)]
-        model = Prediction(coordinates, given, samples, Shown(0.05, 0.2), typical=0.08)
+        samples = [
+            Sample(vector, 1.0, 0.2, 0, [(SEARCH, number) for number in row])
+            for vector, row in zip(vectors, rows, strict=True)
+        ]
+        model = Prediction(coordinates, given, samples, Shown(0.05, 0.2), typical=0.08, paired=0.04)
         return float(model.moments(np.array([[0.5, 0.5]]))[1][0])
 
     assert deviation([[0, 1], [2, 3]]) < 0.95 * deviation([[0, 1], [0, 1]])
@@ -104,21 +103,3 @@ def test_drifts_around_the_best_one_are_tried() -> None:
     assert len(nearest.tried) == 1 + EXPLORED + GUIDED + DESCENDED
     for point in nearest.tried[-DESCENDED:]:
         assert 0.5 < np.hypot(point["a"], point["b"]) / np.hypot(0.9, 0.6) <= SHORTER[1] + 1e-9
-
-
-@pytest.mark.parametrize("seed", [0, 1, 2, 3])
-def test_candidates_are_vetted_with_further_episodes_and_lie_beyond_the_boundary(seed: int) -> None:
-    evaluator = evaluator_of(sloping, SQUARE, seed=seed)
-    curves = [Curve(ray) for ray in rays(SQUARE, {})]
-    for curve in curves:
-        curve.evidence.update({t: evaluator.glance(curve.ray.point(t)) for t in curve.ray.places})
-    nearest = Nearest(evaluator, curves)
-    nearest.approach()
-    candidates = list(islice(nearest.candidates(FIRM, inf), len(FIRM)))
-    assert candidates
-    for point in candidates:
-        assert len(evaluator.losses(point)[0]) >= TURNS
-        assert 0.8 * point["a"] + 0.6 * point["b"] > 0.5
-    distances = [np.hypot(point["a"], point["b"]) for point in candidates]
-    assert distances == sorted(distances)
-    assert list(nearest.candidates(NEAR, 0.5)) == []  # the boundary is at a distance of 0.5

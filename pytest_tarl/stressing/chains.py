@@ -1,0 +1,134 @@
+"""Choose the drifts that are tested on fresh seeds: chains that lead from far beyond the boundary towards it.
+
+The tests of a chain stop at the first drift that is not confirmed, so the drifts before it are confirmed in any case.
+Each drift is tested at the whole risk of the chain (fixed-sequence procedure; Maurer, Hothorn & Lehmacher 1995).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pytest_tarl import seeds
+from pytest_tarl.spaces import Point
+from pytest_tarl.stressing.coordinates import Vector
+from pytest_tarl.stressing.evaluating import NEAREST, SIZES
+from pytest_tarl.stressing.nearest import Nearest
+
+NEARER = 0.98  # maximum distance of the next confirmed drift, as a share of the distance of the last one
+VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
+POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a drift beyond the near end
+# multiples of the drift at the near end of a chain that may become drifts of the chain
+STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How to choose the drifts of a chain.
+
+    The near end is the nearest drift that fails according to the model: `errors` are the errors of the model to allow
+    for, in standard deviations, and `depth` is the excess over the guarantee, in units of what fresh episodes can show.
+    Each of `steps` adds a farther drift: the minimum probability that fresh episodes show its failure, and the minimum
+    distance as a multiple of that of the drift before it.
+    """
+
+    errors: float
+    depth: float
+    steps: tuple[tuple[float, float], ...]
+
+
+FIRST = Plan(0.5, 1.2, ((0.9, 1.06), (0.98, 1.2)))  # while no drift in several directions is confirmed
+NEXT = Plan(0.35, 1.05, ((0.9, 1.03),))
+
+
+def chain(nearest: Nearest, plan: Plan, limit: float) -> list[Point]:
+    """Return the drifts of a chain, nearer than `limit`, those farthest from nominal first.
+
+    If the nearest failing drift has an option that is not nominal, the model does not cover it, and the chain has only
+    this drift. The chain is empty if no tried drift fails. Raise BudgetSpentError.
+    """
+    best, limit = nearest.best, NEARER * limit
+    if best is None:
+        return []
+    if not nearest.nominal.covers(best):
+        return [best] if nearest.distance(best) < limit else []
+    near = _vetted(nearest, plan) or best
+    if nearest.distance(near) >= limit:
+        return []
+    return [*_beyond(nearest, plan, near, limit), near]
+
+
+def clear(nearest: Nearest) -> list[Point]:
+    """Return up to three drifts in several directions that failed in the search, those farthest from nominal first.
+
+    They are tested if no drift is confirmed that the model predicts: the model may be wrong. The drifts are at the
+    first quarter, half and last place by distance. The search runs no further episodes there.
+    """
+    usual, evaluator = nearest.evaluator.space.nominal, nearest.evaluator
+    found = [
+        point
+        for point in nearest.tried
+        if nearest.nominal.covers(point)
+        and sum(point[name] != usual[name] for name in usual) > 1
+        and evaluator.known(point).result == "fails"
+    ]
+    found.sort(key=lambda point: (-nearest.distance(point), *point.values()))
+    places = dict.fromkeys((len(found) // 2, 3 * len(found) // 4, len(found) - 1))
+    return [found[place] for place in places] if found else []
+
+
+def _vetted(nearest: Nearest, plan: Plan) -> Point | None:
+    """Return the nearest drift that fails according to the model, even after further episodes there.
+
+    The nearest of many predicted drifts is often one at which the model errs. Return None if no drift fails. Raise
+    BudgetSpentError.
+    """
+    evaluator = nearest.evaluator
+    draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} vetting {len(nearest.tried)}")
+    for _ in range(VETTED):
+        point = nearest.predicted(plan.errors, plan.depth, draws)
+        if point is None or evaluator.left < SIZES[2] + 2 * NEAREST[-1]:
+            return point
+        evaluator.common(point, SIZES[2])
+        nearest.tried.append(point)
+        vector = nearest.nominal.vector(point)
+        if nearest.model().deeper(plan.depth).excess(vector[None, :], plan.errors)[0] >= 0.0:
+            return point
+    return None
+
+
+def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Point]:
+    """Return a drift for each step of the plan, nearer than `limit`, those farthest from nominal first.
+
+    The drifts are multiples of `near` or have been tried before. A step takes the nearest drift that is likely enough
+    to be confirmed, or the likeliest one. The plan ends early if no drift is at least `POSSIBLE`.
+    """
+    coordinates = nearest.nominal
+    vectors = _sorted([*_multiples(nearest, near), *nearest.vectors()])
+    lengths = np.linalg.norm(vectors, axis=1)
+    chances = nearest.model().failing(vectors)
+    found: list[Point] = []
+    last = nearest.distance(near)
+    for least, apart in plan.steps:
+        allowed = (lengths > apart * last) & (lengths < limit) & (chances >= POSSIBLE)
+        if not allowed.any():
+            break
+        likely = allowed & (chances >= least)
+        place = int(np.argmax(likely if likely.any() else np.where(allowed, chances, -1.0)))
+        found.insert(0, coordinates.point(vectors[place]))
+        last = float(lengths[place])
+    return found
+
+
+def _multiples(nearest: Nearest, near: Point) -> list[Vector]:
+    coordinates = nearest.nominal
+    vector = coordinates.vector(near)
+    return [np.clip(stretch * vector, coordinates.low, coordinates.high) for stretch in STRETCHES]
+
+
+def _sorted(vectors: list[Vector]) -> Vector:
+    """Return vectors by their lengths, ascending; shape (drifts, ranges)."""
+    found = np.array(vectors)
+    ordered: Vector = found[np.argsort(np.linalg.norm(found, axis=1), kind="stable")]
+    return ordered
