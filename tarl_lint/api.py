@@ -63,6 +63,14 @@ class Analysis:
         """
         return self.prober.configuring
 
+    @property
+    def making(self) -> Mapping[SiteId, tuple[Step, tuple[SiteId, ...]]]:
+        """Return the statements outside of the flows that pass constants to objects of the program's own classes.
+
+        An example is `self.left = Wheel(0.16)`. With each of them are the sites that use the object.
+        """
+        return self.prober.making
+
     def operands(self, site: SiteId) -> tuple[Operand, ...]:
         """Return the constants that a site uses, in source order."""
         return self.prober.operands(site)

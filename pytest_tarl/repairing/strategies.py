@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pytest_tarl import seeds
@@ -20,7 +20,8 @@ from pytest_tarl.searching.plainness import writing
 from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import Strategy, Trials
 from pytest_tarl.searching.sweep import Sweep
-from tarl_lint.model import Operand
+from tarl_lint.api import Analysis
+from tarl_lint.model import Operand, SiteId
 
 MOST_GUARDS = 3  # maximum number of guards per search
 
@@ -84,8 +85,27 @@ def operands(order: Order) -> tuple[Operand, ...]:
         if any((o.span.path, o.span.line) in defined for o in own):  # they are found where they are read
             given = tuple(o for o in given if o not in own)
         found |= dict.fromkeys(given, best)
+    found |= _given_to_several(analysis, found, ranks)
     ordered = sorted(found, key=lambda o: found[o])
     return tuple(sorted(quantities(analysis, dict.fromkeys(ordered)), key=writing))
+
+
+def _given_to_several(
+    analysis: Analysis, found: Mapping[Operand, int], ranks: Mapping[SiteId, int]
+) -> dict[Operand, int]:
+    """Return the constants that a program gives to objects of its own classes, with the rank of the best user.
+
+    If a class has one object, the constant is found where the object uses it. If it has several, such as two wheels,
+    the use stands for several constants, so each is changed where its object is made.
+    """
+    known = {one.definition for one in found}
+    last = len(ranks)
+    return {
+        one: min(ranks.get(user, last) for user in users)
+        for site, (_, users) in analysis.making.items()
+        for one in analysis.operands(site)
+        if one.definition is not None and one.definition not in known
+    }
 
 
 def aside_operands(order: Order) -> tuple[Operand, ...]:

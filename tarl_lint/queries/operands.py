@@ -84,6 +84,12 @@ def fills_an_object(statement: ir.Stmt) -> bool:
     return displays and numbers <= MOST_NUMBERS
 
 
+def constructions(statement: ir.Stmt) -> list[ir.Call]:
+    """Return the calls of a statement whose function is a name, as in `Wheel(0.16)`."""
+    inner = _all(_expressions(statement))
+    return [one for one in inner if isinstance(one, ir.Call) and isinstance(one.function, ir.Name)]
+
+
 def _all(expressions: Iterable[ir.Expr]) -> Iterator[ir.Expr]:
     """Yield the expressions that a value is made of, outermost first."""
     for expr in expressions:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -16,11 +16,12 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, Obj, Value, join, join_all
 from tarl_lint.model import Flow, Operand, SiteId, Step
 from tarl_lint.queries.held_constants import Holding, Origin, Origins
-from tarl_lint.queries.operands import fills_an_object, sets_timing, timing_uses, uses
+from tarl_lint.queries.operands import constructions, fills_an_object, sets_timing, timing_uses, uses
 
 FILLED: Final = frozenset(
     ["lib", "sequence", "mapping"]
 )  # kinds of objects that a set-up fills with constants
+MADE: Final = frozenset(["instance"])  # kind of the objects that a set-up makes of the program's own classes
 
 
 @dataclass(slots=True)
@@ -37,9 +38,14 @@ class Seen:
         before = self.values.get(expr.pos)
         self.values[expr.pos] = value if before is None else join(before, value)
 
-    def filled_objects(self) -> frozenset[Obj]:
-        """Return the objects of unknown classes and the containers among the values."""
-        return frozenset(o.whole for value in self.values.values() for o in value.pts if o.kind in FILLED)
+    def objects(self, kinds: Collection[str]) -> frozenset[Obj]:
+        """Return the objects of some kinds among the values."""
+        return frozenset(o.whole for value in self.values.values() for o in value.pts if o.kind in kinds)
+
+    def made(self) -> frozenset[Obj]:
+        """Return the objects of the program's own classes that the statement makes."""
+        results = (self.values.get(call.pos, BOTTOM) for call in constructions(self.statement))
+        return frozenset(o.whole for value in results for o in value.pts if o.kind in MADE)
 
 
 class Prober:
@@ -58,6 +64,8 @@ class Prober:
         self.timing: dict[SiteId, Step] = {}  # statements outside of the flows that wait or set a rate
         # statements outside of the flows that fill an object with constants, and the sites that use the object
         self.configuring: dict[SiteId, tuple[Step, tuple[SiteId, ...]]] = {}
+        # the same for statements that pass constants to objects of the program's own classes
+        self.making: dict[SiteId, tuple[Step, tuple[SiteId, ...]]] = {}
         self._calls: dict[SiteId, Step] = {}
         self._files = {step.span.path for f in flows for step in f.steps}
         self._columns: dict[tuple[str, ir.Pos], SiteId | None] = {}
@@ -136,16 +144,18 @@ class Prober:
         return site
 
     def _find_configuring(self) -> None:
-        """Keep the statements that fill an object of a library, or a container, that a site uses."""
+        """Keep the statements that fill or make an object that a site uses."""
         users: dict[Obj, list[SiteId]] = {}
         for site in sorted(self.seen.keys() - self._calls.keys() - self.timing.keys()):
-            for one in self.seen[site].filled_objects():
+            for one in self.seen[site].objects(FILLED | MADE):
                 users.setdefault(one, []).append(site)
         for site, step in self._calls.items():
-            using = {user for one in self.seen[site].filled_objects() for user in users.get(one, ())}
-            if using:
-                self.configuring[site] = (step, tuple(sorted(using)))
-            else:
+            seen = self.seen[site]
+            for objects, found in ((seen.objects(FILLED), self.configuring), (seen.made(), self.making)):
+                using = {user for one in objects for user in users.get(one, ())}
+                if using:
+                    found[site] = (step, tuple(sorted(using)))
+            if site not in self.configuring and site not in self.making:
                 del self.seen[site]
 
     def _arrive(self, frame: Frame, statement: ir.Stmt) -> None:

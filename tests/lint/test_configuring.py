@@ -56,3 +56,54 @@ def test_constants_in_calls_that_configure_a_used_object_are_operands(
     assert [one.code for site in sites for one in analysis.operands(site)] == expected
     users = {user for _, users in analysis.configuring.values() for user in users}
     assert users <= {step.site for step in (*analysis.sites, *analysis.deciding)}
+
+
+TWO_WHEELS = """
+    import rospy
+    from std_msgs.msg import Float64
+    LEFT, RIGHT = 0.16, 0.17
+    class Wheel:
+        def __init__(self, radius, name="wheel"):
+            self.radius = radius
+        def speed(self, turns):
+            return turns * self.radius
+    class Driver:
+        def __init__(self):
+            {setup}
+            self.out = rospy.Publisher("out", Float64, queue_size=1)
+            rospy.Subscriber("in", Float64, self.on)
+        def on(self, msg):
+            self.out.publish({use})
+    rospy.init_node("driver")
+    Driver()
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("setup", "use", "expected"),
+    [
+        (
+            "self.left = Wheel(LEFT); self.right = Wheel(RIGHT)",
+            "self.left.speed(msg.data) + self.right.speed(msg.data)",
+            {"self.left = Wheel(LEFT)": ["LEFT"], "self.right = Wheel(RIGHT)": ["RIGHT"]},
+        ),
+        (
+            "self.left = Wheel(0.16); self.spare = Wheel(0.2)",
+            "self.left.speed(msg.data)",
+            {"self.left = Wheel(0.16)": ["0.16"]},
+        ),
+        ("self.left = Wheel(0.16); self.name = str(self.left)", "msg.data", {}),
+    ],
+)
+def test_constants_that_make_a_used_object_of_an_own_class_are_operands(
+    setup: str, use: str, expected: dict[str, list[str]], tmp_path: Path
+) -> None:
+    analysis = analysed(tmp_path, node=TWO_WHEELS.format(setup=setup, use=use))
+    found = {
+        step.code: [one.code for one in analysis.operands(site)]
+        for site, (step, _) in analysis.making.items()
+    }
+    assert found == expected
+    sites = {step.site for step in (*analysis.sites, *analysis.deciding)}
+    assert all({*users} <= sites for _, users in analysis.making.values())

@@ -56,3 +56,58 @@ def test_constants_of_objects_are_searched_where_they_are_stored(
     order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=places))
     found = [one.code for one in operands(order)]
     assert sorted(found) == sorted(expected)
+
+
+WHEELS = """\
+import rospy
+from std_msgs.msg import Float64
+
+LEFT = 0.16
+RIGHT = 0.17
+
+
+class Wheel:
+    def __init__(self, radius):
+        self.radius = radius
+
+    def speed(self, turns):
+        return turns * self.radius
+
+
+{setup}
+
+
+def on_in(msg):
+    out.publish({use})
+
+
+if __name__ == "__main__":
+    rospy.init_node("keeper")
+    out = rospy.Publisher("/out", Float64, queue_size=1)
+    rospy.Subscriber("/in", Float64, on_in)
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("setup", "use", "expected"),
+    [
+        (
+            "left = Wheel(LEFT)\nright = Wheel(RIGHT)",
+            "left.speed(msg.data) + right.speed(msg.data)",
+            ["LEFT", "RIGHT", "self.radius"],
+        ),
+        ("left = Wheel(LEFT)", "left.speed(msg.data)", ["self.radius"]),  # the use stands for one constant
+        ("left = Wheel(0.16)", "left.speed(msg.data)", ["self.radius"]),
+    ],
+)
+def test_constants_of_several_objects_of_a_class_are_searched_one_by_one(
+    setup: str, use: str, expected: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "keeper.py"
+    path.write_text(WHEELS.format(setup=setup, use=use))
+    analysis = analyse([path], root=tmp_path)
+    places = [SimpleNamespace(site=SimpleNamespace(id=str(step.site))) for step in analysis.sites]
+    order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=places))
+    found = [one.code for one in operands(order)]
+    assert sorted(found) == sorted(expected)
