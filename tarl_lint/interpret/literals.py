@@ -96,9 +96,7 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
     else:
         updates.add_element(ctx, pointer(obj), element)
         if not ctx.repeating and _makes_objects(ctx, element):
-            ctx.repeating = (
-                True  # once for a whole nest of comprehensions, or the time would double with each
-            )
+            ctx.repeating = True  # once for a nest of comprehensions; else, the time would double with each
             again = ctx.ops.evaluate(ctx, expr.element, frame)  # makes each object one of several
             ctx.repeating = False
             updates.add_element(ctx, pointer(obj), Value(again.deps | gate, again.pts, again.consts))

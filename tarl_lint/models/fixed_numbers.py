@@ -43,12 +43,18 @@ def noted(
         return loaded(ctx, found, frame, call)
     if name in ARRAYS and computed(call) and numbers(call):
         return loaded(ctx, found, frame, call)
-    if (name in COMPUTING or name.startswith("math.")) and not found.deps and (pos := computed(call)):
+    fixed = not found.deps or (name != "float" and _are_loaded(ctx, found))  # `float` returns what is loaded
+    if (name in COMPUTING or name.startswith("math.")) and fixed and (pos := computed(call)):
         ctx.unchanged.add(call)
         node = ctx.node(frame, ("fixed", call.slot), "assign")
         ctx.graph.literals[node] = (None, pos, frame.program.path)
         return Value(frozenset([node]), found.pts, found.consts)
     return found
+
+
+def _are_loaded(ctx: Interpreter, found: Value) -> bool:
+    """Return whether a value depends only on loaded values."""
+    return all(ctx.graph.literals.get(node, (0,))[0] is None for node in found.deps)
 
 
 def loaded(ctx: Interpreter, found: Value, frame: Frame, call: ir.Call) -> Value:

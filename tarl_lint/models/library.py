@@ -324,11 +324,11 @@ def _connect(ctx: Interpreter, it: Invocation) -> None:
 
 def _loaded(ctx: Interpreter, made: Value, it: Invocation) -> Value:
     """Return the result of a method: parsed options, or data loaded from a file."""
-    if it.name in environment.PARSING:
-        return environment.options(ctx, it, made)
-    if it.name in fixed_numbers.PARSING and ctx.thorough:
-        return fixed_numbers.loaded(ctx, made, it.frame, it.call)
-    return made
+    if it.name not in fixed_numbers.PARSING:
+        return made
+    if ctx.thorough:
+        made = fixed_numbers.loaded(ctx, made, it.frame, it.call)
+    return environment.options(ctx, it, made)
 
 
 def _given(

@@ -86,7 +86,7 @@ def test_flags_select_the_mode(change: dict[str, Any], mode: str) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"record": True}, "two runs"),
+        ({"record": True}, "need separate runs"),
         ({"online": False, "repair": True}, "needs --tarl-online"),
         ({"online": False, "drift": "mud"}, "needs --tarl-online"),
         ({"search": ["sweeep"]}, "did you mean 'sweep'"),

@@ -84,7 +84,7 @@ def test_a_project_adds_its_own_templates_and_can_replace_built_in_ones(tmp_path
         ('summary = "s"\non = "value"\ncost = 1\n', "it needs summary, on, cost and expression"),
         ('summary = "s"\non = "values"\ncost = 1\nexpression = "{x}"\n', "on = 'values' is unknown"),
         ('summary = "s"\non = "value"\ncost = 1\nexpression = "{z}"\n', "unknown placeholder {z}"),
-        ('summary = "s"\non = "value"\ncost = 1\nexpression = "{x}"\nlimes = 3\n', "has no 'limes'"),
+        ('summary = "s"\non = "value"\ncost = 1\nexpression = "{x}"\nlimes = 3\n', "has no key 'limes'"),
         (
             'summary = "s"\non = "value"\ncost = 1\nexpression = "{x}"\n[parameters.a]\ndefault = 1\nof = "it"\n',
             "of = 'it' is unknown",

@@ -153,7 +153,7 @@ def test_a_name_that_is_not_a_string_and_a_listener_that_is_not_callable_are_ref
         lambda: bus.call(None, TRIGGER.Request()),
         lambda: bus.serve(None, TRIGGER, print),
     ):
-        with pytest.raises(RecordingError, match=r"^The name of a topic or service must be a string, not "):
+        with pytest.raises(RecordingError, match=r"^The name of a topic or service must be a text, not "):
             call()
     with pytest.raises(RecordingError, match=r"^tarl\.bus\.subscribe\('odom', …\): None is not callable"):
         bus.subscribe("odom", None)

@@ -16,7 +16,7 @@ from pytest_tarl.learning.bounds import Range
 from pytest_tarl.spaces import Choice, Span
 from pytest_tarl.stressing.boundary import _candidates, bisect
 from pytest_tarl.stressing.candidates import Model
-from pytest_tarl.stressing.combinations import Together, _at_most, _inside
+from pytest_tarl.stressing.combinations import Together, _at_most, _inside, _share
 from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.findings import (
     Curve,
@@ -274,24 +274,30 @@ def test_a_drift_counts_as_no_larger_than_another_if_no_direction_is_farther_fro
     assert not _at_most(combined(slope=0.1).point, one, evaluator)
 
 
-def test_tests_of_combinations_divide_the_risk_and_skip_what_is_known() -> None:
-    risks: list[float] = []
+def test_a_chain_has_one_risk_for_each_of_its_tests_and_ends_at_the_first_that_fails() -> None:
+    risks: list[tuple[str, float]] = []
+    released: list[str] = []
 
     def confirm(point: Any, pool: str, risk: float, *_: Any) -> bool:
-        risks.append(risk)
-        return point["mud"] <= 1.0
+        risks.append((pool, risk))
+        return point["mud"] >= 2.0
 
-    evaluator: Any = SimpleNamespace(space=SPACE, confirm=confirm, examine=lambda point, _: seen(-1.0))
+    evaluator: Any = SimpleNamespace(
+        space=SPACE, confirm=confirm, examine=lambda point, _: seen(-1.0), release=released.append
+    )
     together = Together(0.06, [curve(MUD, GOOD)])
     chain = [combined(mud=value, slope=0.5).point for value in (3.0, 2.0, 1.0, 0.5)]
-    together.confirm(chain, evaluator)
-    assert risks == pytest.approx([0.03, 0.01, 0.005])
-    assert [one.point["mud"] for one in together.found] == [1.0]
-    together.confirm([combined(mud=0.5, slope=0.75).point], evaluator)  # beyond the failure found
-    together.confirm([SPACE.nominal], evaluator)
-    assert together.tests == 3
-    together.confirm([combined(mud=1.0).point], evaluator)
-    assert (together.curves[0].confirmed, len(together.found)) == (0.75, 1)
+    assert together.confirm(chain, evaluator)
+    assert [one.point["mud"] for one in together.found] == [3.0, 2.0]
+    assert [point["mud"] for point in together.tested] == [3.0, 2.0, 1.0]
+    assert risks == [("chain 0", pytest.approx(0.06 * _share(0)))] * 3
+    assert released == ["chain 0"]
+    assert not together.confirm([combined(mud=2.5, slope=0.75).point], evaluator)  # beyond a failure found
+    assert not together.confirm([SPACE.nominal], evaluator)
+    assert len(together.tested) == 3
+    assert not together.confirm([combined(mud=1.0).point], evaluator)
+    assert risks[-1] == ("chain 1", pytest.approx(0.06 * _share(1)))
+    assert sum(_share(number) for number in range(1000)) <= 1.0
 
 
 def test_the_model_of_a_ray_places_the_boundary_between_holding_and_failing_episodes() -> None:
