@@ -59,7 +59,7 @@ class Moved:
 
 
 def shown(interval: tuple[float | None, float | None]) -> str:
-    """Return an interval in words."""
+    """Format an interval; an open upper end is shown as `end`."""
     low, high = interval
     return f"{low or 0.0:.3f}–{'end' if high is None else format(high, '.3f')}"
 

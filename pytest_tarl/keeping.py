@@ -66,7 +66,7 @@ def _problem(write: Callable[[], None]) -> TarlError | None:
 
 
 def by_hand(repair: Repair | None) -> list[str]:
-    """Return the lines of an accepted patch if it could not be written to a file, to be printed; else nothing."""
+    """Return the lines of an accepted patch that could not be written to a file; otherwise, an empty list."""
     if repair is None or not repair.accepted or repair.patch:
         return []
     told = (

@@ -250,7 +250,7 @@ class TarlSession:
         kept = self._resumable.test(item, marked, self.options, self._say)
         try:
             with ExitStack() as opened:
-                if stage is None:  # otherwise, the comparison may continue
+                if stage is None:  # with a stage, the comparison may continue after this call
                     opened.callback(kept.close)
 
                 def rollout_with(instruments: Instruments, sensors: tuple[Sensor, ...]) -> Rollout:

@@ -1,4 +1,4 @@
-"""The residual map of a robot: how much more or less than recorded a visit to each cell earns.
+"""The residual map of a robot: for each cell, how much more or less a visit earns than in the recording.
 
 Each value has a variance. The residual of a visit is the Bellman residual of the recorded utility
 (learning/residuals.py), so it shows the cells in which the world changed, not the cells before them.

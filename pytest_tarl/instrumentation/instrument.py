@@ -227,7 +227,7 @@ class _Recording(ast.NodeTransformer):
         return [*self._nothing(node, number), node]
 
     def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
-        # no event if the assertion fails: a changed condition would move the carets in the exception's traceback
+        # recorded after the assertion: a wrapped condition would move the carets in the traceback of a failure
         return [node, *self._note_constant(1.0, number, start_of(node.test))]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:

@@ -42,7 +42,7 @@ class Others:
         self._inward: set[Place] = set()
         self._mended: set[Candidate] = set()
         self._recentred: set[Place] = set()
-        # values that earned more than a tested value in missions of its test
+        # values that earned more than a refused one in the missions of its acceptance test
         self.chosen: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:

@@ -24,7 +24,7 @@ def acceptance_numbers(looks: tuple[int, ...], tolerated: float, risk: float) ->
     A program that fails with probability `tolerated` or more is accepted with probability at most `risk` over all
     looks. After n of N missions, risk × √(n/N) may be spent, so early looks get more than a proportional share.
     """
-    waiting = np.ones(1)  # P(k failures so far and not accepted yet) at the tolerated rate, shape (k,)
+    waiting = np.ones(1)  # entry k: P(k failures so far and not accepted yet) at the tolerated rate
     spent, seen = 0.0, 0
     numbers: list[int] = []
     for look in looks:

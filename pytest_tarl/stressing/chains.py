@@ -62,8 +62,9 @@ def chain(nearest: Nearest, plan: Plan, limit: float) -> list[Point]:
 def clear(nearest: Nearest) -> list[Point]:
     """Return up to three drifts in several directions that failed in the search, those farthest from nominal first.
 
-    They are tested if no drift is confirmed that the model predicts: the model may be wrong. The drifts are at the
-    first quarter, half and last place by distance. The search runs no further episodes there.
+    They are tested if no drift is confirmed that the model predicts: the model may be wrong. Of the drifts sorted
+    from the farthest to the nearest, they are those after a half and after three quarters, and the last. The search
+    runs no further episodes there.
     """
     usual, evaluator = nearest.evaluator.space.nominal, nearest.evaluator
     found = [

@@ -56,9 +56,9 @@ class Request:
 def stress(request: Request, *, combined: bool = True) -> Stress:
     """Find the boundary in each direction, and failing combinations unless `combined` is false.
 
-    Fresh seeds confirm each claim that the guarantee fails. The probability that any such claim is wrong is at most
-    alpha. Ctrl-C or a spent budget ends the search early, with the results so far. Raise RecordingError if the test
-    itself is broken.
+    The guarantee is only reported to fail if fresh seeds confirm it. The probability that any such report is wrong is
+    at most alpha. Ctrl-C or a spent budget ends the search early, with the results so far. Raise RecordingError if the
+    test itself is broken.
     """
     space: Any = request.designation.drifts[request.drift].value
     evaluator = _evaluator(request, space)

@@ -107,7 +107,7 @@ def control_dependence(
 
 
 def _block(graph: _Graph, body: Sequence[ir.Stmt], follow: int, exits: _Exits) -> int:
-    """Add statements to the graph, from last to first; return the number of the first one."""
+    """Add the statements of a block to the graph, the last one first; return the number of the block's first one."""
     for statement in reversed(body):
         follow = _statement(graph, statement, follow, exits)
     return follow

@@ -266,7 +266,7 @@ class BranchingInterpreter(Interpreter):
         finally:
             self._frames.pop()
             del self._branches[frame.branches :]
-        if all(value is None for _, value in frame.returned):  # a generator returns its elements
+        if all(value is None for _, value in frame.returned):  # no `return` in a branch, or a generator
             return returned
         return one_of([*frame.returned, (frame.last, returned)], function.node.lineno)
 

@@ -78,7 +78,7 @@ def _check(part: str, kind: str, found: Any) -> None:
 
 
 def check_is_valid_msg_type(msg_type: Any) -> None:
-    """Raise RuntimeError unless this is a class of messages."""
+    """Raise RuntimeError unless `msg_type` is a message class."""
     _check("_fields_and_field_types", "message", msg_type)
 
 

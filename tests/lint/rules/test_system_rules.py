@@ -197,7 +197,7 @@ def test_two_nodes_that_publish_commands_on_the_same_topic_are_reported(example)
     assert messages(305, author(example, "/a"), node("/b", unread=True)) == []
 
 
-def test_the_report_of_a_stale_command_names_both_ends_as_launched(example):
+def test_a_stale_command_is_reported_with_the_launched_names_of_both_topics(example):
     stale = replace(
         example.finding(), flow=replace(example.flow(), sink=replace(example.sink(), type="Twist"))
     )

@@ -211,7 +211,7 @@ def test_a_node_that_was_not_read_may_connect_the_topics_of_its_remappings(examp
     assert made(seen) == [("/c", "/i", "/o", "not read"), ("/c", "/i", "/p", "not read")]
 
 
-def test_an_unnamed_node_gets_the_name_in_its_code_or_of_its_program():
+def test_a_node_without_a_name_in_the_launch_file_is_named_by_its_code_or_program():
     assert full_name(launched("a"), "b") == "/n/a"
     assert full_name(launched(""), "b") == "/n/b"
     assert full_name(launched(""), "") == "/n/k.py"

@@ -159,7 +159,7 @@ def sent(tarl: Tarl, topic: str, *values: float) -> Any:
     return getattr(tarl.bus.latest("/end"), "data", None)
 
 
-def test_ros1_nodes_get_names_parameters_and_modules_of_their_own(tarl: Tarl) -> None:
+def test_each_ros1_node_has_its_own_name_parameters_and_modules(tarl: Tarl) -> None:
     tarl.launch("one/launch/robot.launch")
     assert sent(tarl, "/r1/start", 1.0) == 3.0 * 10.0 * (0.5 * 10.0 * 2.0)
     assert tarl.ros.subscribed >= {"/r1/start", "/r1/middle"}
