@@ -19,7 +19,7 @@ from tarl_lint.models import sizes
 
 PARSERS: Final = frozenset(["argparse.ArgumentParser", "optparse.OptionParser"])
 ADDING: Final = frozenset(["add_argument", "add_option"])
-PARSING: Final = frozenset(["parse_args", "parse_known_args"])
+PARSING: Final = frozenset(["parse_args", "parse_known_args"])  # methods that parse the command line
 GROUPS: Final = frozenset(["add_argument_group", "add_mutually_exclusive_group"])
 OPTION_PARSER: Final = "optparse.OptionParser"
 CONSTANTS: Final = ("dest", "action", "nargs", "const", "default", "choices")

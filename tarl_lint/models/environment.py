@@ -17,7 +17,6 @@ VARIABLES = ("os.environ.get", "os.getenv", "os.environ.setdefault", "os.environ
 TEXTS = frozenset(["os.environ", "sys.argv"])
 OPTION = "<option>"  # start of the names of a parser's fields that hold defaults
 ADDING = "add_argument"
-PARSING = frozenset(["parse_args", "parse_known_args"])
 
 
 def variable(ctx: Interpreter, it: Invocation) -> Value:

@@ -22,7 +22,6 @@ LOADERS: Final = frozenset(
         "rosparam.load_file", "os.getenv", "os.environ.get",
     ]
 )  # fmt: skip
-PARSING: Final = frozenset(["parse_args", "parse_known_args"])  # methods that parse the command line
 COMPUTING: Final = frozenset(
     [
         "float", "int", "abs", "round", "pow", "min", "max", "sum", "numpy.deg2rad", "numpy.radians", "numpy.rad2deg",

@@ -27,6 +27,7 @@ from tarl_lint.memory.values import (
 )
 from tarl_lint.method_effects import changes, fails, keeps_callables
 from tarl_lint.models import (
+    argument_parsers,
     callables,
     command_line,
     containers,
@@ -324,7 +325,7 @@ def _connect(ctx: Interpreter, it: Invocation) -> None:
 
 def _loaded(ctx: Interpreter, made: Value, it: Invocation) -> Value:
     """Return the result of a method: parsed options, or data loaded from a file."""
-    if it.name not in fixed_numbers.PARSING:
+    if it.name not in argument_parsers.PARSING:
         return made
     if ctx.thorough:
         made = fixed_numbers.loaded(ctx, made, it.frame, it.call)
