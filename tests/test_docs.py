@@ -49,6 +49,25 @@ def test_anchors_of_links_are_headings_of_the_linked_page(page: Path) -> None:
     ] == []
 
 
+def outside_code(page: Path) -> list[str]:
+    """Return the lines of a page, with those of code blocks emptied."""
+    lines, fenced = [], False
+    for line in page.read_text("utf-8").splitlines():
+        fence = line.lstrip().startswith("```")
+        fenced ^= fence
+        lines.append("" if fence or fenced or line.startswith("    ") else line)
+    return lines
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_each_table_has_a_heading_and_rows_of_equal_length(page: Path) -> None:
+    for table in re.findall(r"(?:^\|.*\n)+", "\n".join(outside_code(page)) + "\n", re.MULTILINE):
+        rows = table.splitlines()
+        assert len(rows) > 1, rows[0]
+        assert re.fullmatch(r"\|[\s:|-]+\|", rows[1]), rows[0]
+        assert {len(re.split(r"(?<!\\)\|", row)) for row in rows} == {len(re.split(r"(?<!\\)\|", rows[0]))}, rows[0]
+
+
 def test_every_mentioned_flag_exists() -> None:
     mentioned = {flag for page in PAGES for flag in re.findall(r"--tarl-[a-z]+", page.read_text("utf-8"))}
     assert mentioned
