@@ -262,7 +262,7 @@ class Evaluator:
         left = self.value(node.left, names)
         for kind, other in zip(node.ops, node.comparators, strict=True):
             right = self.value(other, names)
-            holds = self._compared(type(kind), left, right)
+            holds = self.compared(type(kind), left, right)
             if isinstance(holds, Unknown):
                 return unknown(node)
             if not holds:
@@ -270,7 +270,8 @@ class Evaluator:
             left = right
         return True
 
-    def _compared(self, kind: type[ast.cmpop], left: Any, right: Any) -> Any:
+    def compared(self, kind: type[ast.cmpop], left: Any, right: Any) -> Any:
+        """Return the result of a comparison; Unknown if the values do not decide it."""
         if any(isinstance(one, Unknown | Library) for one in (left, right)):
             return MAYBE
         if kind in (ast.Is, ast.IsNot) or any(

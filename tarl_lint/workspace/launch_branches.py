@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from tarl_lint.workspace.conditions import combined
 from tarl_lint.workspace.expressions import Library, Unknown
+from tarl_lint.workspace.jumps import Left, Raised, Returned
 from tarl_lint.workspace.launch_alternatives import (
     ABSENT,
     LONGEST,
@@ -22,8 +23,9 @@ from tarl_lint.workspace.launch_alternatives import (
     one_of,
 )
 from tarl_lint.workspace.launch_run import Action
+from tarl_lint.workspace.match_patterns import fits
 from tarl_lint.workspace.python_values import Bound, Class, Function, Made, Scope
-from tarl_lint.workspace.statements import Interpreter, Left, Raised, Returned
+from tarl_lint.workspace.statements import Interpreter
 
 _ADDING: Final = frozenset(["append", "extend", "insert", "add_action", "add_entity"])
 
@@ -112,11 +114,11 @@ class BranchingInterpreter(Interpreter):
     def _cases(self, statement: ast.Match, first: int, subject: Any, names: Scope) -> None:
         """Interpret the cases of a `match` from one on."""
         for index, case in enumerate(statement.cases[first:], first + 1):
-            fits = self._fits(case.pattern, subject, names)
-            if fits and case.guard is not None:
+            fit = fits(self, case.pattern, subject, names)
+            if fit and case.guard is not None:
                 guard = self.value(case.guard, names)
-                fits = guard if fits is True or not guard else fits
-            if isinstance(fits, Unknown | Library):
+                fit = guard if fit is True or not guard else fit
+            if isinstance(fit, Unknown | Library):
                 pattern, line = ast.unparse(case.pattern)[:LONGEST], case.pattern.lineno
                 self.problem(line, f"the case `{pattern}` is not constant")
                 compared = "==" if isinstance(case.pattern, ast.MatchValue) else "matches"
@@ -127,7 +129,7 @@ class BranchingInterpreter(Interpreter):
                 )
                 self._alternatives(runs, text, line, names)
                 return
-            if fits:
+            if fit:
                 self._body(case.body, names)
                 return
 

@@ -10,12 +10,14 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from tarl_lint.workspace.bounded_files import UnreadableError, read_bytes
 from tarl_lint.workspace.expressions import Evaluator, unknown
+from tarl_lint.workspace.jumps import Left, Raised, Returned
+from tarl_lint.workspace.match_patterns import fits
 from tarl_lint.workspace.model import Problem
+from tarl_lint.workspace.python_classes import defined
+from tarl_lint.workspace.python_files import parsed
+from tarl_lint.workspace.python_functions import arguments, yields
 from tarl_lint.workspace.python_values import (
-    DATA,
-    TUPLES,
     Above,
     Class,
     Field,
@@ -30,34 +32,10 @@ from tarl_lint.workspace.python_values import (
     items,
 )
 
-__all__ = ["Function", "Interpreter", "Left", "Raised", "Returned", "parsed"]
-
 DEEPEST: Final = 30  # maximum nesting of calls of the file's own functions
-LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
 MODULES: Final = 20  # maximum number of imported modules that are interpreted for a file
 _OWN: Final = "__class__"  # name under which the class of a method is stored, for `super()`
 _PARTLY: Final = "it was read in part: it has too many statements, or nests too deeply"
-
-
-class Returned(Exception):  # noqa: N818 - control flow, never an error
-    """A `return` of the file."""
-
-    def __init__(self, value: Any) -> None:
-        self.value = value
-
-
-class Left(Exception):  # noqa: N818 - control flow, never an error
-    """A `break` of the file, or a `continue` if it is not `whole`."""
-
-    def __init__(self, *, whole: bool) -> None:
-        self.whole = whole
-
-
-class Raised(Exception):  # noqa: N818 - control flow of the file
-    """A `raise` of the file."""
-
-    def __init__(self, line: int) -> None:
-        self.line = line
 
 
 class Interpreter(Evaluator):
@@ -188,7 +166,7 @@ class Interpreter(Evaluator):
     def _enter(
         self, function: Function, args: list[Any], keywords: dict[str, Any], owner: Class | None = None
     ) -> Any:
-        inside = Scope(_arguments(function, args, keywords), function.scope)
+        inside = Scope(arguments(function, args, keywords), function.scope)
         if owner is not None:
             inside.names[_OWN] = owner
         self._depth += 1
@@ -206,7 +184,7 @@ class Interpreter(Evaluator):
             self._files.pop()
             yielded = self._yielded.pop()
         if function.node not in self._generators:
-            self._generators[function.node] = _yields(function.node)
+            self._generators[function.node] = yields(function.node)
         return yielded if self._generators[function.node] else returned
 
     def _made(self, kind: Class, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
@@ -341,33 +319,16 @@ class Interpreter(Evaluator):
     def _do_match(self, statement: ast.Match, names: Scope) -> None:
         subject = self.value(statement.subject, names)
         for case in statement.cases:
-            fits = self._fits(case.pattern, subject, names)
-            if fits and case.guard is not None:
-                fits = self.value(case.guard, names)
-            if isinstance(fits, Unknown | Library):
+            fit = fits(self, case.pattern, subject, names)
+            if fit and case.guard is not None:
+                fit = self.value(case.guard, names)
+            if isinstance(fit, Unknown | Library):
                 self.problem(
                     case.pattern.lineno, f"the case `{ast.unparse(case.pattern)[:60]}` is not constant"
                 )
-            elif fits:
+            elif fit:
                 self._body(case.body, names)
                 return
-
-    def _fits(self, pattern: ast.pattern, subject: Any, names: Scope) -> Any:
-        if isinstance(pattern, ast.MatchAs):
-            fits = True if pattern.pattern is None else self._fits(pattern.pattern, subject, names)
-            if fits is True and pattern.name is not None:
-                names.store(pattern.name, subject)
-            return fits
-        if isinstance(pattern, ast.MatchOr):
-            found = [self._fits(one, subject, names) for one in pattern.patterns]
-            return next((one for one in found if one is True), next((one for one in found if one), False))
-        if isinstance(subject, Unknown | Library):
-            return Unknown(pattern.lineno, "the subject")
-        if isinstance(pattern, ast.MatchValue):
-            return self._compared(ast.Eq, subject, self.value(pattern.value, names))
-        if isinstance(pattern, ast.MatchSingleton):
-            return subject is pattern.value
-        return Unknown(pattern.lineno, "a pattern")
 
     def _do_with(self, statement: ast.With, names: Scope) -> None:
         for item in statement.items:
@@ -403,20 +364,9 @@ class Interpreter(Evaluator):
         bases = tuple(self.value(one, names) for one in statement.bases)
         inside = Scope({}, names)
         self._body(statement.body, inside)
-        libraries = {one.name for one in bases if isinstance(one, Library)}
         decorators = [one.func if isinstance(one, ast.Call) else one for one in statement.decorator_list]
-        data = {
-            one.name for one in (self.value(each, names) for each in decorators) if isinstance(one, Library)
-        }
-        stated = tuple(one.target.id for one in statement.body
-                       if isinstance(one, ast.AnnAssign) and isinstance(one.target, ast.Name))  # fmt: skip
-        fields = stated if DATA in data or TUPLES in libraries else None
-        made = Class(statement.name, bases, inside.names, fields, TUPLES in libraries)
-        if made.is_enumeration():
-            for name, value in list(inside.names.items()):
-                if not isinstance(value, Function):
-                    inside.names[name] = Made(made, {"name": name, "value": value})
-        names.store(statement.name, made)
+        values = [self.value(one, names) for one in decorators]
+        names.store(statement.name, defined(statement, bases, values, inside.names))
 
     def _do_import(self, statement: ast.Import, names: Scope) -> None:
         for alias in statement.names:
@@ -457,33 +407,6 @@ class Interpreter(Evaluator):
         return self._imported[file]
 
 
-def _arguments(function: Function, args: list[Any], keywords: dict[str, Any]) -> dict[str, Any]:
-    """Return the names inside a function when it is called."""
-    spec, line = function.node.args, function.node.lineno
-    positional = [one.arg for one in (*spec.posonlyargs, *spec.args)]
-    stated = [*positional, *(one.arg for one in spec.kwonlyargs)]
-    inside = {name: function.defaults.get(name, Unknown(line, "an argument")) for name in stated}
-    inside |= dict(zip(positional, args, strict=False))
-    inside |= {name: value for name, value in keywords.items() if name in stated}
-    if spec.vararg is not None:
-        inside[spec.vararg.arg] = tuple(args[len(positional) :])
-    if spec.kwarg is not None:
-        inside[spec.kwarg.arg] = {name: value for name, value in keywords.items() if name not in stated}
-    return inside
-
-
-def _yields(node: ast.AST) -> bool:
-    """Return whether a function contains `yield`, apart from the functions inside it."""
-    pending = list(ast.iter_child_nodes(node))
-    while pending:
-        one = pending.pop()
-        if isinstance(one, ast.Yield | ast.YieldFrom):
-            return True
-        if not isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
-            pending += ast.iter_child_nodes(one)
-    return False
-
-
 def _read(target: ast.expr) -> ast.expr:
     """Return the target of an assignment as an expression that is read."""
     return ast.copy_location(ast.parse(ast.unparse(target), mode="eval").body, target)
@@ -494,15 +417,3 @@ def _below(module: str, models: Mapping[str, Any]) -> dict[str, Any]:
     prefix = f"{module}."
     inside = {key.removeprefix(prefix): one for key, one in models.items() if key.startswith(prefix)}
     return {key: one for key, one in inside.items() if "." not in key}
-
-
-def parsed(file: Path, problems: list[Problem]) -> ast.Module | None:
-    """Return the syntax tree of a file; if it cannot be read or parsed, record a problem and return None."""
-    try:
-        return ast.parse(read_bytes(file, LARGEST))
-    except UnreadableError as reason:
-        problems.append(Problem(file, 0, str(reason)))
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        line = getattr(error, "lineno", 0) or 0
-        problems.append(Problem(file, line, f"it is not Python 3: {getattr(error, 'msg', error)}"))
-    return None

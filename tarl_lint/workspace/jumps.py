@@ -1,0 +1,26 @@
+"""Statements that leave the code around them: `return`, `break`, `continue` and `raise` of an interpreted file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class Returned(Exception):  # noqa: N818 - control flow, never an error
+    """A `return` of the file."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+
+class Left(Exception):  # noqa: N818 - control flow, never an error
+    """A `break` of the file, or a `continue` if it is not `whole`."""
+
+    def __init__(self, *, whole: bool) -> None:
+        self.whole = whole
+
+
+class Raised(Exception):  # noqa: N818 - control flow of the file
+    """A `raise` of the file."""
+
+    def __init__(self, line: int) -> None:
+        self.line = line
