@@ -74,12 +74,12 @@ def merged(found: Iterable[Accepted], kept: Iterable[Accepted]) -> Baseline:
 
 def load(path: Path) -> Baseline:
     """Read a baseline. Raises BaselineError if the file is damaged, not a baseline, or of another format version."""
-    import json  # imported only if there is a baseline
+    import json  # most runs have no baseline, and need no JSON
 
     try:
         document = json.loads(
             path.read_bytes().decode("utf-8-sig", "surrogateescape")
-        )  # file names need not be valid UTF-8
+        )  # a file name on Linux need not be valid UTF-8
     except FileNotFoundError:
         raise BaselineError(
             f"The baseline {shown(path)} does not exist: create it with --write-baseline, "

@@ -76,7 +76,7 @@ MARKER_SERVERS: Final = frozenset(
         "interactive_markers.InteractiveMarkerServer",
         "interactive_markers.interactive_marker_server.InteractiveMarkerServer",
     ]
-)  # their callbacks receive a user's actions on a marker
+)  # classes whose callbacks receive what a user does with a marker in RViz
 MARKER_MENUS: Final = frozenset(
     ["interactive_markers.MenuHandler", "interactive_markers.menu_handler.MenuHandler"]
 )
@@ -101,7 +101,7 @@ CLASS_METHODS: Final[Mapping[str, Fact]] = {
         )
         for name in ("subscribe", "subscribe_camera")
     },
-}  # methods of library classes by qualified name; METHODS holds those that the name of the method identifies
+}  # qualified method name → fact; METHODS holds the methods whose name alone identifies them
 
 LOOKUPS: Final = frozenset(
     ["lookup_transform", "lookup_transform_full", "lookup_transform_async", "lookup_transform_full_async",

@@ -38,7 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     gc.disable()
     _open_streams()
     code = _guarded(None)
-    gc.freeze()  # otherwise Python traverses all objects at exit
+    gc.freeze()  # without this, Python's garbage collector traverses all objects at exit
     return code
 
 

@@ -16,7 +16,7 @@ from tarl_lint.run.runner import Early, Result
 from tarl_lint.settings.config import Config, Options, resolve
 from tarl_lint.settings.schema import BASELINE_NAME
 
-# number of runs for which a report is kept after its last use, because edits are often undone
+# a report is kept for this number of runs after its last use, because users often undo an edit
 KEPT_RUNS: Final = 10
 __all__ = ["Result", "Superseded", "Workspace"]
 
@@ -86,9 +86,9 @@ class _Memory(Cache):
         self._analyses = Analyses(config)
         self._saved = saved
         self._known: dict[str, Report] = {}
-        self._digests: Mapping[str, str] = {}  # digests of the last complete run, by path
+        self._digests: Mapping[str, str] = {}  # path → digest of the file in the last complete run
         self._seen: Mapping[str, str] = {}
-        self._used: dict[str, int] = {}  # key → number of the last run that needed its report
+        self._used: dict[str, int] = {}  # key of a report → number of the last run that needed the report
         self._run = 0
 
     def report(self, key: str) -> Report | None:

@@ -51,7 +51,8 @@ class Outline:
     lock_calls: dict[ast.AST, list[tuple[str, str, int]]] = field(
         default_factory=dict
     )  # function → calls made while a lock is held
-    by_text: bool = False  # whether the code may look up names by computed strings
+    # whether the code may use a computed string as the name of an attribute or variable
+    by_text: bool = False
 
     def __post_init__(self) -> None:
         pending: list[ast.AST] = [self.tree]

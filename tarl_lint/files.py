@@ -11,7 +11,8 @@ def write_whole(path: Path, text: str) -> None:
 
     A device or pipe is written to directly and never replaced.
     """
-    target = path.resolve()  # write to the target of a link instead of replacing the link
+    # if the path is a symbolic link, write to its target instead of replacing the link
+    target = path.resolve()
     if target.exists() and not target.is_file():
         target.write_text(text, encoding="utf-8", errors="surrogateescape", newline="\n")
         return

@@ -69,7 +69,7 @@ Fingerprint = OfFlow | OfHazard
 
 def digest(texts: Sequence[str]) -> str:
     """Return a digest of texts as 16 hexadecimal digits."""
-    import hashlib  # imports OpenSSL, which only findings need
+    import hashlib  # slow to import because it loads OpenSSL, and needed only if there are findings
 
     return hashlib.sha256("\0".join(texts).encode("utf-8", "surrogatepass")).hexdigest()[:16]
 

@@ -17,7 +17,7 @@ def _fields(names: str, kind: str = "") -> dict[str, str]:
 
 
 HEADED: Final = _fields("header", "Header")
-# types for which the analysis detects that all fields of a copy were replaced
+# message types for which the analysis can detect that the program replaced all fields of a copy
 FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     **{name: _fields("data") for name in NUMBERS},
     "ColorRGBA": _fields("r g b a"),

@@ -11,7 +11,7 @@ def rule_codes() -> tuple[str, ...]:
     directory = os.path.join(os.path.dirname(__file__), "rules")  # noqa: PTH118, PTH120 - pathlib takes long to import
     try:
         names = os.listdir(directory)  # noqa: PTH208
-    except OSError:  # in an archive
+    except OSError:  # the package is inside an archive, such as a zip file
         import pkgutil
 
         names = [f"{module.name}.py" for module in pkgutil.iter_modules([directory])]

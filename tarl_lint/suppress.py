@@ -10,7 +10,7 @@ from typing import Final
 
 from tarl_lint.model import RULES, Finding
 
-_COMMENT: Final = (  # compiled at first use, since most runs never need it
+_COMMENT: Final = (  # a string that is compiled at first use, since most runs never need the pattern
     r"(?i:#\s*(?:tarl:\s*ignore\b\s*(?:\[(?P<own>[^\]]*)\]?)?"
     r"|noqa:\s*(?P<noqa>[A-Z]+[0-9]+(?:[\s,]+[A-Z]+[0-9]+)*)))"
 )

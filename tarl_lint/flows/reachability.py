@@ -37,7 +37,7 @@ class Reach:
 
     data: set[int]
     any: set[int]
-    # node of a container's length → nodes of the source's data in elements that were added under a condition
+    # node of a container's length → nodes of source data in those elements that the code adds under a condition
     counted: Mapping[int, set[int]]
 
 

@@ -15,7 +15,7 @@ from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
 from tarl_lint.models import sizes, unpacking
 
 MAX_TURNS = 4  # maximum number of known elements over which a loop is unrolled
-MAX_EXACT_TURNS = 8  # this maximum in a run for one launched node
+MAX_EXACT_TURNS = 8  # value of MAX_TURNS in a run for one launched node
 # a loop whose body has at most this many plain statements is unrolled over up to MAX_KNOWN elements
 SHORT = 3
 # maximum number of passes over a loop's body; only a safety limit, since the value domain is finite
@@ -79,7 +79,8 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         if ctx.work.executed > MAX_STATEMENTS:
             ctx.cut[ctx.program] = None
             ctx.store.reads.whole = False
-            break  # nested loops multiply the passes, so stop before the state is stable
+            # nested loops multiply the passes: at this limit, stop although the state is not stable yet
+            break
         head = again
     frame.heads[(s.id, *frame.turn)] = head
     return _loop_end(ctx, s, done, table["break"], frame)
@@ -103,7 +104,7 @@ def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value) -> list[Value]:
     if not 1 < len(elements) <= limit:
         return []
     if ctx.exact:
-        return elements  # a loop over groups of arguments of the command line
+        return elements  # such a loop iterates, for example, over groups of command-line arguments
     ctx.look(o for v in elements for o in v.pts)
     laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)
     return elements if laden else []

@@ -8,11 +8,11 @@ docs/analysis.md.
 
 from __future__ import annotations
 
-MAX_CALLS = 24  # maximum depth of the call stack; deeper calls count as library calls
+MAX_CALLS = 24  # maximum depth of the call stack; deeper calls are treated as library calls
 READS_PER_STATEMENT = 20  # number of object reads or added edges that count as one statement of work
 VALUES_PER_STATEMENT = 40  # number of values shared at a wait that count as one statement of work
 MAX_FRAMES = 20_000  # maximum number of call contexts of a program
-# maximum number of statements in one run of a root; later calls count as library calls
+# maximum number of statements in one run of a root; afterwards, calls are treated as library calls
 MAX_STATEMENTS = 25_000
 # number of statements in one run of a root after which the calls of a frequently called function share a context
 SEPARATE_STATEMENTS = 3_000

@@ -88,7 +88,8 @@ def _invoke(
         ctx.unchanged.add(call)
     if run.escapes:
         ctx.ops.escaped(ctx, frame, caller)
-    if run.thrown is not None and caller.statement is None:  # nothing follows the call, which ends either way
+    # no statement follows the call, so the states of a return and of an exception are joined
+    if run.thrown is not None and caller.statement is None:
         joins.merge(ctx, [run.delta, run.thrown])
     elif run.noted:
         ctx.store.absorb(run.delta)
@@ -162,7 +163,8 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
         elif expr is not None:
             literals.mark(ctx, node, expr, value, caller)
         elif value.pts:
-            ctx.graph.held.setdefault(node, set())  # a receiver: only an object is passed on
+            # an implicit receiver (`self`): the node passes on an object, not data
+            ctx.graph.held.setdefault(node, set())
         passed.append(ctx.carry(value, node))
     keywords = dict(call.keywords)
     renamed: dict[str, Value] = {}

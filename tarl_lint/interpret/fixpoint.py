@@ -83,7 +83,7 @@ class Linker(Interpreter):
             self._settle()
             if len(self.roots) == before:
                 break
-        if self.waiting:  # no root stores anything new, so values unknown now stay unknown
+        if self.waiting:  # no root stores anything new any more, so what is unknown now stays unknown
             self.patient = False
             self.pending.update(self.waiting)
             self._settle()

@@ -46,7 +46,7 @@ class Interpreter:
     def __init__(self, modules: Sequence[Module], config: Config, ops: Operations[Interpreter]) -> None:
         self.ops = ops
         self.config = config
-        self.thorough = True  # follow every value, not only those from a source
+        self.thorough = True  # whether to follow every value, and not only values from a source
         self.modules = {m.path: m for m in modules}
         self.index = Index(modules)
         self.exception_types = exception_types(m.tree for m in modules)
@@ -65,16 +65,17 @@ class Interpreter:
         self.delivered: frozenset[Obj] = frozenset()  # messages delivered in this run
         self.nullness = NullnessFacts()
         self.unchanged: set[ir.Call] = set()  # calls that return a value unchanged; only in thorough runs
-        # value loaded from a file → path and position of the loading call
+        # value loaded from a file → path and position of the call that loads it
         self.settings: dict[Obj, tuple[str, ir.Pos]] = {}
         self.patient = True  # whether a later root may still store values that are unknown now
-        self.waiting: dict[Root, None] = {}  # roots that read such an unknown value
-        # node that no source reached → roots that ignored it for this reason
+        self.waiting: dict[Root, None] = {}  # roots that read a value that is unknown so far
+        # node that no source reaches so far → roots that ignored the node for this reason
         self.doubts: dict[int, dict[Root, None]] = {}
-        self.guards: list[tuple[int, str]] = []  # decisions inside the current expression
+        # conditions inside the current expression (as in `a if b else c`) that decide what is evaluated
+        self.guards: list[tuple[int, str]] = []
         self.repeating = False  # whether the element of a comprehension is evaluated again
         self.work = Work()
-        self.widened: set[Hashable] = set()  # contexts that several calls share
+        self.widened: set[Hashable] = set()  # call contexts that several calls share
         self.cut: dict[str, None] = {}  # programs whose analysis is incomplete
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.given: set[Obj] = set()  # objects among the arguments of roots
@@ -83,12 +84,12 @@ class Interpreter:
         self.sinks: dict[Hashable, SinkRecord] = {}
         self.called: set[tuple[str, int]] = set()  # called functions: module, line
         self.made: set[Hashable] = set()  # keys of instantiated classes
-        self.guests: set[object] = set()  # classes instantiated only outside of the files
+        self.guests: set[object] = set()  # classes that only code outside of the analysed files instantiates
         self.plugins: set[object] = set()  # classes that a package declares as plugins
-        # names of classes outside of the files whose methods get data or callbacks
+        # names of classes outside of the analysed files whose methods receive data or callbacks
         self.ended: set[str] = set()
         self.checking = os.environ.get(CHECK, "") not in ("", "0")
-        # parameters found in names; None if they are not followed
+        # ROS parameters whose values are names of topics or nodes; None if the run does not collect them
         self.parameter_names: list[ParameterName] | None = None
         self.fixed: Mapping[str, object] = {}  # known values of parameters, by their name in the code
         self.probe: Probe | None = None

@@ -15,7 +15,8 @@ from tarl_lint.memory.values import NONE, Value, pointer
 from tarl_lint.models import sizes
 
 MAX_EACH = 4  # maximum number of known elements over which a comprehension is unrolled
-MAX_ENTRIES = 32  # this maximum in a thorough analysis; it suffices for all parameters of a node
+# value of MAX_EACH in a thorough analysis; large enough for a list of all parameters of a node
+MAX_ENTRIES = 32
 
 READING = frozenset(["get", "getattr", "get_param"])  # calls that return a stored value unchanged
 
@@ -96,8 +97,10 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
     else:
         updates.add_element(ctx, pointer(obj), element)
         if not ctx.repeating and _makes_objects(ctx, element):
-            ctx.repeating = True  # once for a nest of comprehensions; else, the time would double with each
-            again = ctx.ops.evaluate(ctx, expr.element, frame)  # makes each object one of several
+            # only the outermost of nested comprehensions repeats: otherwise each level would double the time
+            ctx.repeating = True
+            # the second evaluation tells the analysis that this code makes several objects
+            again = ctx.ops.evaluate(ctx, expr.element, frame)
             ctx.repeating = False
             updates.add_element(ctx, pointer(obj), Value(again.deps | gate, again.pts, again.consts))
     return pointer(obj)

@@ -55,10 +55,10 @@ CALLING = (
     ir.Call,
     ir.Choice,
     ir.Operation,
-)  # operands that may contain calls; these calls depend on earlier operands
+)  # kinds of operands that may contain calls; whether these calls run depends on the earlier operands
 OURS = frozenset(
     ["instance", "sequence", "mapping"]
-)  # kinds of objects whose type is known from the files and does not depend on data
+)  # kinds of objects whose type is known from the code and does not depend on data
 MESSAGES = frozenset(["message", "goal"])
 THERE = frozenset([*MESSAGES, *OURS])  # kinds of objects that are never None
 MAX_TEXT = 300

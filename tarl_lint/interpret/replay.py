@@ -40,7 +40,7 @@ class Run:
     thrown: Delta | None  # stores before an exception leaves the function
     delta: Delta
     edges: int  # number of edges that the run made
-    noted: bool  # whether the stores in `delta` have already been made, one by one
+    noted: bool  # whether the stores in `delta` have already been applied to the state, one by one
     heard: dict[Key, Value]  # key → value that other roots may have stored when the run waited
 
 

@@ -197,9 +197,9 @@ def _raised(ctx: Interpreter, s: ir.Raise, frame: Frame) -> bool:
         frame.statement = s
         if any(o.kind == "class" for o in value.pts):
             value = calls.call_value(ctx, value, ([], {}), frame, ir.Call(s.value, (), (), s.pos, -1))
-        whole = Value(
-            ctx.use(value), value.pts
-        )  # the function's state is discarded, and with it the objects' contents
+        # the exception carries all data inside the value, because the function's state is discarded, and with it the
+        # contents of its objects
+        whole = Value(ctx.use(value), value.pts)
         value = ctx.carry(whole, ctx.node(frame, ("raise",), "call"))
     exceptions.leave(ctx, Escape(frame, s, raised(s.value), value), frame)
     return False

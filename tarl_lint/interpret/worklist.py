@@ -36,7 +36,8 @@ def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - shared signa
         if news is None:
             continue
         value = store.now[key]
-        former = ctx.ops.default(ctx, *key) if value is ABSENT else value  # field of a new object
+        # the field of a new object that was not set has its default value
+        former = ctx.ops.default(ctx, *key) if value is ABSENT else value
         both = store.admit(key, former, news)
         if both is not value:
             store.put(key, both)

@@ -19,7 +19,7 @@ Branch = tuple[int, str]  # (number of the statement with the condition, outcome
 
 Raising = Mapping[int, Iterable[str]]
 
-# number of branches after which no more are stored for a statement; the others are found through the stored ones
+# maximum number of branches stored for a statement; the others are found through the branches of the stored ones
 NEAR: Final = 100
 NOTHING_RAISES: Raising = {}
 

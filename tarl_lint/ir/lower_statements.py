@@ -12,7 +12,8 @@ from tarl_lint.ir.match_patterns import captures, conditions
 from tarl_lint.ir.scopes import Scope, collect, plain
 from tarl_lint.read.source import Module
 
-# kinds of `match` subject that are first stored in a temporary name, so that each `case` does not evaluate them again
+# kinds of `match` subjects that are first stored in a temporary variable; otherwise each `case` would evaluate the
+# subject again
 MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)
 NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations that are not dataclass fields
 

@@ -27,7 +27,7 @@ class Scope:
     counter: int = 0  # number of slots and statement numbers given out so far
     # targets of the comprehensions that are being lowered → their unique names
     renamed: dict[str, str] = field(default_factory=dict)
-    # the value of `renamed` in the parent scope where this scope is defined
+    # the value that `renamed` had in the parent scope at the place where this scope is defined
     around: dict[str, str] = field(default_factory=dict)
     plain: bool = False  # whether no expression in the file binds a name or yields
     prints: bool = False  # for a module: whether `print` is Python's built-in function

@@ -113,7 +113,7 @@ class Frame(Obj):
         ] = ()  # numbers of the current elements of unrolled loops and comprehensions
         # statements executed exactly once in each iteration of an unrolled loop
         self.steps: frozenset[ir.Stmt] = frozenset()
-        self.answer: object = None  # what receives the function's result, if ROS is the caller
+        self.answer: object = None  # the object that receives the function's result if ROS calls the function
         self.guards: Branches = frozenset()  # decisions inside the calling expression
         self.outer: Frame | None = None
         self.owner: Obj | None = None  # the class that defines the method, for super()
@@ -122,10 +122,10 @@ class Frame(Obj):
         self.statement: ir.Stmt | None = None
         self.closures: dict[int, Branches] = {}
         self.control: object = None
-        # conditions of which the present `control` has been connected in the graph, by number
+        # numbers of the conditions that have been connected with the present `control` in the graph
         self.waypoints: set[int] = set()
         self.entered: object = (
-            None  # the caller's control dependence under which this call has been connected
+            None  # the control dependence of the caller that has been connected with this call
         )
         self.heads: dict[
             tuple[int, ...], dict[Key, Value]
@@ -144,7 +144,7 @@ class Frame(Obj):
         self.recorded: object = None  # the last run, for replay
         self.shared = False  # whether calls from several places share this frame, with joined arguments
         self.passed: tuple[list[Value], dict[str, Value]] | None = (
-            None  # joined arguments of all calls that share it
+            None  # joined arguments of all calls that share this frame
         )
         self.yielded = BOTTOM
         self.arguments: list[Value] = []

@@ -74,7 +74,8 @@ def read_field(ctx: Interpreter, obj: Obj, name: str) -> Value:
         if obj.kind == "class":
             return bind_class(ctx, stored, obj)
         if obj.whole.kind == "message" and not written_here(ctx, obj, name):
-            return join(stored, pointer(obj.sub(name)))  # every message has its own value of this field
+            # a message that this run has not written to may still have the value with which it arrived
+            return join(stored, pointer(obj.sub(name)))
         return stored
     return ctx.ops.default(ctx, obj, name)
 
@@ -140,7 +141,8 @@ def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
             return held_method(ctx, obj, name)
         holder = recency.intern(ctx, "lib", ("inherited", obj.key, name), name)
         return pointer(holder)
-    result = content(ctx, obj)  # elements, and attributes whose names are computed
+    # `content` covers the elements, and the attributes that are set under computed names
+    result = content(ctx, obj)
     for attributes in replaced_attributes(ctx, obj):
         result = join(result, read_field(ctx, attributes, item_field(name)))
     return result

@@ -49,7 +49,7 @@ def _join_of(ctx: Interpreter, key: tuple[Obj, str], deltas: Sequence[Delta]) ->
     """Return the join of a key's values in several continuations."""
     value: Value | None = None
     blank: Value | None = None
-    before = False  # whether `value` includes the value from before the continuations
+    before = False  # whether the value from before the branching is already joined into `value`
     for delta in deltas:
         here = delta.get(key)
         if here is None or here is ABSENT:

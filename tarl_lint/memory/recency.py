@@ -60,7 +60,7 @@ def _one_of_many(ctx: Interpreter, obj: Obj) -> None:
     """Let an object stand for all objects of its allocation site, since callbacks refer to it."""
     if not obj.many:
         obj.many = True
-        ctx.shared.edition += 1  # no call can be replayed
+        ctx.shared.edition += 1  # a new edition invalidates all recorded calls, so none is replayed
         ctx.pending.update(dict.fromkeys(root for root, _ in ctx.roots.values()))
 
 

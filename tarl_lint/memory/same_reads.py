@@ -54,7 +54,7 @@ def _unseen(obj: Obj, change: str | Obj | None, store: Store) -> bool:
     """Return whether a change of an object is not visible in the current state."""
     if change is None:
         return False
-    if isinstance(change, Obj):  # all elements are read at once, also empty ones
+    if isinstance(change, Obj):  # a read of the elements covers all of them, even those without content
         return not change.name.startswith("[") and _empty(change, store)
     return not _data(obj, store) if change == DATA else store.peek((obj, change)) is None
 

@@ -119,7 +119,7 @@ class Graph:
             if dep == node:
                 self.depend(
                     node, [branch[0] for branch in mine]
-                )  # a value that depends on itself also depends on the number of iterations
+                )  # a value that depends on itself is computed in a loop, so it also depends on the loop's condition
                 continue
             if dep in edges:
                 continue

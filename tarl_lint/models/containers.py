@@ -137,7 +137,8 @@ def _append_subscriber(ctx: Interpreter, base: Value, subscriber: Value, frame: 
     """
     known = sizes.unpacked(ctx, base)
     if known is None or len(known) >= sizes.MAX_KNOWN or any(v.pts & subscriber.pts for v in known):
-        insert_elements(ctx, base, [subscriber], frame, call)  # its index is unknown, for example in a loop
+        # the subscriber's index is unknown, for example in a loop
+        insert_elements(ctx, base, [subscriber], frame, call)
         return
     (obj,) = base.pts
     news = through_statement(ctx, subscriber, frame, call)
@@ -308,7 +309,8 @@ def new_container(ctx: Interpreter, it: Invocation) -> Value:
     element = iterators.ordered_by(ctx, join_all(heap.elements(ctx, v) for v in given), it)
     length = sizes.length(ctx, given[0]) if given else NONE
     if it.name in ("set", "frozenset"):
-        length |= ctx.use(element)  # equal elements count once
+        # a set keeps only one of several equal elements, so its length depends on the elements
+        length |= ctx.use(element)
     obj = recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot))
     if known is not None:
         for number, value in enumerate(known):

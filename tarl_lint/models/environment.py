@@ -13,7 +13,7 @@ from tarl_lint.memory.symbolic_names import with_default
 from tarl_lint.memory.values import BOTTOM, GIVEN, Value, pointer
 
 VARIABLES = ("os.environ.get", "os.getenv", "os.environ.setdefault", "os.environ.pop")
-# lists and mappings of texts that only the robot gives
+# lists and mappings of texts that are known only on the robot
 TEXTS = frozenset(["os.environ", "sys.argv"])
 OPTION = "<option>"  # start of the names of a parser's fields that hold defaults
 ADDING = "add_argument"

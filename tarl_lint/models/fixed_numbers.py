@@ -42,7 +42,8 @@ def noted(
         return loaded(ctx, found, frame, call)
     if name in ARRAYS and computed(call) and numbers(call):
         return loaded(ctx, found, frame, call)
-    fixed = not found.deps or (name != "float" and _are_loaded(ctx, found))  # `float` returns what is loaded
+    # `float` passes on a loaded value instead of computing a new one
+    fixed = not found.deps or (name != "float" and _are_loaded(ctx, found))
     if (name in COMPUTING or name.startswith("math.")) and fixed and (pos := computed(call)):
         ctx.unchanged.add(call)
         node = ctx.node(frame, ("fixed", call.slot), "assign")

@@ -15,7 +15,8 @@ from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import UNKNOWN, Value, const, pointer
 from tarl_lint.parameter_names import DEFAULT, ELSEWHERE
 
-GIVEN: Final = "given by the launch"  # name of a mapping object whose entries are all known
+# name of the mapping objects whose entries are all known from the launch file
+GIVEN: Final = "given by the launch"
 MAX_TEXT: Final = 10_000
 PARSERS: Final = frozenset(
     ["ast.literal_eval", "builtins.eval", "json.loads", "yaml.load", "yaml.safe_load", "yaml.full_load"]

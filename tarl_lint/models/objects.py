@@ -46,7 +46,8 @@ def is_instance(ctx: Interpreter, it: Invocation) -> Value:
         return UNKNOWN
     named = [one for part in sizes.unpacked(ctx, given[1]) or [given[1]] for one in part.objects]
     if not named or not all(one.kind == "ext" and MESSAGE_MODULE in one.name for one in named):
-        return UNKNOWN  # a base class of messages, or a class of the files
+        # such a test is for a base class of all messages, or for a class of the analysed files
+        return UNKNOWN
     ctx.look(given[0].pts)
     received = {
         one.defined if one.kind == "message" and one.parent is None else "" for one in given[0].objects
@@ -95,9 +96,8 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
                 return heap.bind(ctx, value, this, base)
         return BOTTOM
     if obj.name in containers.PROCESSES and name in containers.STREAMS:
-        return pointer(
-            obj
-        )  # all streams stand for the process itself: what is written to one may be read from another
+        # all streams share one object, which stands for the process: data written to one may be read from another
+        return pointer(obj)
     if obj.kind == "ext" and name == "argv" and obj.name == "sys" and ctx.command_line:
         return command_line.arguments(ctx)
     if obj.kind == "lib" and name == MACHINE_FIELD:

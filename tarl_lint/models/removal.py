@@ -66,7 +66,7 @@ def _take_index(ctx: Interpreter, base: Value, obj: Obj, index: Value | None, de
     found, place = index.constant() if index is not None else (True, -1)
     exact = found and isinstance(place, int) and -len(known) <= place < len(known) and not decided.left
     if not exact or (obj, BORN) not in ctx.store.layers[-1]:
-        scatter(ctx, obj, decided)  # the sequence may be shorter from now on, or on some paths
+        scatter(ctx, obj, decided)  # the analysis does not know which element is removed, or on which paths
         return
     assert isinstance(place, int)  # noqa: S101 - checked above
     place %= len(known)

@@ -7,7 +7,7 @@ from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency, userdata
 from tarl_lint.memory.values import UNKNOWN, Value, pointer
 
-# kinds of objects that a library can call if they are arguments
+# kinds of objects that a library can call if it gets them as arguments
 LATER = frozenset(["closure", "bound", "partial"])
 
 

@@ -80,7 +80,8 @@ class Origins:
             literal = self.graph.literals.get(node)
             if literal is not None:
                 if not self.graph.live.isdisjoint(self.graph.data[node]):
-                    return None  # constant only before the first message, as in `gain * self.error`
+                    # the value is constant only until the first message, as in `gain * self.error`
+                    return None
                 value, pos, path = literal
                 found.add(Origin(value if isinstance(value, (bool, int, float)) else None, path, pos))
                 continue
@@ -183,7 +184,7 @@ class Holding:
         arrived = any(topic in origins.topics.get(m, ()) for m in self.delivered)
         new = (
             [text for text, fresh in found if fresh] if arrived else []
-        )  # variables not written in this run hold values of an earlier message
+        )  # a variable that was not written in this run still has the value from an earlier message
         texts = new or [text for text, _ in found]
         return tuple(sorted(texts, key=lambda text: (text.count("."), len(text), text)))
 

@@ -181,7 +181,8 @@ def _parts(expr: ir.Expr) -> Sequence[ir.Expr]:
     """Return the subexpressions that contribute to the value as numbers."""
     if isinstance(expr, ir.Operation):
         lists = [one for one in expr.parts if isinstance(one, ir.SequenceDisplay)]
-        return () if expr.operator == "text" else lists or expr.parts  # in `[0.1] * 5`, 5 is a size
+        # the other operand is no number of the value: in `[0.1] * 5`, 5 is a size
+        return () if expr.operator == "text" else lists or expr.parts
     if isinstance(expr, ir.Choice):
         return (expr.test, expr.then, expr.other)
     if isinstance(expr, ir.SequenceDisplay):

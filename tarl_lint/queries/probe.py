@@ -21,7 +21,8 @@ from tarl_lint.queries.operands import constructions, fills_an_object, sets_timi
 FILLED: Final = frozenset(
     ["lib", "sequence", "mapping"]
 )  # kinds of objects that a set-up fills with constants
-MADE: Final = frozenset(["instance"])  # kind of the objects that a set-up makes of the program's own classes
+# kind of the objects that a set-up instantiates from the program's own classes
+MADE: Final = frozenset(["instance"])
 
 
 @dataclass(slots=True)

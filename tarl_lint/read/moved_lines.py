@@ -38,7 +38,9 @@ def moved_lines(old: str, new: str, reading: Reading) -> Mapping[int, int] | Non
         return None
     changed = comparison.changed
     if changed and any(_qualnames(tree)[name] > 1 for tree in (former, latter) for name in changed):
-        return None  # statements with equal texts are numbered across functions of equal names
+        # if several functions have one name, equal statements are numbered across all of them, so a changed function
+        # affects the others
+        return None
     places = sorted(comparison.lines.items())
     return dict(places) if all(a < b for (_, a), (_, b) in pairwise(places)) else None
 
@@ -48,7 +50,8 @@ class _Comparison:
 
     def __init__(self, old: list[str], new: list[str], reading: Reading) -> None:
         self.lines: dict[int, int] = {}
-        self.changed: set[str] = set()  # unread functions whose body differs
+        # names of the functions that no analysis has read and whose bodies differ
+        self.changed: set[str] = set()
         self._old = old
         self._new = new
         self._unread = reading.unread

@@ -35,7 +35,7 @@ def grouped(findings: Sequence[Finding]) -> tuple[Group, ...]:
     """Return the findings by package, sorted by name; code that is not run on the robot comes last."""
     aside = tuple(f for f in findings if _ASIDE.search(f.span.path))
     if len(aside) == len(findings):
-        aside = ()  # if there are only examples, show their packages
+        aside = ()  # if all findings are in code such as examples and tests, group these by package
     by_package: dict[str, list[Finding]] = {}
     for finding in findings:
         if finding not in aside:

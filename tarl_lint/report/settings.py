@@ -55,4 +55,4 @@ def _wrapper(wrapper: Wrapper) -> str | Mapping[str, int | str]:
 def _toml(value: Any) -> str:
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{json.dumps(key)} = {_toml(item)}" for key, item in value.items()) + "}"
-    return json.dumps(value, ensure_ascii=False)  # these values are written alike in TOML and JSON
+    return json.dumps(value, ensure_ascii=False)  # for all other values, TOML and JSON have the same syntax

@@ -14,7 +14,7 @@ from tarl_lint.report.line import Line, View, one_line
 from tarl_lint.run.runner import UNREADABLE, Result
 from tarl_lint.suppress import Suppression
 
-_CLASSES: Final = 5  # maximum number of classes outside the files that are named individually
+_CLASSES: Final = 5  # maximum number of classes from outside the analysed files that are named individually
 _SHOWN: Final = 20  # maximum number of vanished findings that are named individually
 
 

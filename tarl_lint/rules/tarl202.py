@@ -124,7 +124,7 @@ VALID: Final = (
 )
 
 COMMAND_TYPES: Final = re.compile(r"^(Ackermann\w*|\w*(Cmd|Command|Control|Thrust)\w*)$")
-# Measurements are published with these types too, so the topic must contain a word for a command.
+# Nodes also publish measurements with these types, so the name of the topic must contain a word for a command.
 PLAIN_TYPES: Final = frozenset(
     ["Float32", "Float64", "Int16", "Int32", "Int64", "Twist", "TwistStamped", "Wrench", "WrenchStamped"]
 )

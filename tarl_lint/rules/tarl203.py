@@ -148,7 +148,7 @@ def _callbacks(evidence: Evidence, record: SourceRecord) -> list[tuple[Function,
     """Return a subscription's callbacks with their files; empty if one of them is unknown."""
     found: list[tuple[Function, str]] = []
     if "ubscri" not in record.api:
-        return found  # a service may ignore its request
+        return found  # the rule is about subscriptions: a service handler is allowed to ignore its request
     for node in sorted(record.nodes):
         place = evidence.machine.graph.places[node]
         if place.statement is not None or place.frame is record.frame:

@@ -182,7 +182,7 @@ def _parsed(setting: Setting) -> Any:
     try:
         return content(setting)
     except (NoYamlError, UnreadableError):
-        return None  # the report mentions the problem
+        return None  # another part of the report states the problem
 
 
 def _names(setting: Setting, instances: list[Instance]) -> Iterator[str]:

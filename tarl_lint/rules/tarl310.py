@@ -69,7 +69,7 @@ VALID: Final = (
 def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each node that has the name of an earlier one."""
     if system.file.is_dir():
-        return  # the nodes of several launch files
+        return  # the system combines several launch files, which need not run together
     first: dict[tuple[str, str], Instance] = {}
     for instance in system.instances:
         name = instance.name, instance.node.anonymous

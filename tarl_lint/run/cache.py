@@ -137,7 +137,7 @@ class Cache:
                 write_whole(ignore, "*\n")
             write_whole(self._file, f"{digest([text])}\n{text}")
         except OSError:
-            self._file = None  # the directory is not writable, so the next run is as slow as this one
+            self._file = None  # the directory is not writable: continue without a stored cache
 
     def _load(self, file: Path) -> None:
         try:
@@ -152,7 +152,7 @@ class Cache:
 def opened(paths: Sequence[Path], config: Config, of: str = "", spare: int = 0) -> Cache:
     """Return the cache of runs on these paths with these settings; `of` names a separate kind of entries."""
     settings = [f"{f.name}={getattr(config, f.name)!r}" for f in fields(config) if f.name not in AFTERWARDS]
-    places = [os.path.abspath(p) for p in paths]  # noqa: PTH100 - as text, also for what does not exist
+    places = [os.path.abspath(p) for p in paths]  # noqa: PTH100 - paths stay strings, and need not exist
     here = os.getcwd()  # noqa: PTH109
     name = digest([str(FORMAT), __version__, sys.version, *_ourselves(), *settings, here, *places])
     return Cache((config.root or Path.cwd()).joinpath(*PLACE, f"{of}{name}.json"), spare)

@@ -33,5 +33,6 @@ def _with_room(work: Callable[[], Result]) -> Result:
     return work()
 
 
-if sys.version_info >= (3, 11):  # in older versions of Python, each frame is an object of its own
+# Python before 3.11 has no common stack of frames, so there is no room to make
+if sys.version_info >= (3, 11):
     _with_room.__code__ = _with_room.__code__.replace(co_stacksize=HALF_A_CHUNK)

@@ -312,7 +312,7 @@ def _judge(
     """
     home = _home(config)
 
-    @lru_cache(maxsize=1)  # only baselines with entries use it
+    @lru_cache(maxsize=1)  # computed at the first use, because a baseline without entries never needs the set
     def analysed() -> set[str]:
         unreadable = {error.path for error in errors}
         return {os.path.realpath(f.path) for f in files if f.shown not in unreadable}
@@ -323,7 +323,7 @@ def _judge(
 
     def judged(entry: Accepted) -> bool:
         if entry.fingerprint.code.startswith("TARL3"):
-            return False  # only runs with --launch have these findings
+            return False  # findings of TARL3 rules occur only in runs with --launch, so this run cannot tell
         asked = config.enabled(entry.fingerprint.code) and entry.fingerprint.digest() not in unasked
         return asked and all(map(settled, entry.files))
 

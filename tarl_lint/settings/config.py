@@ -17,7 +17,7 @@ from tarl_lint.model import OFF_BY_DEFAULT
 from tarl_lint.settings.schema import BASELINE_NAME, KEYS, FailOn, Wrapper
 
 TABLE: Final = "tarl-lint"
-_MENTIONS: Final = (TABLE.encode(), b"tool.tarl")  # also matches a table with a misspelt name
+_MENTIONS: Final = (TABLE.encode(), b"tool.tarl")  # matches also a table whose name is misspelt
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Options:
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] | None = None
     stdin: Stdin | None = None
     cache: bool = True
-    jobs: int | None = None  # number of processes; None chooses it by the size of the run
+    jobs: int | None = None  # number of processes; if None, the size of the run determines the number
 
 
 @dataclass(frozen=True)
@@ -156,7 +156,7 @@ def _baseline(options: Options, root: Path, named: Path | str | None) -> Path | 
     path = named if isinstance(named, Path) else root / (named or BASELINE_NAME)
     if (
         isinstance(named, str) and path.exists() and not path.is_file()
-    ):  # a pipe in a foreign tree would block
+    ):  # opening a named pipe, which may be in someone else's repository, would block
         raise ConfigError(f"The baseline {shown(path)} of the settings is not a regular file: name another.")
     return path if named is not None or options.write_baseline or path.is_file() else None
 
@@ -265,6 +265,7 @@ def suggestion(word: str, known: Mapping[str, Any] | Sequence[str], cutoff: floa
     """Return ": did you mean 'x'?" if a known word is similar, else a full stop."""
     import difflib  # imported only after a mistake
 
-    bare = {name.lstrip("-"): name for name in known}  # the common prefix "--" would make all options similar
+    # without the prefix "--", which would make all options similar
+    bare = {name.lstrip("-"): name for name in known}
     close = difflib.get_close_matches(word.lstrip("-"), list(bare), n=1, cutoff=cutoff)
     return f": did you mean {bare[close[0]]!r}?" if close else "."

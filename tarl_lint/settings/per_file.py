@@ -14,7 +14,7 @@ class FileIgnores:
     """Decides which findings are disabled in their files. Patterns are as in .gitignore, relative to `root`."""
 
     def __init__(self, root: Path, table: Sequence[tuple[str, tuple[str, ...]]]) -> None:
-        top = os.path.abspath(root)  # noqa: PTH100 - also for what does not exist
+        top = os.path.abspath(root)  # noqa: PTH100 - the path need not exist
         self._top = top.rstrip("/") + "/"
         self._rules = [(gitignore.parse(top, [pattern]), codes) for pattern, codes in table]
         self._codes: dict[str, tuple[str, ...]] = {}

@@ -120,7 +120,7 @@ def _stated(setting: Setting, full_name: str) -> Sequence[tuple[str, Any]]:
     try:
         return [(one.name, one.value) for one in stated((setting,), full_name)]
     except (NoYamlError, UnreadableError):
-        return ()  # the report mentions the problem
+        return ()  # another part of the report states the problem
 
 
 def bound(

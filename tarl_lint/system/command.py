@@ -156,7 +156,8 @@ def _launches(asked: Request, workspace: Workspace) -> Iterator[Launch]:
         given = dict(asked.arguments)
         launch = read_launch(_launch_file(asked.launch, workspace), workspace, given)
         problem = unknown_argument(launch, given)
-        if problem and launch.nodes:  # a file that could not be read has no known arguments
+        # if there are no nodes, the file could not be read, and its arguments are unknown
+        if problem and launch.nodes:
             raise UsageError(problem)
         yield launch
         return

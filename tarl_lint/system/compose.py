@@ -40,7 +40,7 @@ _SILENT: Final = frozenset(
      "state_publisher", "rviz", "rviz2", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_console", "rqt_image_view", "xacro"]
 )  # fmt: skip
 
-# returns a program's interface for known values of parameters, or why it cannot be analysed
+# (program, known values of its parameters) → its interface, or the reason why it cannot be analysed
 Reader = Callable[[Program, Mapping[str, object]], Interface | str]
 
 

@@ -87,7 +87,8 @@ def _blank(found: re.Match[str]) -> str:
 
 def _named(path: Path, text: str) -> Iterator[Endpoint]:
     images = {one for pair in _IMAGES.findall(text) for one in pair if one} | {"image_transport"}
-    images |= {"it", "it_"} if "image_transport" in text else set()  # a member that the header declares
+    # usual names of a member that is declared in a header
+    images |= {"it", "it_"} if "image_transport" in text else set()
     private = {one for pair in _PRIVATE.findall(text) for one in pair if one}
     for found in _CALL.finditer(text):
         who, name = found["who"] or "", found["name"]

@@ -93,7 +93,8 @@ def _one_apart(one: str, other: str) -> bool:
         places = [i for i, (a, b) in enumerate(zip(one, other, strict=True)) if a != b]
         letters = all(one[i].isalpha() and other[i].isalpha() for i in places)
         if len(places) == 1:
-            return letters and not (places[0] == len(one) - 1 and len(one) < 6)  # `imu_a` and `imu_b`
+            # `imu_a` and `imu_b` differ on purpose
+            return letters and not (places[0] == len(one) - 1 and len(one) < 6)
         first = places[0]
         swapped = len(places) == 2 and places[1] == first + 1
         return letters and swapped and one[first] == other[first + 1] and one[first + 1] == other[first]

@@ -52,7 +52,7 @@ def transported(instance: Instance, seen: Sequence[Endpoint]) -> Iterator[Endpoi
             names.append(_topic(instance, base, COMPRESSED))
         else:
             names = [_topic(instance, base, _parameter(instance.node, "image_transport") or RAW)]
-        if end.type == CAMERA:  # the camera's topic is beside that of the image
+        if end.type == CAMERA:  # the camera_info topic is in the namespace of the image topic
             names.append(f"{instance.resolve(base).rpartition('/')[0]}/camera_info")
         for name in names:
             yield Endpoint(end.role, (name,), "", end.span)

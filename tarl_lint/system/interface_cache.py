@@ -11,7 +11,7 @@ from tarl_lint.read.source import Script
 from tarl_lint.run.cache import Cache, digest, packed, unpacked
 from tarl_lint.system.model import Endpoint, Interface, Misfit, Qos
 
-# number of entries that are kept in addition, for other launch files and earlier texts of files
+# number of additional entries to keep: those of other launch files and of earlier versions of files
 SPARE: Final = 1000
 
 

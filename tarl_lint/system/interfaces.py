@@ -56,12 +56,12 @@ def interface(
     imported = [parsed(one) for one in reached([script], others) if one.path != script.path]
     modules = [replace(first, started=(entry,) if entry else ()),
                *(_as_import(one) for one in imported if isinstance(one, Module))]  # fmt: skip
-    plain = replace(config, remaps=())  # names as they are in the code
+    plain = replace(config, remaps=())  # without remappings, so that names stay as they are in the code
     parameters: list[ParameterName] = []
     machine, flows = engine.trace(modules, plain, thorough=False, parameters=parameters, fixed=fixed)
     tracer = Tracer(machine)
     outlines = {module.path: Outline(module.tree) for module in modules}
-    texts = Texts({module.path: module for module in modules})  # includes modules in which nothing runs
+    texts = Texts({module.path: module for module in modules})  # includes modules in which no code runs
     calls = (end for each in modules for end in _clients(machine, each, outlines[each.path], texts))
     ends = (*_endpoints(machine, tracer, outlines), *calls)
     endpoints = tuple(sorted(dict.fromkeys(ends), key=lambda e: (e.span, e.role, e.names)))
@@ -117,7 +117,7 @@ def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Findi
 
     def named(topics: tuple[str, ...]) -> tuple[str, ...]:
         if any(MARK in one for one in topics):
-            return ()  # without a launch, a name that contains a parameter is unknown
+            return ()  # outside of a launch file, the parameter's value and therefore the name are unknown
         return tuple(sorted({names.get(one.lstrip("/"), one) for one in topics}))
 
     source, sink = flow.source, flow.sink

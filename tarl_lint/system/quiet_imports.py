@@ -19,7 +19,7 @@ _QUIET: Final = frozenset(
 _INTERFACES: Final = re.compile(r"\w+_(msgs|srvs|interfaces|actions?|msg|srv)$")
 _TRANSFORMS: Final = frozenset(
     ["tf", "tf2_ros", "tf2_py", "tf2_geometry_msgs"]
-)  # these use /tf, which no rule examines
+)  # packages whose code communicates by /tf, which no rule examines
 
 
 def closed(modules: Sequence[Module]) -> bool:

@@ -27,7 +27,7 @@ _SERVERS: Final = (
 )
 # endings of the names of calls that send or receive feedback
 FEEDBACK: Final = (".publish_feedback", ".feedback")
-# What goes to the server of a service or action, and what may come back
+# For each pair: the message that goes to the server of a service or action, and the one that may come back.
 PARTS: Final = ((" (request)", " (response)"), (" (goal)", " (result)"), (" (goal)", " (feedback)"))
 
 

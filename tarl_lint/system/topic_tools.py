@@ -10,7 +10,8 @@ from tarl_lint.model import Span
 from tarl_lint.system.model import Endpoint, Instance
 from tarl_lint.workspace.ros_arguments import plain
 
-_Topics = tuple[Sequence[str], Sequence[str]]  # what a program subscribes to, and what it publishes
+# (topics that a program subscribes to, topics that it publishes)
+_Topics = tuple[Sequence[str], Sequence[str]]
 
 
 def _named(words: Sequence[str], number: int, suffix: str) -> _Topics:

@@ -19,7 +19,8 @@ def installed(
     declared = setup(folder)
     built = Cmake() if manifest.kind == "ament_python" else cmake(folder, manifest.name)
     programs = {one.name: one for one in _programs(folder, declared, built)}
-    if manifest.kind == "catkin":  # rosrun also starts executable files of the source folder
+    # rosrun also starts files in the source folder that have the executable bit
+    if manifest.kind == "catkin":
         programs |= {one.name: Executable(one.name, one) for one in scripts if one.name not in programs}
     modules = {one.name: one for one in _modules(folder, manifest, declared, built)}
     missing = [Problem(folder / "CMakeLists.txt" if not one.entry else folder / "setup.py", 0,

@@ -43,7 +43,7 @@ def closed(text: str) -> str:
 def _parsed(text: str) -> ast.expr | None:
     try:
         return ast.parse(text, mode="eval").body
-    except SyntaxError:  # a condition that was cut off
+    except SyntaxError:  # the condition was longer than LONGEST and was cut off
         return None
 
 
@@ -55,7 +55,8 @@ def conditional(value: Any, condition: str, line: int) -> Any:
             return value
         return Action("group", value.line, {"actions": [value], "assumed": condition})
     if isinstance(value, tuple) and len(value) == 2 and plain(value[0]):
-        return value[0], conditional(value[1], condition, line)  # a remapping
+        # a pair, such as a remapping: only its second element is conditional
+        return value[0], conditional(value[1], condition, line)
     if isinstance(value, list | tuple):
         return type(value)(conditional(one, condition, line) for one in value)
     if isinstance(value, dict):

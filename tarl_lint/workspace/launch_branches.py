@@ -38,7 +38,8 @@ class _Branch:
 
     condition: str
     old: dict[int, Any]
-    whole: bool = True  # whether it holds until the end of the loop, and not only of the current iteration
+    # whether the condition holds until the end of the loop, instead of only until the end of the iteration
+    whole: bool = True
 
 
 @dataclass
@@ -268,7 +269,8 @@ class BranchingInterpreter(Interpreter):
         finally:
             self._frames.pop()
             del self._branches[frame.branches :]
-        if all(value is None for _, value in frame.returned):  # no `return` in a branch, or a generator
+        # no branch returns a value, or the function is a generator
+        if all(value is None for _, value in frame.returned):
             return returned
         return one_of([*frame.returned, (frame.last, returned)], function.node.lineno)
 

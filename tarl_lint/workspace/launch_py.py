@@ -168,7 +168,8 @@ class _File:
                              ("composable_node_descriptions", "components")):  # fmt: skip
                 if old in given and (kind != "node" or old != "launch_arguments"):
                     given.setdefault(new, given.pop(old))
-            if kind == "group":  # a copy, since later additions to the list apply to this action only
+            # copy the list: what is added to this group later must not change the list in the launch file
+            if kind == "group":
                 given["actions"] = list(given.get("actions") or given.get("initial_entities") or [])
             if self.file.condition:
                 given["assumed"] = self.file.condition

@@ -94,7 +94,8 @@ class Runner:
     # the files that include the current action, with their arguments
     including: list[object] = field(default_factory=list)
     seen: int = 0
-    unsure: set[str] = field(default_factory=set)  # arguments declared under a condition, without a value
+    # names of the arguments that are declared under a condition and have no value
+    unsure: set[str] = field(default_factory=set)
     events: int = 0  # number of event handlers that contain the current action
 
     def run(self, actions: Any, context: Context, condition: str = "") -> None:

@@ -106,7 +106,7 @@ class _Reader:
             if "default" not in element.attrib and name not in place.scope.arguments:
                 self.required.add(name)
         if name in place.scope.arguments and "value" not in element.attrib:
-            return place  # set by the including file
+            return place  # the including file has set this argument, so its default is not used
         stated = element.get("value", element.get("default"))
         value: str | None = None
         if stated is not None:

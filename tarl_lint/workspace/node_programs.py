@@ -37,6 +37,6 @@ def program(node: LaunchedNode, workspace: Workspace, files: Iterable[Path]) -> 
     if declared is not None and declared.entry:
         return f"{declared.module} of {node.package}, in which {node.executable} begins, does not exist"
     named = [one for one in files if one.name == node.executable and one.is_relative_to(package.folder)]
-    if named:  # rosrun finds a file anywhere in the package
+    if named:  # rosrun searches the whole package for a file of this name
         return Program(min(named, key=lambda one: (len(one.parts), one)))
     return f"no Python program {node.executable} in {node.package}"

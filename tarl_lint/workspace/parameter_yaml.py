@@ -43,7 +43,8 @@ def _parsed(text: str) -> Any:
     except (yaml.YAMLError, RecursionError) as problem:
         raise UnreadableError(f"it is not YAML: {' '.join(str(problem).split())}") from None
     if not bounded(found, MOST):
-        raise UnreadableError("it has too many values")  # a few aliases can stand for billions
+        # nested YAML aliases can make a short text stand for billions of values
+        raise UnreadableError("it has too many values")
     return found
 
 

@@ -44,7 +44,7 @@ class Scope:
     def __init__(self, names: dict[str, Any], around: Scope | None = None, *, inner: bool = False) -> None:
         self.names, self.around = names, around
         self.elsewhere: dict[str, Scope] = {}  # names that `global` and `nonlocal` bind in another scope
-        self.inner = inner  # whether it is a comprehension
+        self.inner = inner  # whether the scope is that of a comprehension
 
     def find(self, name: str) -> tuple[Any] | None:
         """Return a tuple with the value of a name; None if no scope has the name."""

@@ -144,7 +144,7 @@ def _texts(path: Path, what: str, values: Any, problems: list[Problem]) -> tuple
 def _console(path: Path, entries: Any, problems: list[Problem]) -> list[tuple[str, str, str]]:
     if isinstance(entries, dict):
         lines = entries.get("console_scripts", ())
-    else:  # text of an INI section
+    else:  # the entry points are the text of an INI section
         lines = str(entries).partition("[console_scripts]")[2].partition("[")[0]
     found = []
     for line in (

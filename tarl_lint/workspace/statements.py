@@ -66,7 +66,7 @@ class Interpreter(Evaluator):
         self._yielded: list[list[Any]] = []
         self._generators: dict[
             ast.FunctionDef, bool
-        ] = {}  # functions that were called: whether they have `yield`
+        ] = {}  # function that was called → whether it contains `yield`
         self._files = [file]  # the files of the functions that are being interpreted
 
     def run(self) -> dict[str, Any]:
@@ -271,7 +271,7 @@ class Interpreter(Evaluator):
             self.problem(
                 statement.lineno, f"the condition `{ast.unparse(statement.test)[:60]}` is not constant{also}"
             )
-            self._body(kept, names)  # keep the node instead of losing it
+            self._body(kept, names)  # take the branch that does not raise, so that the nodes in it are found
         else:
             self._body(statement.body if test else statement.orelse, names)
 

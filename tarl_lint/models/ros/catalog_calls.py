@@ -150,7 +150,8 @@ def _default_of(
         literals.mark(ctx, node, expr, default, frame)
     ctx.graph.flow(ctx.use(default) if default.pts else default.deps, node)
     if ctx.thorough and default.pts:
-        return ctx.carry(default, node)  # a mapping, which brings its entries
+        # the default is an object, such as a mapping, and its entries must stay reachable
+        return ctx.carry(default, node)
     return Value(ctx.kept(node), consts=consts)
 
 

@@ -24,7 +24,7 @@ NAMES: Final[Mapping[str, Literal["node", "own", "namespace"]]] = {
 RESOLVING: Final = frozenset(["rospy.resolve_name", "rospy.remap_name", "resolve_topic_name"])
 TYPES: Final = frozenset(
     ["rostopic.get_topic_class", "rostopic.get_topic_type"]
-)  # these functions return (type, topic, function)
+)  # functions that return a tuple (type, topic, function)
 
 
 def node_name(ctx: Interpreter, it: Invocation) -> Value | None:

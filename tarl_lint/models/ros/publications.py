@@ -67,7 +67,7 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
     node = ctx.node(frame, ("publish", call.slot), "publish")
     ctx.graph.flow(call_contexts.all_used(ctx, it.arguments), node)
     ctx.graph.choice(it.base.deps, node)
-    ctx.graph.depend(node, it.base.deps)  # the conditions that choose the publisher
+    ctx.graph.depend(node, it.base.deps)  # the conditions that choose the publisher decide what is published
     ctx.graph.depend(node, [n for n, _ in ctx.guards])
     if frame.statement is not None:
         under(ctx, frame, frame.statement, node)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import Final, Literal
 
-# Functions with such names, from the analysed files or a library, return a value within limits.
+# A function whose name matches, in the analysed files or a library, is assumed to return a value within limits.
 LIMITING: Final = re.compile(
     r"clamp|clip|limit|saturat|constrain|bound|restrict|normali[sz]e|wrap|thresh|sigmoid|squash|(^|_)sat(_|$)",
     re.I,
