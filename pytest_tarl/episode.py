@@ -62,7 +62,8 @@ class Tarl:
         self._replay = replay
         # a recorded mission already contains the faults of its robot
         self._faults = NO_FAULTS if replay is not None else faults
-        self._drifted = drifted or bool(self._faults.active)  # if true, a silent node is not an error
+        # whether a drift is active; then a node that publishes nothing is not an error
+        self._drifted = drifted or bool(self._faults.active)
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0
@@ -71,12 +72,12 @@ class Tarl:
         self._starter = Starter(folder, imports, lambda: self.ros)
         self._origin = 0  # virtual time at the start of the episode (ns)
         self._requirements = requirements
-        self._alone = alone  # True for the single episode of a plain test run
+        self._alone = alone  # whether this is the only episode, as in a run of pytest without TARL
         self._formulas = EpisodeFormulas(requirements, tuple(sensors), lambda: self._now)
         self._situation = Situation(tuple(sensors), requirements, self._formulas, recorder)
         self.topics = self._situation.topics
         self.values = self._situation.values
-        self.simulator: Simulator | None = None  # an external one
+        self.simulator: Simulator | None = None  # the external simulator, if the test starts one
         self._open = ExitStack()
         self._open.enter_context(imports)
 
@@ -361,7 +362,7 @@ class Tarl:
                 "tarl.reward(world.monitor())."
             )
         if self._drifted:
-            return None  # a drift may silence sensors and nodes
+            return None  # not an error: a drift may cause that sensors and nodes are silent
         problem = self._situation.problem() or self._unmet()
         if problem is None and self._silent:
             problem = RecordingError(

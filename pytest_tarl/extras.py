@@ -64,7 +64,7 @@ def _source_tree() -> tuple[str, bool] | None:
         url = urlsplit(record["url"])
         editable = bool(record["dir_info"].get("editable"))
     except (PackageNotFoundError, ValueError, KeyError, TypeError):
-        return None  # installed from an index, an archive or a repository
+        return None  # installed from a package index, an archive or a repository, so there is no local clone
     return (url2pathname(url.path), editable) if url.scheme == "file" else None
 
 

@@ -60,7 +60,8 @@ class FinishedTest:
         account, error = self.outcome, self.call.excinfo.value if self.call.excinfo else None
         if account is not None:
             attach(report, account)
-            for one in (report, self.teardown):  # JUnit reads the properties of the last report
+            # the JUnit report takes its properties from the last of these reports
+            for one in (report, self.teardown):
                 one.user_properties.extend(account.properties)
             if account.problem:
                 report.outcome, report.longrepr = "failed", printable(account.problem)
@@ -69,7 +70,7 @@ class FinishedTest:
         elif error is not None and isinstance(error.__context__, FixtureError):
             attach(
                 report, Account((str(error),), unrecorded=True)
-            )  # skipped: pytest shows reasons only with -rs
+            )  # the test is skipped, and pytest shows the reason of a skip only with -rs
         return report
 
 

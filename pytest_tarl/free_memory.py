@@ -46,7 +46,7 @@ def _of_groups() -> Iterator[int | None]:
         version, base = (1, _GROUPS / "memory") if controllers else (2, _GROUPS)
         own = base / path.lstrip("/")
         for folder in (own, *own.parents):
-            if folder.is_relative_to(base):  # a container may see its own group as the root
+            if folder.is_relative_to(base):  # in a container, the group may be shown as the root
                 yield _left(folder, *_FILES[version])
 
 
@@ -55,6 +55,6 @@ def _left(folder: Path, limit: str, usage: str, droppable: str) -> int | None:
     try:
         most, used = int((folder / limit).read_text()), int((folder / usage).read_text())
         found = re.search(rf"^{droppable} (\d+)$", (folder / "memory.stat").read_text(), re.MULTILINE)
-    except (OSError, ValueError):  # "max" means unlimited
+    except (OSError, ValueError):  # ValueError: the file says "max", which means unlimited
         return None
     return most - used + (int(found[1]) if found else 0)

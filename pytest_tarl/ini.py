@@ -21,7 +21,7 @@ SWITCHES = {
     "0": False,
 }
 MODES = ("record", "online", "repair", "stress")
-# options that only some modes use; runs in other modes ignore their ini values
+# option → modes that use it; in other modes, its ini value is ignored
 WITHIN: Mapping[str, tuple[str, ...]] = {
     "drift": ("record", "online", "stress"),
     "resume": ("record", "online", "stress"),

@@ -80,7 +80,7 @@ class LoggedMissions:
         self._judged = judged
         self.count = len(whole)
         self.workers = 1
-        self.notes = notes  # name the skipped missions
+        self.notes = notes  # notes that name the skipped missions
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         """Return the mission whose index is the plan's seed."""

@@ -72,7 +72,7 @@ class Mission:
     progress: Progress
     tell: Tell  # prints a sentence immediately on a terminal
     others: tuple[Other, ...] = ()
-    stage: Stage | None = None  # part of the comparison to run under --tarl-total
+    stage: Stage | None = None  # the part of the comparison to run in this call, under --tarl-total
     node: str = ""  # pytest's node id, with the scenario
 
     def run(self, rollout_with: RolloutWith) -> Account | Compared:
@@ -197,7 +197,7 @@ class Mission:
                 paths = {site.path for one in other.lists for site in one.sites}
                 told = (
                     other.test == self.test or other.test in run
-                )  # recorded in this run, before or after this test
+                )  # the other test is recorded in this run, too
                 if not told and paths & nodes and not {*design} <= {*other.design}:
                     yield (
                         f"  {other.test} has a recording of the same node in the old world: declare {named} there, "
@@ -338,7 +338,8 @@ class Mission:
 
     def _ignore(self) -> None:
         ignore = self.tarl / ".gitignore"
-        with suppress(OSError, UnicodeDecodeError):  # the other files report such an error
+        # if the folder is not writable, writing the other files reports the error
+        with suppress(OSError, UnicodeDecodeError):
             if not ignore.exists() or ignore.read_text("utf-8") == EARLIER:
                 write_atomically(ignore, IGNORED.encode())
 

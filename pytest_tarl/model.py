@@ -201,7 +201,7 @@ class OperandEffect:
     value: float | None
     best: float
     effect: float
-    factor: bool = False  # `best` is a factor on the operand, not its new value
+    factor: bool = False  # whether `best` is a factor for the operand, instead of its new value
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ class Options:
     mode: Mode = "plain"
     seed: int = 0
     drift: str | None = None
-    episodes: int | None = None  # default: that of the marker when recording, 40 when comparing
+    episodes: int | None = None  # None: the marker's number for a recording, 40 for a comparison
     alpha: float = 0.05
     searches: tuple[str, ...] = ("sweep",)
     localize: str = "repair"  # when the search ends: with an accepted repair, or with a ranking of all sites

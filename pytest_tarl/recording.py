@@ -170,7 +170,7 @@ def detectable(totals: Floats) -> list[str]:
                 "Record at least 4."
             )
         ]
-    if not np.ptp(totals):  # any loss is shown
+    if not np.ptp(totals):  # all totals are equal, so that a comparison shows even the smallest loss
         return []
     note = (
         f"{totals.size} episodes: a comparison with the same number shows a loss of {amount(loss)} per episode in "

@@ -13,7 +13,7 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import SitePlace, Verdict
 from pytest_tarl.sensors import Sensor
 
-MOST_NAMED = 3  # maximum number of lost sites named in a note
+MOST_NAMED = 3  # maximum number of sites that a note names as lost
 
 
 def of_comparison(

@@ -255,7 +255,7 @@ class ItemRollout:
     def _once(self, plan: EpisodePlan) -> EpisodeRun:
         episode = Episode(plan, self.designation, self.instruments if plan.record else NOTHING)
         self.item.stash[EPISODE] = episode
-        self.item._report_sections.clear()  # else the output of all episodes would accumulate
+        self.item._report_sections.clear()  # otherwise the captured output of all episodes would accumulate
         _forget_instance(self.item)
         try:
             # pass the item's own parent as next item: this keeps all fixtures of wider scope
@@ -269,7 +269,7 @@ class ItemRollout:
 def _forget_instance(item: pytest.Function) -> None:
     """Make a test method create a new instance of its class in each episode."""
     if item.cls is not None:
-        for name in ("_instance", "_obj"):  # pytest creates them again on access
+        for name in ("_instance", "_obj"):  # pytest creates these attributes again when they are read
             vars(item).pop(name, None)
 
 
@@ -319,7 +319,7 @@ def _heeding_interrupts() -> Iterator[None]:
     """End the run on Ctrl-C even if a node catches KeyboardInterrupt, as many main functions do."""
     before = signal.getsignal(signal.SIGINT)
     if not callable(before) or threading.current_thread() is not threading.main_thread():
-        yield  # SIGINT is ignored, as in a background job: keep that
+        yield  # leave the handler unchanged, since SIGINT is ignored here, as in a background job
         return
     seen = []
     passed_on = before
@@ -339,8 +339,8 @@ def _heeding_interrupts() -> Iterator[None]:
 
 def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:
     """After the last episode, tear down the fixtures that the next item does not need."""
-    # do not call pytest's hooks: the last episode tore the item down, perhaps in another process, and plugins expect
-    # one teardown per item
+    # do not call pytest's hooks: plugins expect one teardown per item, and the last episode has called the hooks for
+    # it, perhaps in another process
     state = item.session._setupstate
     call = pytest.CallInfo.from_call(
         lambda: state.teardown_exact(nextitem), when="teardown", reraise=INTERRUPTS

@@ -143,7 +143,8 @@ class Ahead:
         self.rollout = rollout
         self._foreseen: Iterator[tuple[Hashable, EpisodePlan]] = iter(())
         self._begun: dict[Hashable, Pending] = {}
-        self._lately: set[Hashable] = set()  # started since the last forecast, not requested yet
+        # keys of the episodes that were started since the last forecast and not requested yet
+        self._lately: set[Hashable] = set()
 
     def foresee(self, wanted: Iterable[tuple[Hashable, EpisodePlan]]) -> None:
         """Set the new forecast: the episodes that will be requested next, in this order."""

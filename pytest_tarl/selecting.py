@@ -75,7 +75,7 @@ def _has_space(item: pytest.Item) -> bool:
     marker = item.get_closest_marker("tarl")
     drifts = marker.kwargs.get("drifts", {}) if marker is not None else {}
     if not isinstance(drifts, Mapping):
-        return True  # an invalid marker is reported when the test runs
+        return True  # if the marker is invalid, running the test reports it
     if takes(item, "tarl_drift"):
         return is_space(drifts.get(scenario(item)))
     return any(map(is_space, drifts.values()))

@@ -135,7 +135,7 @@ class Sensor:
 
     def _check_categories(self) -> None:
         given: Any = self.categories
-        if isinstance(given, list):  # tuples keep the sensor hashable
+        if isinstance(given, list):  # convert to a tuple, so that the sensor stays hashable
             object.__setattr__(self, "categories", tuple(given))
         if not isinstance(given, list | tuple) or not all(isinstance(one, str) for one in given):
             raise SettingsError(

@@ -79,9 +79,9 @@ class TarlSession:
         drifts = marker.kwargs.get("drifts", {})
         names = (
             list(drifts) if isinstance(drifts, Mapping) else []
-        )  # an invalid marker is reported when the test runs
+        )  # if the marker is invalid, running the test reports it
         if self.options.log is not None or self.options.bags:
-            names = []  # logs and bags are not named after a drift
+            names = []  # files for a log or bag have no drift in their names
         if self.options.drift is not None:
             names = [name for name in names if name == self.options.drift]
         if self.options.mode == "stress":
@@ -141,7 +141,7 @@ class TarlSession:
         if nextitem is None or not together:
             self._tell()
         if call.excinfo is None and getattr(call.result, "interrupted", False):
-            raise KeyboardInterrupt  # the results are reported; start no further test
+            raise KeyboardInterrupt  # the results are reported: end the run before the next test
         return True
 
     def _tell(self) -> None:

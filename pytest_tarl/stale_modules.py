@@ -87,7 +87,8 @@ def _nested(code: CodeType) -> Iterator[CodeType]:
 
 
 def _imported_by(code: CodeType, spec: ModuleSpec) -> Iterator[str]:
-    before: deque[object] = deque((None, None), 2)  # arguments before IMPORT_NAME: level, names
+    # arguments of the two instructions before IMPORT_NAME: the level and the imported names
+    before: deque[object] = deque((None, None), 2)
     for one in dis.get_instructions(code):
         if one.opname == "IMPORT_NAME":
             level, taken = before

@@ -35,7 +35,7 @@ ALWAYS_THERE = {
     "/parameter_events",
     "/tf",
     "/tf_static",
-}  # topics that need not be in a bag
+}  # topics that a bag may lack without a note
 
 
 class MissionReplayed(Skipped):
@@ -46,9 +46,10 @@ class Moment:
     """What a monitor reads at the end of a step: the newest recorded message of each topic."""
 
     def __init__(self, bag: Bag) -> None:
-        self.now = 0.0  # seconds since the bag began
+        self.now = 0.0  # bag time (s) since the start of the bag
         self.over = False  # whether this is the last step
-        self.observe: Callable[..., None] = _unheard  # sets signals that do not come from a topic
+        # called with values of signals that do not come from a topic
+        self.observe: Callable[..., None] = _unheard
         self._bag = bag
         self._data: dict[str, bytes] = {}
         self._read: dict[str, Any] = {}

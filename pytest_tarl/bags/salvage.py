@@ -111,7 +111,7 @@ def _mcap_records(
         operation = _take(file, 1)[0]
         (size,) = struct.unpack("<Q", _take(file, 8))
         data = file.read(size)
-        if len(data) < size and operation != _MCAP_CHUNK:  # the beginning of a cut chunk is readable
+        if len(data) < size and operation != _MCAP_CHUNK:  # of a chunk, even a truncated part is readable
             raise CutOffError
         record = BytesIO(data)
         if operation == _SCHEMA:
@@ -179,7 +179,7 @@ def _walk_db3(path: Path) -> Walk:
     with closing(sqlite3.connect(f"{path.resolve().as_uri()}?immutable=1", uri=True)) as database:
         database.execute("PRAGMA writable_schema=ON")  # without this, SQLite refuses to read a truncated file
         texts: dict[str, tuple[str, str]] = {}
-        with suppress(sqlite3.Error):  # table missing in recordings before 2023
+        with suppress(sqlite3.Error):  # recordings made before 2023 lack this table
             query = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
             texts = {name: (encoding, text) for name, encoding, text in database.execute(query)}
         topics = {}

@@ -40,7 +40,8 @@ def revert(paths: Sequence[Path], directory: Path | None) -> list[str]:
     """Undo patches and return the lines to print. Raise RefusedError if one is not applied or its lines were edited."""
     patches = [read(path) for path in paths]
     targets = found_targets(patches, directory)
-    if any(target.done for target in targets):  # files that an interrupted `tarl apply` did not reach
+    # skip the files that an interrupted `tarl apply` did not reach
+    if any(target.done for target in targets):
         targets = [target for target in targets if not (len(target.parts) == 1 and target.as_searched)]
     contents: dict[Path, bytes] = {}
     told: list[str] = []

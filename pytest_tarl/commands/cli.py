@@ -20,7 +20,7 @@ from pytest_tarl.errors import RefusedError, TarlError
 from pytest_tarl.extras import missing_extra, missing_fleet, missing_server
 from pytest_tarl.printable import print_lines, printable
 
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # errors of a full or failing disk
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # errno values that mean a full or failing disk
 
 
 def main(argv: Sequence[str] | None = None) -> int:

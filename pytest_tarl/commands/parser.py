@@ -31,7 +31,7 @@ class Parser(argparse.ArgumentParser):
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
         """Parse the arguments. Report an unknown argument with the usage of its command instead of that of `tarl`."""
         given = sys.argv[1:] if args is None else list(args)
-        # argparse takes `argv` together with the first positional argument, and so refuses options between the two
+        # argparse fills `argv` as soon as it meets the first positional argument, and would refuse options after it
         end = given.index("--") if given[:1] and given[0] in self.passing and "--" in given else len(given)
         found, extra = self.parse_known_args(given[:end])
         if end < len(given):

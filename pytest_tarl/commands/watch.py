@@ -19,7 +19,7 @@ from pytest_tarl.printable import print_lines, printable, printable_line
 
 STANDARD_OUTPUT = Path("-")
 INTERRUPTED = 130
-TOLD = 1.0  # maximum time between two reports while missions remain unread (s)
+TOLD = 1.0  # maximum time (s) between two reports while the watch catches up with unread missions
 
 
 @dataclass(frozen=True)

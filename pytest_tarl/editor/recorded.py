@@ -25,7 +25,7 @@ class Figures:
     drift: str
     offline: float
     online: float
-    rank: int | None = None  # rank among the culprits, from 1
+    rank: int | None = None  # rank among the culprits, starting at 1
 
     @property
     def difference(self) -> float:

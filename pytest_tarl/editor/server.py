@@ -20,7 +20,7 @@ from tarl_lint.editing import Result, Superseded, Workspace
 from tarl_lint.errors import LintError
 
 Apply = Callable[[Path], Iterable[str]]  # patch → lines to show; raises TarlError if it no longer fits
-PAUSE = 0.15  # time without a keystroke before the workspace is linted (s)
+PAUSE = 0.15  # the workspace is linted once the user has typed nothing for this time (s)
 CHANGES = (
     types.TEXT_DOCUMENT_DID_OPEN,
     types.TEXT_DOCUMENT_DID_CHANGE,
@@ -40,7 +40,8 @@ class Server(LanguageServer):
         self.linted: Workspace | None = None
         self.result: Result | None = None
         self.places = Places(self.root, {})
-        self.shown_in = self.places  # positions in the texts of the diagnostics that were last published
+        # positions in the file contents for which diagnostics were last published
+        self.shown_in = self.places
         self.kept = recorded.Recorded()
         self.shown: dict[str, list[types.Diagnostic]] = {}
         self._waiting: asyncio.Task[None] | None = None

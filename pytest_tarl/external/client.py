@@ -38,7 +38,7 @@ class Client:
         )
         self.events: queue.SimpleQueue[Event] = queue.SimpleQueue()
         self._shown = 0
-        self._gone = False  # whether the guardian has closed its end
+        self._gone = False  # whether the guardian has closed its end of the pipe
         threading.Thread(target=self._read, name="tarl-simulator", daemon=True).start()
 
     @property

@@ -18,7 +18,8 @@ class Domain:
         self.number = 0
         candidates = random.SystemRandom().sample(DOMAINS, len(DOMAINS))
         if not sys.platform.startswith("linux"):
-            self.number = candidates[0]  # not claimed, because this system has no abstract sockets
+            # this system has no abstract sockets, with which a process could claim a domain for itself
+            self.number = candidates[0]
             return
         for number in candidates:
             with suppress(OSError):

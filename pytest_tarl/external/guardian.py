@@ -38,7 +38,7 @@ class Guardian:
         self._events = os.fdopen(events, "w", buffering=1, encoding="utf-8")
         self._commands: deque[dict[str, Any] | None] = deque()
         self._arrival = threading.Event()
-        self._waking = threading.Lock()  # held while a link is woken or removed
+        self._waking = threading.Lock()  # held while another thread wakes a link or removes one
         self._group: Group | None = None
         self._domain: Domain | None = None
         self._master: Master | None = None
@@ -200,4 +200,4 @@ def main() -> None:
     except Exception:
         traceback.print_exc()
         os._exit(1)
-    os._exit(0)  # do not wait for threads of the middleware
+    os._exit(0)  # end without waiting for threads of the middleware

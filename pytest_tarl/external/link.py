@@ -12,7 +12,7 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-# after this number of attempts without a message, no message is left; an attempt may handle another event
+# no message is left after this number of attempts without one; a single attempt may have handled another event
 IDLE = 3
 
 Say = Callable[[dict[str, Any]], None]
@@ -44,7 +44,8 @@ class Link:
         self._clients: dict[str, Any] = {}
         self._calls: list[dict[str, Any]] = []  # calls of services that do not exist yet
         self._known: dict[str, Any] = {}
-        self._answers: list[dict[str, Any]] = []  # service answers that were not passed on yet
+        # answers of services that have not been passed on to the test yet
+        self._answers: list[dict[str, Any]] = []
         self._handled = 0  # number of messages handled so far
 
     def spin(self, seconds: float) -> None:
@@ -135,7 +136,7 @@ class Link:
             self._handled += 1
             sent = info[
                 "source_timestamp"
-            ]  # in ns, by the clock of this machine; 0 if the middleware has none
+            ]  # time of sending (ns) by this machine's clock; 0 if the middleware does not state it
             self._say(
                 {"kind": "message", "topic": topic, "type": kind, "data": to_plain(message), "sent": sent}
             )

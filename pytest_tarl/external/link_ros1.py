@@ -20,7 +20,8 @@ OWN = ("/rosout", "/rosout_agg")
 DEPTH = 1000
 LOST = "transport error"  # the start of rospy's error message for a broken connection
 PATIENCE = 5.0  # maximum time until a service reports its type (s)
-PAUSE = 0.005  # pause between a command and a call (s); they use separate connections, so the call could arrive first
+# pause (s) between a command and a service call; the call has its own connection and could arrive first
+PAUSE = 0.005
 
 Say = Callable[[dict[str, Any]], None]
 
@@ -121,9 +122,8 @@ class LinkROS1:
         if kind == "*" or topic in self._publishers:
             return
         with warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore", SyntaxWarning
-            )  # without a queue, a message is sent before a later service call
+            # rospy warns about the missing queue, but a queue would let a later service call overtake the message
+            warnings.simplefilter("ignore", SyntaxWarning)
             self._publishers[topic] = rospy.Publisher(topic, _class(kind), tcp_nodelay=True, queue_size=None)
 
     def _on_clock(self, message: Any) -> None:

@@ -21,7 +21,7 @@ from pytest_tarl.ros.messages.snapshot import snapshot, type_name
 if TYPE_CHECKING:
     from pytest_tarl.ros import Ros
 
-SETTLED = 0.3  # time without a change of the ROS graph until a simulator counts as started (s of real time)
+SETTLED = 0.3  # a simulator counts as started if the ROS graph has not changed for this time (s of real time)
 
 
 class Kept:
@@ -71,8 +71,10 @@ class Simulator:
         self._waiting: (
             list[Event] | None
         ) = []  # messages to deliver later; if None, messages are delivered immediately
-        self._usable = False  # whether the last step ended without an error
-        self._current = False  # whether events come from the simulator of this episode
+        # whether the simulator can be used again, because its last step ended without an error
+        self._usable = False
+        # whether arriving events come from the simulator of this episode, not from an earlier one
+        self._current = False
 
     @property
     def clock(self) -> float:
@@ -106,7 +108,8 @@ class Simulator:
         if self.setup.step is not None:
             self._stepped(self.setup.step)
         else:
-            if self._target <= self._time:  # the simulator ran on while the test did something else
+            # the simulator has passed the target, because it continues while the test does something else
+            if self._target <= self._time:
                 self._target = self._time + nanoseconds(dt)
             self._deliver(self._released())
             self._wait(lambda: self._time >= self._target, self.setup.patience, self._hung)
@@ -132,7 +135,8 @@ class Simulator:
         one = self.setup
         if KEPT.running is not None:
             self._stop(KEPT.running)
-        if one.ros == "ros1":  # rospy can use only one master per process
+        # rospy connects to only one master per process, and the new simulator has a new master
+        if one.ros == "ros1":
             KEPT.close()
             self._client = KEPT.opened()
         environment = {

@@ -14,7 +14,7 @@ def jitter(topic: str, most: float) -> TopicFault:
     """Return a fault that delays each message by a random time, uniform from 0 to a size of up to `most` seconds."""
 
     def begin(size: float, draws: np.random.Generator) -> Channel:
-        arrival = [0.0]  # arrival of the previous message (s)
+        arrival = [0.0]  # time (s) at which the previous message arrived
 
         def delayed(message: Any, now: float) -> Arrivals:
             arrival[0] = max(arrival[0], now + size * float(draws.random()))

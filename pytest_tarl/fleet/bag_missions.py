@@ -47,7 +47,8 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
     for one in bag.messages():
         digest.update(f"{one.time} {one.topic} {len(one.data)}\n".encode())
         digest.update(one.data)
-    if bag.notes:  # the bag is truncated, and the complete bag would have another ID
+    # the bag is truncated: the mission ID must not be taken from it, since the complete bag has another one
+    if bag.notes:
         raise LogError(
             f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore the index of the "
             "bag with "

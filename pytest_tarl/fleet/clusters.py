@@ -42,7 +42,7 @@ class Clusters:
     found: tuple[Cluster, ...] = ()
     unclear: tuple[str, ...] = ()
     left_out: int = 0
-    maps: Mapping[str, ResidualMap] = field(default_factory=dict, compare=False)  # residual maps by robot
+    maps: Mapping[str, ResidualMap] = field(default_factory=dict, compare=False)  # robot → its residual map
 
 
 def clustered(

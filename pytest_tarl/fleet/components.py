@@ -29,7 +29,7 @@ REPLICATES = 200
 FEWEST = 30  # minimum number of robots for an interval
 RANDOM = 2  # number of random components: between robots, and residual (between missions)
 CONFOUNDED = (
-    # a contrast cannot be estimated if more than this share of it is outside the row space of the design
+    # a contrast cannot be estimated if its part outside the row space of the design is larger than this share
     1e-6
 )
 SINGULAR = 1e-9  # eigenvalues below this share of the largest count as 0
@@ -66,7 +66,7 @@ class Component:
 @dataclass(frozen=True)
 class _Fit:
     variances: Floats  # variance of each factor, of robots and of residuals
-    noise: Floats  # the part of each variance that comes from estimation errors
+    noise: Floats  # the part of each entry of `variances` that estimation errors cause
     effects: Floats  # effects of all levels of all factors
 
 

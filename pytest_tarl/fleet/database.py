@@ -25,7 +25,7 @@ from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.partitions import Wanted
 from pytest_tarl.fleet.store import Store
 
-MEMORY = "1GB"  # memory limit; beyond it, DuckDB moves rows to the folder SPILLED
+MEMORY = "1GB"  # memory limit; DuckDB moves rows that exceed it to the folder SPILLED
 SPILLED = Path(".tarl/fleet")
 BY = {
     "version": "version",
@@ -35,7 +35,7 @@ BY = {
     "month": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%Y-%m')",  # UTC
     "week": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%G-W%V')",  # ISO 8601, UTC
 }
-# Columns that files of schema 1 lack; the table has no rows.
+# An empty table that adds the columns that files of schema 1 lack.
 EMPTY = "SELECT '' AS repair, MAP {'': 0.0::DOUBLE} AS formulas WHERE false"
 KEY = r"regexp_extract(filename, 'test=[^/]*/version=[^/]*/date=[^/]*/[^/]*$', 0)"
 

@@ -41,7 +41,7 @@ def parts(where: Store) -> list[Part]:
         part = Part(path, _origin(where, path, told), about.num_rows)
         if part.beside("cells") not in cells and not where.holds(
             part.beside("cells")
-        ):  # a listing may be out of date
+        ):  # the listing of a store may be out of date, so files may be missing
             raise FleetError(
                 f"{where.shown(part.beside('cells'))} is missing, so {where.shown(path)} cannot be judged: "
                 "restore the missing file, or delete the other one and ingest its logs again."

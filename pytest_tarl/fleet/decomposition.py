@@ -34,7 +34,7 @@ class Decomposition:
     components: tuple[Component, ...]
     levels: tuple[
         tuple[str, ...], ...
-    ]  # names of the levels of version, site, season, and repair if there is any
+    ]  # names of the levels of each factor: version, site, season, and repair if any robot has one
     confidence: float = CONFIDENCE
 
     @property

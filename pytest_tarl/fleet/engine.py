@@ -53,7 +53,7 @@ class Local:
         """Yield the results in order."""
         rest = iter(tasks)
         while window := [partial(function, *one) for one in islice(rest, WINDOW * self.workers)]:
-            # Dask would search the arguments for names of tasks; `partial` hides them
+            # `partial` hides the arguments from Dask, which would search them for names of tasks
             yield from self._got({f"tarl-{number}": (one,) for number, one in enumerate(window)})
 
     def _got(self, graph: dict[str, tuple[Callable[[], Any]]]) -> list[Any]:

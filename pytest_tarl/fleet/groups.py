@@ -46,12 +46,11 @@ class Group:
     missions: int
     robots: int
     passed: int
-    reward: float  # mean total
+    reward: float  # mean total reward of the missions
     success: Bound
     mean: Bound
-    outside: (
-        int  # number of totals outside the declared range; if positive, the bound of the mean is approximate
-    )
+    # number of totals outside the declared range; if there are any, the bound of the mean is approximate
+    outside: int
     compared: int
     verdict: Verdict | None
     region: Region

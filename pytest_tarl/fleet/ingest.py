@@ -130,7 +130,7 @@ def keep_origin(to: Store, given: str, repair: str) -> None:
     try:
         facts = dict(read(Path(given)).facts)
     except RepairError:
-        return  # the patch is from another program, so only its name is known
+        return  # another program wrote the patch, so nothing but its name is known
     known = {key: facts[key] for key in REPAIRS_KEEP if key in facts}
     to.write(repair_path(repair), json.dumps(known, ensure_ascii=False, sort_keys=True).encode())
 

@@ -58,7 +58,8 @@ def _is_log(path: Path) -> bool:
         with path.open("rb") as file:
             return file.read(len(MAGIC)) == MAGIC
     except OSError:
-        return False  # when it is read as a recording later, the error gives the reason
+        # an unreadable file is treated as a recording, whose reading then raises an error with the reason
+        return False
 
 
 def _parts(files: Sequence[Path], samples: Sequence[Sequence[Sample]]) -> Iterator[Part]:

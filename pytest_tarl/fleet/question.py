@@ -60,7 +60,7 @@ class Answer:
     copies: int  # number of duplicate rows that were ignored
     cells: tuple[Cell, ...]
     groups: tuple[groups.Group, ...]
-    onsets: robots.Robots  # the evidence that each group changed, and since when
+    onsets: robots.Robots  # for each robot, the evidence of a change and the time since when it has changed
     robots: robots.Robots
     parts: decomposition.Decomposition | None  # None if there is only one robot
     clusters: clusters.Clusters
@@ -113,7 +113,8 @@ def _accepted(where: Store, effects: Sequence[repairs.Effect]) -> dict[str, str]
     for repair in sorted({one.repair for one in effects}):
         path = repair_path(repair)
         if where.holds(path):
-            with suppress(ValueError, AttributeError):  # another program wrote the file
+            # a file that another program wrote may have other content
+            with suppress(ValueError, AttributeError):
                 found[repair] = str(json.loads(where.read(path)).get("drift", ""))
     return {repair: drift for repair, drift in found.items() if drift}
 

@@ -20,7 +20,7 @@ from pytest_tarl.learning.bounds import mean_of
 from pytest_tarl.learning.tables import Floats, Ints, sum_by
 from pytest_tarl.model import Bound
 
-FEWEST = 4  # minimum number of robots with and without the repair for an interval
+FEWEST = 4  # minimum number of robots with the repair, and of robots without it, for an interval
 ALPHA = 0.05  # probability that any interval of any repair is wrong
 OUTCOMES = ("total", "passed")
 

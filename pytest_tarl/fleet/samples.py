@@ -14,7 +14,7 @@ from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.sensors import Cell
 
-COLUMNS = "number, mission, passed, total, steps"  # columns of the table `missions`
+COLUMNS = "number, mission, passed, total, steps"  # columns that are read from the table `missions`
 COMPARED = """
     CREATE OR REPLACE TEMP TABLE compared AS
     SELECT number, group_number FROM (

@@ -47,7 +47,7 @@ SCHEMAS = {
     "cells": pa.schema(
         [
             ("mission", pa.uint64()),
-            ("cell", _NAME),  # bins of the sensors, such as 3,0
+            ("cell", _NAME),  # the cell, as the bins of the sensors: "3,0"
             ("next_cell", _NAME),  # null after the last step
             ("count", pa.int64()),
             ("reward", pa.float64()),  # sum over the steps
@@ -77,7 +77,7 @@ class Origin:
     test: str
     sensors: str  # hash of the sensors and their bins
     statements: str  # hash of the statements of all taint lists
-    recording: str  # hash of the file
+    recording: str  # hash of the recording's file
 
     def fits(self, other: Origin) -> bool:
         """Return whether missions of both origins can be counted together."""

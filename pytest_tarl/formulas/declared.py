@@ -32,7 +32,8 @@ class Requirements:
     names: tuple[str, ...] = ()  # names of the numeric sensors and the signals, which formulas may use
     rewarding: bool = False
     cap: float = CAP
-    followed: bool = False  # whether an episode records signals from its beginning
+    # whether an episode must record signals from its beginning, because formulas refer to them
+    followed: bool = False
     said: Said = NOTHING_SAID
 
     @property

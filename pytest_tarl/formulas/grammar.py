@@ -42,7 +42,7 @@ HINTS = (
     (r"(true|false)\b", "booleans are 1 and -1, so write (delivered > 0)"),
     (r"=[^=]", "write == to compare two values"),
     (r"[&|]", "write and, or"),
-)  # hints, by the first token that cannot be parsed
+)  # first token that cannot be parsed → hint for the user
 MINUS = "write (0 - gap) for -gap"
 _PLACE = re.compile(r"^(?:RTAMT Exception: )?\d+:(?P<column>\d+): Syntax ERROR, ")
 

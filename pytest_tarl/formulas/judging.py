@@ -14,7 +14,7 @@ from pytest_tarl.formulas.signals import NANOSECONDS, Timeline
 if TYPE_CHECKING:
     from pytest_tarl.formulas.robustness import Course
 
-LARGEST = 1e9  # robustness is clipped to ± this value, so that an infinite laser range stays finite
+LARGEST = 1e9  # robustness is clipped to ± this value, because a laser range, for example, may be infinite
 NEGLIGIBLE = 1e-12  # smaller margins are shown as 0
 
 

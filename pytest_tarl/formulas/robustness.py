@@ -33,7 +33,7 @@ from pytest_tarl.formulas.semantics import (
 from pytest_tarl.formulas.signals import Samples, cut
 
 Values = Mapping[int, Samples]  # samples of a formula's atoms, by id(node)
-FARTHEST = 1e308  # bound on the magnitude of an atom's future values, which are unknown
+FARTHEST = 1e308  # magnitude that stands for the unknown future values of an atom; larger than any real value
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,9 @@ from pathlib import Path
 from types import CodeType
 
 FORMAT = b"tarl-code-1\n"
-KEPT = 8  # maximum number of entries per source file; each choice of sites needs one
-REMEMBERED = 256  # maximum number of entries in memory; a repair tries many edited texts
+KEPT = 8  # maximum number of entries per source file; each set of recorded statements needs its own entry
+# maximum number of entries in memory; a search for a repair runs many edited versions of a file
+REMEMBERED = 256
 _HEADER = len(FORMAT) + len(MAGIC_NUMBER) + hashlib.sha256().digest_size
 
 

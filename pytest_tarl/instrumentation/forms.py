@@ -189,7 +189,7 @@ def _appended(value: ast.expr, number: int, at: Where) -> list[ast.stmt]:
 
 
 def _append(entry: ast.expr, at: Where) -> ast.stmt:
-    # CPython 3.11 and later specialise this form, a method call on a list.
+    # CPython 3.11 and later have a fast instruction for a method call on a list, as in this form.
     method = ast.Attribute(_marked(BUFFER, at), "append", ast.Load(), **at)
     return ast.Expr(ast.Call(method, [entry], [], **at), **at)
 

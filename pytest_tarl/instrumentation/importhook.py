@@ -74,7 +74,7 @@ class NodeImports:
         self._namespaces: list[dict[str, Any]] = []
         self._open = contextlib.ExitStack()
         self._before: set[str] = set()  # names of the modules that were imported before the episode
-        self.older: tuple[Path, ...] = ()  # edited files of which the old text ran; set on exit
+        self.older: tuple[Path, ...] = ()  # edited files whose unedited text was executed; set on exit
 
     def __enter__(self) -> NodeImports:
         """Start to handle imports."""
@@ -153,7 +153,8 @@ class NodeImports:
             and (path.parent / f"{package.partition('.')[0]}.py").is_file()
             and _imports_relatively(path)
         ):
-            import_module(package)  # a module in the folder of the script has the package's name
+            # import the package first: beside the script is a module of the same name, which would hide the package
+            import_module(package)
         on_search_path(path.parent)
         self.prepare(module, path)
         exec(code, module.__dict__)  # noqa: S102 - running the node is the purpose
@@ -224,7 +225,7 @@ class NodeImports:
         endings = tuple(self._tails)
         names = "\n".join(sys.modules) + "\n"
         if not any(f"{ending}\n" in names for ending in endings):
-            return early  # ten times faster than checking every name as below
+            return early  # this check is ten times faster than the following check of every name
         for name in [name for name in sys.modules if name.endswith(endings)]:
             file = (
                 sys.modules[name].__dict__.get("__file__") if name.rpartition(".")[2] in self._tails else None

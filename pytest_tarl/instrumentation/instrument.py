@@ -215,7 +215,8 @@ class _Recording(ast.NodeTransformer):
     def _record_expr(self, node: ast.Expr, number: int) -> list[ast.stmt]:
         value = node.value
         if isinstance(value, ast.Constant):
-            return [node]  # a docstring must stay first, and `...` does nothing
+            # there is nothing to record: a docstring, which must stay in the first place, or `...`
+            return [node]
         if isinstance(value, ast.Yield):
             if value.value is None:
                 return [*self._nothing(node, number), node]
@@ -232,7 +233,7 @@ class _Recording(ast.NodeTransformer):
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
         if isinstance(node.test, ast.Constant):
-            return [node]  # nothing is evaluated, and `while True` has no line events of its own
+            return [node]  # a constant condition, as in `while True`, is not evaluated at run time
         true = start_of(first_evaluated_in(node.body))
         false = start_of(first_evaluated_in(node.orelse) if node.orelse else node.test)
         node.body[:0] = self._note_constant(1.0, number, true)

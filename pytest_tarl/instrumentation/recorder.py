@@ -66,7 +66,7 @@ class Recorder:
         self._local = threading.local()
         self._buffers: list[_Buffer] = []
         self._cells: dict[Cell, int] = {}
-        self._latched: list[int] = []  # the current cell after each mark
+        self._latched: list[int] = []  # the cell that became current at each mark
         self._rewards: list[int] = []  # indices of the marks that close a step
         self._totals: list[float] = []
         self._parts: list[Mapping[str, float]] = []
@@ -176,7 +176,8 @@ def _alone() -> bool:
 
 
 def _of_tool(thread: threading.Thread) -> bool:
-    runs = getattr(thread, "_target", None) or getattr(thread, "function", None)  # a Timer has a function
+    # a threading.Timer stores its function under this name
+    runs = getattr(thread, "_target", None) or getattr(thread, "function", None)
     return str(getattr(runs, "__module__", None)).partition(".")[0] in _TOOLS
 
 

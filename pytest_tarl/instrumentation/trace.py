@@ -29,7 +29,7 @@ class Trace:
     flow: Floats  # finite, at least 0
     event_cell: Ints
     event_step: Ints
-    step_cell: Ints  # the cell at the time when the step was rewarded
+    step_cell: Ints  # the cell of each step, at the time of its reward
     reward: Floats
     parts: Mapping[str, Floats]
     thread: Ints | None = None

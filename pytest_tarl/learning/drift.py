@@ -112,7 +112,8 @@ def outcomes(sample: Sample) -> Floats:
 def succeed_less(success: tuple[float, float]) -> bool:
     """Return whether the second share of successful missions is lower by more than PASS_RATE_LOSS."""
     before, after = success
-    return before - after > PASS_RATE_LOSS + 1e-9  # so that 1 - 0.95 is no more than 0.05
+    # tolerates rounding, since 1 - 0.95 is slightly above 0.05 in floating point
+    return before - after > PASS_RATE_LOSS + 1e-9
 
 
 def judged(verdict: Verdict, alpha: float) -> Verdict:

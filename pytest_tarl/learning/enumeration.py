@@ -24,5 +24,5 @@ def other_groups(rows: int, chosen: int) -> Ints:
     """
     members = chain.from_iterable(combinations(range(rows), chosen))
     groups = np.fromiter(members, np.int64, comb(rows, chosen) * chosen).reshape(-1, chosen)[1:]
-    groups.flags.writeable = False  # shared by all callers
+    groups.flags.writeable = False  # read-only, because all callers share the array
     return groups

@@ -11,8 +11,9 @@ import numpy as np
 from pytest_tarl.learning.tables import END, START, Floats, Ints, ListSample, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-FEW = 0.05  # worlds share no cells if at most this share of the deployed steps is in recorded cells
-ENOUGH = 0.5  # minimum share of steps in recorded cells that must be reached by leaving out sensors
+# two worlds count as having no common cells if at most this share of the deployed steps is in recorded cells
+FEW = 0.05
+ENOUGH = 0.5  # sensors are left out until at least this share of the steps is in recorded cells
 
 
 def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:

@@ -20,7 +20,7 @@ from pytest_tarl.learning.tables import Floats, Ints
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
 ARITHMETIC = 1e-12  # rounding error of a few sums of floats, relative to the largest of them
-# if the p-value after PERMUTATIONS shuffles is at least this large, it is not refined by further shuffles
+# a p-value of at least this much after PERMUTATIONS shuffles is not refined by further shuffles
 SETTLED = 0.2
 AT_ONCE = 64  # number of shuffles drawn together; few enough for the processor's cache
 
@@ -178,7 +178,8 @@ def _smallest(draws: Floats, first: int) -> Floats:
     """Return 1 for the `first` smallest numbers of each row and 0 for the others, in the same shape."""
     limit = np.partition(draws, first, axis=1)[:, first, None]
     picked = (draws < limit).astype(np.float64)
-    tied = np.flatnonzero(picked.sum(axis=1) != first)  # rows in which several random numbers equal the limit
+    # rows in which several numbers equal the limit, so that fewer than `first` are below it
+    tied = np.flatnonzero(picked.sum(axis=1) != first)
     for row in tied.tolist():
         picked[row] = 0.0
         picked[row, np.argpartition(draws[row], first)[:first]] = 1.0

@@ -30,7 +30,8 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
     The inputs have shape (episodes,). The interval is infinite if there are too few permutations to reject anything.
     """
     difference = float(offline.mean() - online.mean())
-    unit = float(np.ptp(offline) + np.ptp(online))  # larger shifts leave no overlap between the groups
+    # after a shift by more than this, the two groups do not overlap
+    unit = float(np.ptp(offline) + np.ptp(online))
     if unit <= ARITHMETIC * float(np.abs(np.concatenate((offline, online))).max()):
         return difference - unit, difference + unit
     before, after = (offline - offline.mean()) / unit, (online - online.mean()) / unit
@@ -44,7 +45,7 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
         return _studentised_p(group, whole, shift, sign) <= risk
 
     if not refuted(-1.0, 1.0) or not refuted(1.0, -1.0):
-        return -inf, inf  # too few permutations to reject anything
+        return -inf, inf  # there are too few permutations to reject any shift
     low = root(lambda by: refuted(by - 1.0, 1.0), 0.0, 1.0, COARSE) - 1.0
     high = 1.0 - root(lambda by: refuted(1.0 - by, -1.0), 0.0, 1.0, COARSE)
     return difference + unit * low, difference + unit * high

@@ -83,7 +83,7 @@ class Judgements:
     Robustness is NaN if a formula was not judged. `lost` is the time of the violation in s, or NaN if there is none.
     """
 
-    formulas: tuple[str, ...]  # sorted
+    formulas: tuple[str, ...]  # texts of the formulas, sorted
     robustness: Floats
     lost: Floats
 
@@ -100,7 +100,7 @@ class Sample:
     part_names: tuple[str, ...]
     chain: Chain
     lists: tuple[ListSample, ...]
-    judgements: Judgements | None = None  # None without formulas
+    judgements: Judgements | None = None  # None if the test has no formulas
 
     @property
     def episodes(self) -> int:

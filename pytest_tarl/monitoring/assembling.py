@@ -59,9 +59,8 @@ class Assembly:
 
     expected: Expected
     path: Path
-    begun: (
-        Progress  # progress when the log was opened; `refused` says why missions that follow are not counted
-    )
+    # progress when the log was opened; `refused` is the reason why later missions are not counted
+    begun: Progress
     place: int
     missions: int = 0
     unfinished: int = 0
@@ -126,7 +125,7 @@ class Assembly:
         if kind == "mission":
             self._mission = valid_time(record["time"]), []
             if not torn and (before is None or before == self._last):
-                return  # the mission begins directly after the previous one
+                return  # nothing is lost, because this mission begins directly after the previous one
             last = before
         elif kind == "start":
             self.begun = self.begun._replace(refused=self.expected.problem(record, self.path))

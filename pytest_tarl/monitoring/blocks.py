@@ -43,7 +43,7 @@ class Block:
         joined = b"\n".join((*texts, b""))
         self._lines = (
             joined if joined.count(b"\n") == len(texts) else b""
-        )  # empty if a record has several lines
+        )  # the records as one text, one a line; empty if a record itself has several lines
         self._at = 0
 
     def left(self) -> bool:
@@ -89,7 +89,8 @@ def next_block(file: BinaryIO, place: int, size: int = BLOCK) -> Block:
         length, checksum = unpack_head(data, at)
         begin = at + HEAD
         if length > most - at and not spots and length <= LARGEST:
-            data += file.read(begin + length - len(data))  # the record is larger than a block
+            # read the rest of a record that is larger than a block
+            data += file.read(begin + length - len(data))
         payload = data[begin : begin + length]
         if len(payload) < length or length > LARGEST or zlib.crc32(payload) != checksum:
             break

@@ -27,7 +27,7 @@ def adjusted(log_peak: NDArray[np.float64]) -> Floats:
         exact = np.log2((np.expm1(small) - small) / small**2)
         large = log_peak - 2.0 * np.log2(natural)
     value = np.where(natural > 30.0, large, exact)
-    return np.where(natural < 1e-3, -1.0, value)  # F(1) = 1/2
+    return np.where(natural < 1e-3, -1.0, value)  # the limit at 0: F(1) = 1/2, whose log2 is -1
 
 
 def chosen(log_evidence: NDArray[np.float64], alpha: float) -> NDArray[np.bool_]:

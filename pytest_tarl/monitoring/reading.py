@@ -30,7 +30,7 @@ class LogReader:
     owners: dict[str, Path]  # paths of the open logs
     problem: str = ""
     _open: tuple[BinaryIO, Assembly] | None = None
-    _ahead: bool = False  # whether the caller of `missions` stopped before it got the last mission
+    _ahead: bool = False  # whether the caller of `missions` stopped iterating before the last mission
 
     def missions(self) -> Iterator[Mission]:
         """Yield the missions that ended since the last call.

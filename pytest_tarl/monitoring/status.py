@@ -15,7 +15,7 @@ from pytest_tarl.sensors import Cell
 
 # indices of bets on low and on high ranks; the other bets of conformal.factors are on both extremes
 LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)
-FEWEST_NEW = 2  # minimum number of missions that visited a new cell, to name it in the status
+FEWEST_NEW = 2  # a new cell is named in the status if at least this number of missions visited it
 
 
 @dataclass(frozen=True)

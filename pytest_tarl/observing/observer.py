@@ -184,7 +184,7 @@ class Observer:
 
     def _flush(self) -> None:
         cut = self.stream.cut(self._outlet.full)
-        steps = len(cut.rewards)  # steps between missions are dropped
+        steps = len(cut.rewards)  # number of steps in the cut; outside of a mission, the steps are dropped
         values = steps * len(self.sensors)
         readings, self._readings = self._readings[:values], self._readings[values:]
         times, self._times = self._times[:steps], self._times[steps:]
@@ -212,5 +212,5 @@ def _plain(value: Any) -> Any:
         return int(value) if isinstance(value, int) else float(value)
     except (TypeError, ValueError, OverflowError):
         return (
-            None  # `told` reports a sensor value that is not a number; here it only leaves the cell unknown
+            None  # the value is not a number: `told` reports this error, and here only the cell stays unknown
         )

@@ -103,7 +103,8 @@ class Outlet:
             sleep(_PAUSE)
             self.pump()
         if self._process.stdin is not None:
-            self._process.stdin.close()  # the writer ends even if it cannot read the end mark
+            # closing the pipe ends the writer even if it cannot read the end mark
+            self._process.stdin.close()
             self._process.stdin = None
         last = self._said()
         self._process.communicate()

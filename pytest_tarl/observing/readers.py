@@ -30,7 +30,7 @@ def reader(field: str | Read | None) -> Read:
     path = field or ""
     parts = path.split(".")
     if not all(part.isidentifier() and not hasattr(dict, part) for part in parts):
-        # the path has an index, or a name that mappings also have
+        # `attrgetter` does not suffice: the path has an index, or a name that is also an attribute of mappings
         return lambda message: field_value(message, path)
     fast = attrgetter(path)
     known: set[type] = set()  # message classes for which the fast path is known to work

@@ -61,7 +61,7 @@ class Cut(NamedTuple):
 class Stream(Recorder):
     """An endless recorder; `cut` returns and removes the events recorded so far."""
 
-    _packing = False  # any thread may close a step, so closing one must not pack a buffer
+    _packing = False  # `reward` must not pack a buffer here, because any thread may call it
 
     def __init__(self) -> None:
         super().__init__(threads=True)
@@ -129,7 +129,7 @@ def merged(cuts: Sequence[Cut]) -> Cut:
     cells, latched, rewards, totals = list[Cell](), list[int](), list[int](), list[float]()
     threads: list[tuple[list[Any], list[int]]] = []
     for cut in cuts:
-        carried = 1 if latched else 0  # a cut begins with the last cell of the previous one
+        carried = 1 if latched else 0  # a later cut repeats the last cell of the cut before it
         rewards += [mark + len(latched) - carried for mark in cut.rewards]
         threads += [([], [0] * len(latched)) for _ in cut.threads[len(threads) :]]
         for (entries, lengths), (new, marks) in zip(threads, cut.threads, strict=True):
@@ -152,7 +152,7 @@ def _cut(entries: list[Any]) -> list[Any]:
     """Remove complete events from the front; each operation is atomic, since the owning thread may append meanwhile."""
     count = len(entries)
     if count and type(entries[count - 1]) is int:
-        count -= 1  # keep a site whose value has not been appended yet
+        count -= 1  # the last entry is a site without its value, which the other thread has not appended yet
     taken = entries[:count]
     del entries[:count]
     return taken

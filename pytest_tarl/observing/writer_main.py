@@ -23,7 +23,7 @@ from pytest_tarl.observing.frames import LogFile
 from pytest_tarl.observing.ring import Ring
 from pytest_tarl.observing.writer import Rotation, Writer
 
-PERIOD = 0.25  # time between two syncs (s), which is about the most that a power cut loses
+PERIOD = 0.25  # time between two syncs (s); a power cut loses about the records of this time
 LENGTH = struct.Struct("<I")  # length of a message (bytes); 0 marks the end
 READY = "ready"
 NICER = 5  # nice value that gives the node's threads priority
@@ -33,9 +33,10 @@ _POLL = 0.02  # time between two checks of the shared memory (s)
 def main() -> int:
     """Run the writer; print that it is ready, or why it cannot write."""
     for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(one, signal.SIG_IGN)  # the node's process decides when to end
+        # signals are left to the node's process, which decides when the writer ends
+        signal.signal(one, signal.SIG_IGN)
     with contextlib.suppress(OSError, AttributeError):
-        # do not inherit the node's real-time scheduler
+        # use the normal scheduler even if the node has a real-time scheduler
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
     with contextlib.suppress(OSError):
         os.nice(NICER)
@@ -67,7 +68,8 @@ def main() -> int:
 def _serve(writer: Writer, ring: Ring) -> None:
     waiting, due, over = bytearray(), monotonic() + PERIOD, False
     while not over:
-        over = bool(select.select([sys.stdin.fileno()], [], [], _POLL)[0])  # before `read`, to miss nothing
+        # check the end before reading, so that the last read misses nothing
+        over = bool(select.select([sys.stdin.fileno()], [], [], _POLL)[0])
         while (piece := ring.read()) is not None:
             waiting += piece
             over = _take(writer, waiting) or over

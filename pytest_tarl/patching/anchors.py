@@ -67,7 +67,7 @@ def anchors(analysis: Analysis, site: SiteId, path: str) -> Iterator[Anchor]:
     for each in sorted(sources, key=lambda each: (each not in own, each.span.path != path)):
         yield from _registered(analysis, each)
     for name in sorted(analysis.sources, key=lambda name: (name != path, name)):
-        with suppress(RepairError):  # a file that cannot be parsed does not start a node
+        with suppress(RepairError):  # skip a file that cannot be parsed, since it cannot start a node
             yield from _started(document(name, analysis.sources[name]))
 
 

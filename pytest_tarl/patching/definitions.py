@@ -19,13 +19,14 @@ if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
 PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached_param")
-SEVERAL = "declare_parameters"  # takes a namespace and a list of names with defaults
+# name of the method of rclpy that declares several parameters: its arguments are a namespace and (name, default) pairs
+SEVERAL = "declare_parameters"
 _FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
 _MOST_FILES = 400  # maximum number of configuration files to read per package
 ENVIRONMENT = ("os.environ.get", "environ.get", "os.getenv", "getenv")
 _NUMERAL = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBER = r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|true|false|True|False)"
-_ARGUMENT = r"\$\((?:arg|var) ([\w-]+)\)"  # the value is that of a launch argument
+_ARGUMENT = r"\$\((?:arg|var) ([\w-]+)\)"  # matches a value that is taken from a launch argument
 _PLAIN = re.compile(r"[-+]?\d+")
 
 
@@ -58,7 +59,7 @@ def defined(analysis: Analysis, operand: Operand) -> Place | None:
     name = parameter(analysis, operand) or _name(source, node) or operand.code
     start, end = source.start(node), source.end(node)
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
-        start = source.text.find(node.value, start, end)  # the number inside the quotes, without escapes
+        start = source.text.find(node.value, start, end)  # offset of the number inside the quotes
         end = start + len(node.value)
     return Place(span.path, start, end, node.lineno, name, value) if start >= 0 else None
 
@@ -126,7 +127,7 @@ def _launched(path: str, key: str, text: str) -> Iterator[Place]:
     for one in numerals(key, source.tree):
         start, end = source.start(one.node), source.end(one.node)
         if isinstance(one.node, ast.Constant) and isinstance(one.node.value, str):
-            start = text.find(one.node.value.strip(), start, end)  # within the quotes
+            start = text.find(one.node.value.strip(), start, end)  # offset of the number inside the quotes
             end = start + len(one.node.value.strip())
         yield Place(path, start, end, one.node.lineno, _target(source, one.node) or key, one.value, one.share)
 

@@ -86,7 +86,8 @@ def _satisfied(conjunct: Conjunct, value: Constant) -> bool:
     if value is None:
         return False
     number = float(value)
-    if conjunct.low > conjunct.high:  # an angle whose interval crosses the end of the range
+    # the interval of an angle crosses the end of the range, as from 3.0 to -3.0
+    if conjunct.low > conjunct.high:
         return number >= conjunct.low or number <= conjunct.high
     return conjunct.low <= number <= conjunct.high
 

@@ -155,7 +155,8 @@ def _value(
     if isinstance(node, ast.BinOp):
         left, right = (_value(one, names, given, found, depth) for one in (node.left, node.right))
         return _operated(node.op, left, right)
-    if isinstance(node, ast.List) and len(node.elts) == 1:  # substitutions that are joined
+    # launch joins a list of substitutions to one text, here of a single element
+    if isinstance(node, ast.List) and len(node.elts) == 1:
         return _value(node.elts[0], names, given, found, depth)
     if isinstance(node, ast.Call) and _function(node) == "LaunchConfiguration":
         name = _argument(node, 0, "variable_name")

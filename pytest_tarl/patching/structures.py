@@ -67,7 +67,7 @@ def form_edits(
     found = _written(_Place(source, statement, node, form, condition), fill)
     if (
         keeper is not None
-    ):  # these edits come first, because `global` has to precede the lines that use the state
+    ):  # first the edits that declare the state, because `global` has to precede the lines that use it
         found = _state_edits(keeper, [(states[name], initial) for name, initial in made.state]) + found
     return found
 

@@ -30,9 +30,10 @@ SCALES = (  # units of a parameter's default
     "usual",  # the sensor's usual size in the drifted world
     "designed",  # the sensor's usual size in the designed world, for sensors that are never negative
 )
-FIXED = "designed"  # parameters with this scale stay fixed in the search
+FIXED = "designed"  # the search does not change parameters with this scale
 STRONGER = ("larger", "smaller")
-# constants that an expression must not have at its top level, since they can be changed instead
+# values of `without`: the kind of constant that the expression must not have at its top level, because the search can
+# change that constant instead
 WITHOUT = ("", "factor", "term")
 # placeholders of comparisons: the operator, its form with or without equality, its reverse
 OPERATORS = ("op", "closed", "back")

@@ -38,7 +38,8 @@ def nothing_lost(path: str, original: str, patched: str, changed: Collection[int
     ]
     kept = (text for _, text in _pieces(after, after))
     for piece in wanted:
-        if piece not in kept:  # `in` consumes the iterator, so pieces must occur in order
+        # `in` advances the iterator up to the piece, so the pieces must occur in the same order
+        if piece not in kept:
             raise RepairError(f"The repair of {path} would lose `{piece}`, so no patch is written.")
 
 

@@ -81,7 +81,7 @@ class WireScheduler(Scheduler):
     def __init__(self) -> None:
         super().__init__()
         self.collect: Callable[[], bool] = (
-            bool  # receives a message in transit; returns False if there was none
+            bool  # called to receive a message in transit; returns whether there was one
         )
         self.enter: Callable[[Process], None] | None = None  # called before a task of a process is resumed
 

@@ -41,11 +41,12 @@ class RclpyNetwork:
         self.nodes: list[tuple[Process, Any]] = []
         self.clocks: list[Any] = []
         self.contexts: list[Any] = []
-        self.expected: Counter[Any] = Counter()  # messages in transit, by subscription of a node
-        self.kept: Counter[Any] = Counter()  # messages stored by publishers for late subscribers
+        # subscription of a node → number of messages in transit to it
+        self.expected: Counter[Any] = Counter()
+        self.kept: Counter[Any] = Counter()  # number of messages that publishers keep for late subscribers
         self.for_world: deque[Any] = (
             deque()
-        )  # one entry per message in transit to the world: the world's subscription
+        )  # for each message in transit to the world, the world's subscription
         self.node_publishes: Callable[[str, Any, Any], None] | None = None
         self.node_subscribes: Callable[[str], None] | None = None
         self._state: dict[Process, dict[str, Any]] = {}

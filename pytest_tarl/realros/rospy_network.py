@@ -79,7 +79,7 @@ class RospyNetwork:
             return
         key, number = process.argv, 0
         while (copy := self._kept.get((*key, str(number)))) is not None and copy.process is not None:
-            number += 1  # another process of the same program in this episode
+            number += 1  # this copy belongs to another process of the same program in this episode
         if copy is None:
             copy = self._kept[(*key, str(number))] = self._made(key)
         copy.begin(process)

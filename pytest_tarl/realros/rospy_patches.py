@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from pytest_tarl.realros.rospy_copy import RospyCopy
     from pytest_tarl.realros.rospy_network import RospyNetwork
 
-REAL_TIME = SimpleNamespace(  # the real functions, saved before nodes see the virtual clock under these names
+# the real functions, saved here because nodes get the virtual clock under these names
+REAL_TIME = SimpleNamespace(
     time=time.time, sleep=time.sleep, monotonic=time.monotonic, perf_counter=time.perf_counter,
     strftime=time.strftime, localtime=time.localtime, gmtime=time.gmtime)  # fmt: skip
 _ON_REAL_TIME = ("core", "topics", "impl.init", "impl.registration", "impl.tcpros_base", "impl.tcpros_pubsub")
@@ -30,7 +31,8 @@ def patch(copy: RospyCopy, network: RospyNetwork) -> None:
     """Patch a copy of rospy to run in lock-step."""
     for part in _ON_REAL_TIME:
         copy.modules[f"rospy.{part}"].__dict__["time"] = REAL_TIME
-    copy.core.__dict__["configure_logging"] = lambda *_, **__: None  # keeps pytest's logging handlers
+    # rospy's logging configuration would remove pytest's handlers
+    copy.core.__dict__["configure_logging"] = lambda *_, **__: None
     _patch_clock(copy)
     _patch_waits(copy, network)
     _patch_timers(copy)
@@ -177,7 +179,7 @@ def _patch_sending(copy: RospyCopy, network: RospyNetwork) -> None:
 
     def publish(self: Any, message: Any, connection_override: Any = None) -> Any:
         if connection_override is not None and message is self.latch:
-            return None  # `latched` delivers latched messages, also on new connections
+            return None  # rospy resends the latched message to a new subscriber, which `latched` already does
         connections = self.connections if connection_override is None else [connection_override]
         ways = [Way(self.resolved_name, copy.name, connection.endpoint_id) for connection in connections]
         for way in ways:

@@ -52,9 +52,8 @@ class Examiner:
         self.placing = Placing(mutants)
         self.ranged: dict[Candidate, Ranged] = {}  # for drifts with a range
         self.ledger = Ledger()
-        self.waiting: list[
-            Candidate
-        ] = []  # these pass on known seeds, but `SHARE` candidates of the same operands were already tested
+        # candidates that pass on known seeds; they wait because `SHARE` others of the same operands have been tested
+        self.waiting: list[Candidate] = []
         self._missed = Missed()
         self.others = Others(mutants, self.ledger, self._missed)
         self.tested = 0
@@ -105,10 +104,11 @@ class Examiner:
             if operands(examined.candidate) == operands(candidate):
                 candidate = replace(
                     candidate, mutations=examined.candidate.changes
-                )  # so that the candidate is not centred again
+                )  # keep the centred values, so that they are not centred again
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
-                break  # this guard is as wide as the guard of the search, so narrower guards cannot gain more
+                # narrower guards cannot gain more than this one, which is as wide as that of the search
+                break
         for others in (
             *(self.others.inward(edge, trials) for edge in edges),
             *(self.others.beyond(edge) for edge in edges),
@@ -192,7 +192,7 @@ class Examiner:
         if same is not None:
             return self.ledger.enter(Tried(candidate, same.reason, ()))
         better = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
-        # if centring leads to a value that was examined before, examine the original value
+        # examine the original value if centring leads to a value that was examined before
         return candidate if self.ledger.alike(better) else better
 
     def _known(self, candidate: Candidate) -> Tried | None:

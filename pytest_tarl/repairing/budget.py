@@ -22,7 +22,7 @@ class Purse:
     seconds: float | None = None
     spent: int = 0
     late: bool = False
-    begun: float = field(default_factory=lambda: monotonic())  # lambda: tests replace `monotonic`
+    begun: float = field(default_factory=lambda: monotonic())  # a lambda, because tests replace `monotonic`
 
     def phase(self, mutants: Mutants, method: str, watch: Watch, share: float = 1.0) -> Trials:
         """Return the trials of a phase.

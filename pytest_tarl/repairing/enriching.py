@@ -24,9 +24,9 @@ from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Goal, 
 
 ENOUGH = 1 + CONFIRMATIONS  # number of seeds with a loss that a search needs
 LOOKED_AT = 12  # maximum number of recorded missions that are run under the drift to find such seeds
-SELECTED = 0.5  # from this share of failing episodes on, the failing episodes represent all episodes
+SELECTED = 0.5  # if at least this share of the episodes fails, the failing episodes represent all episodes
 SHARE = 0.6  # share of the margin that the selected missions may use up
-HALF = 0.5  # maximum share of its loss that a mission may keep after a repair
+HALF = 0.5  # a repaired mission may still have at most this share of its loss
 CONTROLS = 2  # number of drifted episodes without loss, in which a candidate must not lose reward
 
 

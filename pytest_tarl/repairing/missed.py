@@ -9,7 +9,7 @@ from pytest_tarl.searching.accept import Acceptance, Reference
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 LATEST = 3
-FEW = 0.25  # the value of a candidate that loses reward in at most this share of its missions is nearly right
+FEW = 0.25  # a candidate's value counts as nearly right if at most this share of its missions loses reward
 SPREAD = 5  # number of missions that represent a test
 
 

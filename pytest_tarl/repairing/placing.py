@@ -75,7 +75,7 @@ class Placing:
         pairs = self.order.goal.pairs[:LOOKED_AT]
         first = pairs[0].seed
         if trials(moved, first) == trials(candidate, first):
-            return moved  # equal rewards at definition and use: nothing else in this test depends on the definition
+            return moved  # the rewards are equal, so nothing else in this test depends on the definition
         if all(self.order.goal.reached(trials(moved, pair.seed), pair.seed) for pair in pairs):
             return moved
         for mutation in mutations:

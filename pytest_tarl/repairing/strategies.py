@@ -82,7 +82,8 @@ def operands(order: Order) -> tuple[Operand, ...]:
         given = analysis.operands(site)
         best = min(ranks.get(user, len(rank)) for user in users)
         own = [o for o in given if o.definition is not None and o.definition.line == o.span.line]
-        if any((o.span.path, o.span.line) in defined for o in own):  # they are found where they are read
+        # operands of this statement were already found at the statements that read them
+        if any((o.span.path, o.span.line) in defined for o in own):
             given = tuple(o for o in given if o not in own)
         found |= dict.fromkeys(given, best)
     found |= _given_to_several(analysis, found, ranks)

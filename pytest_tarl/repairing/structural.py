@@ -33,7 +33,7 @@ MOST = {
     "sent": 3,
     "sensor": 3,
     "sent by sensor": 2,
-}  # maximum number of expressions at which to try a template, by the template's kind
+}  # kind of template → maximum number of expressions at which to try one
 COMMANDED = ("stored", "sent")  # kinds of expressions that go into a published message
 NUMBERS = ("value", "input", "stored", "sent")  # kinds of expressions that templates for any number fit
 RESPONDS = 0.2  # minimum gain of a constant whose statement responds, as a share of the wanted gain
@@ -144,7 +144,7 @@ class Structures:
             return None  # factor 1 is the same change for all parameters, so only the first one proposes it
         mine = next((one for one in form.template.parameters if one.name == form.parameter), None)
         grid = mine.grid if mine is not None else 0.0
-        if grid:  # only a first parameter has a grid, so factor 1 was proposed before
+        if grid:  # only the first parameter of a template has a grid
             start = dict(form.defaults)[form.parameter]
             factor = round(start * factor / grid) * grid / start
             if not factor:

@@ -33,7 +33,7 @@ class KeptRollout:
         self._scope = scope
         self._shown = shown
         self._begun: Counter[bytes] = Counter()
-        self._checked = checked  # whether an episode was repeated and the result was the same as the kept one
+        self._checked = checked  # whether a kept episode has been run again, with the same result
 
     @property
     def workers(self) -> int:
@@ -67,7 +67,7 @@ class KeptRollout:
 
     def _check(self, key: bytes, kept: EpisodeRun) -> None:
         """Run the first kept episode again, and keep the new run. Raise RecordingError if the result differs."""
-        if self._checked or kept.simulator:  # a simulator may give another result each time
+        if self._checked or kept.simulator:  # an external simulator may give another result in each run
             return
         self._checked = True
         again = self._rollout(kept.plan)

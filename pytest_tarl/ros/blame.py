@@ -39,7 +39,7 @@ def of_function(function: Any) -> Place | None:
     while isinstance(function, partial):
         function = function.func
     if not hasattr(function, "__code__") and not hasattr(function, "__func__"):
-        function = type(function).__call__  # an object that is called
+        function = type(function).__call__  # the callable is an object with a `__call__` method
     code = getattr(inspect.unwrap(function), "__code__", None)
     return (code.co_filename, code.co_firstlineno, code.co_name) if isinstance(code, CodeType) else None
 

@@ -18,7 +18,7 @@ from pytest_tarl.ros.services import Reply, ServiceDirectory
 Listener = Callable[[Any], None]
 Channel = Callable[
     [Any, float], Iterable[tuple[float, Any]]
-]  # (message, time (s)) → pairs of a delay (s) and a message
+]  # (message, time (s)) → (delay (s), message) for each message that arrives
 
 
 class Subscription(Protocol):
@@ -99,7 +99,7 @@ class Bus:
             return
         if latch:
             place.kept[None] = snapshot(message)
-        if running_task() is not None:  # a node is publishing: let it continue first
+        if running_task() is not None:  # a node is publishing: deliver the message after this task has paused
             self._scheduler.later(lambda: self._deliver(place, message, spare=True))
             return
         self._run(self._deliver, place, message, True)
@@ -213,7 +213,8 @@ class Bus:
     def _tell(self, listener: Listener, message: Any) -> None:
         try:
             listener(message)
-        except BaseException as error:  # an error of the world is raised in the test, not in the node
+        except BaseException as error:
+            # an error of the world must be raised in the test, not in the node that publishes
             self._scheduler.failure = self._scheduler.failure or error
 
     def advertise(self, publication: Publication, place: Topic) -> None:

@@ -26,7 +26,7 @@ _CLOCKS: tuple[tuple[Any, str], ...] = (
     (time, "perf_counter_ns"),
     (time, "sleep"),
     (select, "select"),
-    (threading, "_time"),  # both modules have their own names for time.monotonic
+    (threading, "_time"),  # threading and queue refer to time.monotonic by these names
     (queue, "time"),
 )
 

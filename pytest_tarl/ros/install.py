@@ -53,7 +53,8 @@ class StandinFinder:
         """Find a stand-in; return None to leave the name to other finders."""
         root = name.partition(".")[0]
         if root == "genpy" and _has_genpy():
-            return None  # installed message classes need the installed package
+            # with an installed genpy, message classes may be installed, too, and these need the real package
+            return None
         if name in STANDINS and root not in STANDALONE:
             return self._spec(name)
         if root in TALKING or root in MISSING:
@@ -91,7 +92,7 @@ class StandinFinder:
             inner = {key for key, value in contents.items() if isinstance(value, ModuleType)}
             hidden = {
                 key for key in inner if f"{name}.{key}" in STANDINS
-            }  # modules of the package that have the name of a stand-in's submodule
+            }  # names of submodules that have a stand-in of their own
             module.__dict__.update((key, value) for key, value in contents.items() if key not in hidden)
             module.__dict__["__getattr__"] = partial(_attribute, name, module.__dict__.get("__getattr__"))
         elif is_generated(name):
@@ -238,7 +239,7 @@ def standins_installed(
         for name in holders(gone, sorted(sys.modules.keys() - finder.before - set(finder.loaded))):
             del sys.modules[
                 name
-            ]  # refers to a stand-in of this episode, so that the next episode must import it again
+            ]  # this module refers to a stand-in of this episode, so the next episode must import it again
         for name in finder.loaded:
             sys.modules.pop(name, None)
         sys.modules.update(finder.hidden)

@@ -65,7 +65,7 @@ def _starts(workspace: Workspace, script: Path) -> list[tuple[Launch, LaunchedNo
     ]
     direct = [
         one for one in direct if one[0].file.suffix != TEST
-    ] or direct  # launch files of tests come last
+    ] or direct  # launch files of tests count only if there are no others
     found = []
     for one, node in direct:
         files = () if _source(workspace, one, node).complete else _launches(workspace, [one.file.name])

@@ -56,7 +56,7 @@ class Windows:
         trackbarName: str,  # noqa: N803 (the library's names)
         windowName: str,  # noqa: N803
         value: int,
-        count: int,  # noqa: ARG002 (the end of the range; nobody drags the bar beyond it)
+        count: int,  # noqa: ARG002 (the end of the range; only code sets positions, so it needs no check)
         onChange: Callable[[int], object] = lambda _: None,  # noqa: N803
     ) -> None:
         """Add a trackbar at the position `value`."""
@@ -141,7 +141,8 @@ class _Finder:
         self, name: str, _path: Sequence[str] | None = None, _target: object = None
     ) -> ModuleSpec | None:
         """Find OpenCV itself, with a loader that replaces the functions."""
-        if name != _LIBRARY or self._importing:  # OpenCV imports its binary module by the same name
+        # during the import, OpenCV imports its binary module under the same name
+        if name != _LIBRARY or self._importing:
             return None
         self._importing = True
         try:

@@ -122,7 +122,7 @@ class Process:
             elif whole and task is not self.main and not self._closing:
                 self.scheduler.later(self.end)
         elif isinstance(error, TarlError | KeyboardInterrupt) or _of_pytest(error):
-            self._fail(error)  # the user's interrupt, or an error outside of the node
+            self._fail(error)  # Ctrl-C by the user, or an error that the node did not cause
         else:
             self._fail(self._ended_in(error))
 

@@ -13,7 +13,7 @@ from functools import partial
 from heapq import heappop, heappush
 from typing import Any, Protocol
 
-try:  # the C part of asyncio, which costs no time to import
+try:  # the C part of asyncio, which is faster to import than all of asyncio
     from _asyncio import _get_running_loop, _set_running_loop
 except ImportError:
     from asyncio import _get_running_loop, _set_running_loop
@@ -198,7 +198,7 @@ class Scheduler:
         while self._alarms and self._alarms[0][0] <= until and self.failure is None:
             instant, _, job = self._alarms[0]
             self._advance(instant - 1)
-            if self._alarms[0][2] is job:  # no earlier alarm was set in the meantime
+            if self._alarms[0][2] is job:  # tasks that ran may have set an earlier alarm
                 heappop(self._alarms)
                 self.time = max(self.time, instant)
                 job()

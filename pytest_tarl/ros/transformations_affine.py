@@ -172,7 +172,7 @@ def decompose_matrix(matrix: Any) -> tuple[Any, list[float], tuple[float, float,
     scale, shear = (
         np.zeros(3),
         [0.0, 0.0, 0.0],
-    )  # Gram-Schmidt: projections between rows are shear, remaining lengths are scale
+    )  # Gram-Schmidt: the shear is the projection of a row on the others, the scale is the remaining length
     scale[0] = np.linalg.norm(rows[0])
     rows[0] /= scale[0]
     shear[0] = float(np.dot(rows[0], rows[1]))

@@ -35,7 +35,7 @@ class Watchdog:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._armed = False
-        self._moves = 0  # counts progress; if two checks find the same count, there was none
+        self._moves = 0  # counter of progress; if two checks find the same count, there was no progress
         self._limit = DEFAULT_LIMIT
         self._target = 0
         self._clock = -1
@@ -89,7 +89,7 @@ class Watchdog:
             idle = 0 if self._armed else idle + 1
             if idle > _IDLE_EXIT:
                 self._watching = False
-                if not self._armed:  # nothing has armed it since the last check, so this thread may end
+                if not self._armed:  # still not armed after the flag was cleared, so this thread may end
                     return
                 self._watching = True
             self._allow(self._limit * _HOLD if self._armed else 0.0)
@@ -101,14 +101,14 @@ class Watchdog:
             worked = self._computed() - computed >= self._limit
             if worked or (looks * _INTERVAL >= self._limit * _PATIENCE and not _debugged(self._target)):
                 self._fire(moves, hung=not worked)
-                seen = -1  # raise again later if a bare `except:` swallows it
+                seen = -1  # fire again later, because a bare `except:` of the node may catch the exception
 
     def _allow(self, seconds: float) -> None:
         """Set or clear the kernel's CPU timer, which ends a process whose interpreter lock is held."""
         if seconds or self._allowed:
             self._allowed = bool(seconds)
             allow(seconds)
-        if seconds and not self._armed:  # disarmed meanwhile
+        if seconds and not self._armed:  # another thread has disarmed the watchdog in the meantime
             self._allow(0.0)
 
     def _computed(self) -> float:

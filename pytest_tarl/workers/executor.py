@@ -148,7 +148,8 @@ def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Se
     plugins = [*config.option.plugins, "no:terminal"]
     folder = str(config.invocation_params.dir)
     start = {
-        "path": [str(Path(folder, entry)) for entry in sys.path],  # relative entries become absolute
+        # relative entries become absolute, because the worker may have another working directory
+        "path": [str(Path(folder, entry)) for entry in sys.path],
         "options": plain | dict(OFF) | rooted | {"plugins": plugins, "basetemp": None},
         "target": f"{item.path}::{item.nodeid.partition('::')[2]}",
     }

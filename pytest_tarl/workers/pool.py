@@ -136,7 +136,7 @@ class Worker:
         self._process.kill()
         self._process.wait()
         for pipe in (*self._pipes(), self._log):
-            with suppress(OSError, ValueError):  # ValueError: another thread has just closed it
+            with suppress(OSError, ValueError):  # ValueError: another thread has just closed the pipe
                 pipe.close()
 
     def _pipes(self) -> tuple[BinaryIO, BinaryIO]:

@@ -10,7 +10,8 @@ import sys
 
 def main() -> None:
     """Move the pipes away before a conftest can write to them, configure pytest, then serve requests."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the run, which ends its workers
+    # Ctrl-C is handled by the parent run, which ends its workers
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     pipes = _pipes()
     start = json.loads(sys.argv[1])
     sys.path[:] = start["path"]
@@ -19,7 +20,8 @@ def main() -> None:
     problem = ""
     config = None
     try:
-        if "arguments" in start:  # command line arguments, which pytest has not parsed yet
+        # the worker gets the arguments of the command line, which pytest parses here
+        if "arguments" in start:
             config = _prepareconfig(start["arguments"])
             vars(config.option).update(start["options"])
         else:  # pytest reads `-p no:` from these options only after it has imported the plugins

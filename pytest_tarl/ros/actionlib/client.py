@@ -140,7 +140,8 @@ class SimpleActionClient:
         for status in message.status_list:
             if self._mine(status) and self._state not in TERMINAL:
                 began = self._state == protocol.PENDING and status.status == protocol.ACTIVE
-                if status.status not in TERMINAL:  # terminal states arrive with the result
+                # a terminal state counts only when it arrives with the result
+                if status.status not in TERMINAL:
                     self._state = status.status
                 if began and self._active_cb is not None:
                     self._active_cb()

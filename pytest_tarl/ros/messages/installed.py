@@ -10,7 +10,7 @@ from typing import Any
 
 from pytest_tarl.ros.messages.definitions import Kind
 
-_asked: list[Kind] = []  # generations of the classes that are being looked up, innermost last
+_asked: list[Kind] = []  # ROS generations of the look-ups in progress, the innermost look-up last
 
 
 @cache

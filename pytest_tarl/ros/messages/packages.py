@@ -97,7 +97,7 @@ def package_module(kind: Kind, name: str) -> ModuleType | None:
     for known in PARTS:
         if part == known:
             return PackagePart(kind, package, known)
-        if part.startswith(f"{known}._"):  # `from std_msgs.msg._String import String`
+        if part.startswith(f"{known}._"):  # as in `from std_msgs.msg._String import String`
             return PackagePart(kind, package, known)
     if part:
         return None

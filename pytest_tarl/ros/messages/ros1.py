@@ -301,7 +301,7 @@ def _same_doubles(size: int, convert: Callable[[Any, str], Any]) -> Callable[[An
         try:
             content = pack(*value)
         except StructError:
-            return convert(value, name)  # raises with the reason
+            return convert(value, name)  # this call raises an error that states the reason
         if content != last[0]:
             last = (content, convert(value, name))
         return last[1]

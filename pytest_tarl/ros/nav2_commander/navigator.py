@@ -109,7 +109,7 @@ class BasicNavigator(PathRequests, MapRequests):
     def isTaskComplete(self) -> bool:
         """Return whether the task has ended; wait for at most 0.1 s."""
         if self.result_future is None:
-            return True  # the task was cancelled or completed before
+            return True  # there is no task, or an earlier call has already got its result
         self._wait_for(self.result_future, 0.1)
         if self.result_future.result() is None:
             return False  # the wait timed out

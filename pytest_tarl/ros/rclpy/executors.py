@@ -159,7 +159,8 @@ class Executor:
                 raise ExternalShutdownException
             if not self.context.initialised or self._is_shutdown or (future is not None and future.done()):
                 return None
-            looked = False  # an entity that its group refuses waits for the next round
+            # look for ready entities only once per round: an entity that its group refuses waits for the next round
+            looked = False
             while self._active < self._limit:
                 if not batch:
                     if looked or not self._look():
@@ -176,13 +177,12 @@ class Executor:
         """Return whether the entity's group lets its callback start now."""
         group = entity.callback_group
         if type(group) is MutuallyExclusiveCallbackGroup and group.active is None:
-            group.active = (
-                entity  # shortcut for the default kind of group; the two calls below have the same result
-            )
+            group.active = entity  # a fast path with the same result as the two calls below
             return True
         if group is None or (group.can_execute(entity) and group.beginning_execution(entity)):
             return True
-        self._stirred = True  # a custom group may decide differently each time
+        # look again in the next round, because a custom group may then decide differently
+        self._stirred = True
         return False
 
     def _look(self) -> bool:
@@ -234,7 +234,7 @@ class Executor:
         if outcome is not None:
             self._go_on(outcome, work)
         if work.is_ready():
-            self._stirred = True  # the coroutine has more to do
+            self._stirred = True  # look again in the next round, because the coroutine has not ended
 
     def _go_on(self, outcome: Any, work: Entity) -> None:
         """Continue the coroutine of a callback; its group stays occupied until it returns."""

@@ -126,7 +126,8 @@ class Parameter:
     def __init__(self, name: str, type_: ParameterType | None = None, value: Any = None) -> None:
         found = type_of(value)
         if type_ is not None and value is not None and type_ != found:
-            if not (found == ParameterType.BYTE_ARRAY and not value):  # an empty list fits every array type
+            # type_of gives an empty list the type BYTE_ARRAY, but it fits every array type
+            if not (found == ParameterType.BYTE_ARRAY and not value):
                 raise ValueError(f"Type '{type_}' and value '{value}' do not agree")
             found = type_
         self.name = name

@@ -136,7 +136,7 @@ class ServiceProxy:
 
     def _response(self, answered: Any) -> Any:
         if isinstance(answered, Refusal):
-            said = answered.reason.encode()  # rospy shows the received bytes
+            said = answered.reason.encode()  # as in rospy, the message shows the reason as bytes
             raise ServiceException(f"service [{self.resolved_name}] responded with an error: {said!r}")
         return adapted(answered, self.response_class)
 

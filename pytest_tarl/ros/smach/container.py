@@ -48,7 +48,7 @@ class Container(State):
         if error is None:
             try:
                 self.check_consistency()
-            except SmachError as incomplete:  # execute raises it
+            except SmachError as incomplete:  # only logged here, because execute() raises the error again
                 logerr(f"Container consistency check failed: {incomplete}")
 
     @classmethod

@@ -45,7 +45,7 @@ class SimpleActionState(State):
         super().__init__(["succeeded", "aborted", "preempted", *outcomes], input_keys, output_keys)
         self._name, self._client = action_name, SimpleActionClient(action_name, action_spec)
         empty = action_spec().action_goal.goal
-        if callable(goal) and goal_cb is None:  # an older form
+        if callable(goal) and goal_cb is None:  # an older form of the call: the callback is passed as `goal`
             goal, goal_cb = None, goal
         self._goal = empty if goal is None else goal
         self._goal_key, self._goal_slots = goal_key, list(goal_slots)
