@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from pytest_tarl import seeds
-from pytest_tarl.errors import RecordingError, SettingsError, TarlError
+from pytest_tarl.ended_episode import EndedEpisode
+from pytest_tarl.errors import SettingsError, TarlError
 from pytest_tarl.faults.installing import NO_FAULTS, Faults
 from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
 from pytest_tarl.formulas.episode import EpisodeFormulas
@@ -282,7 +283,6 @@ class Tarl:
 
         Named parts are summed, and the report also shows each part.
 
-
         Raise SettingsError for a value that is not a finite number.
         """
         if total is None and not parts:
@@ -326,83 +326,24 @@ class Tarl:
 
     def notes(self) -> tuple[str, ...]:
         """Return notes for the user on a usable episode; complete only after `close`."""
-        late = self._ros.shutdown_errors if self._ros is not None else ()
-        ended = [f"{error} The node was being shut down, so the episode still counts." for error in late]
-        missing = [
-            f"cannot record {path.name}:{', '.join(map(str, sorted({line for line, _ in positions})))}: "
-            "slices of these lines stay empty."
-            for path, positions in self._imports.unrecorded.items()
-        ]
-        started = self._ros.notes if self._ros is not None else ()
-        replayed = self._replay.notes if self._replay is not None else ()
-        return (*ended, *missing, *started, *replayed, *self._silence())
-
-    def _silence(self) -> tuple[str, ...]:
-        """Return a note if a drift of the world, not a declared fault, silenced the nodes."""
-        if not self._drifted or self._faults.active or not self._silent:
-            return ()
-        told = (
-            "The node published nothing in a whole episode of this drift. If the drift should not silence it, check "
-            f"that it receives the messages that it waits for (it subscribes to {self._heard})."
-        )
-        return (told,)
+        return self._ended().notes()
 
     def problem(self) -> TarlError | None:
         """Return why the episode is unusable (no reward, silent sensor, silent node), or None if it is usable."""
-        if self._replay is not None:
-            return self._unplayed(self._replay)
-        if not self._rewards and self._requirements.rewarding:
-            return RecordingError(
-                'The test never called tarl.step, so there is no step to reward: reward="robustness" rewards '
-                "steps of virtual time."
-            )
-        if not self._rewards:
-            return RecordingError(
-                "The test never called tarl.reward: call it once in each simulation step, for example "
-                "tarl.reward(world.monitor())."
-            )
-        if self._drifted:
-            return None  # not an error: a drift may cause that sensors and nodes are silent
-        problem = self._situation.problem() or self._unmet()
-        if problem is None and self._silent:
-            problem = RecordingError(
-                "The node published nothing in the whole episode, so nothing can be learned: check that it receives "
-                f"the messages that it waits for (it subscribes to {self._heard})."
-            )
-        return problem
+        return self._ended().problem()
 
-    @property
-    def _silent(self) -> bool:
-        """Return whether nodes ran and published nothing."""
-        return self.drives_ros and self._ros is not None and not self._ros.published
-
-    @property
-    def _heard(self) -> str:
-        """Return the topics to which nodes subscribe."""
-        return ", ".join(sorted(self.ros.subscribed)) or "no topic"
-
-    def _unmet(self) -> SettingsError | None:
-        """Return the error of a declared fault whose topic or node did not occur, or None if there is none."""
-        if self._ros is None:
-            return None
-        try:
-            self._faults.check(self._ros)
-        except SettingsError as problem:
-            return problem
-        return None
-
-    def _unplayed(self, replay: Replay) -> RecordingError | None:
-        name = replay.bag.path.name
-        if not replay.begun:
-            return RecordingError(
-                f"{name} was not replayed: the test ended before its first tarl.step, where the replay begins. Only "
-                "nodes that run through tarl.start and tarl.step receive the messages of a bag."
-            )
-        if not self._rewards:
-            return RecordingError(
-                f"Nothing was learned from {name}: no step ended with a value for every sensor."
-            )
-        return None
+    def _ended(self) -> EndedEpisode:
+        return EndedEpisode(
+            rewards=self._rewards,
+            requirements=self._requirements,
+            situation=self._situation,
+            faults=self._faults,
+            drifted=self._drifted,
+            ros=self._ros,
+            drives_ros=self.drives_ros,
+            replay=self._replay,
+            unrecorded=self._imports.unrecorded,
+        )
 
     @property
     def _now(self) -> int:
