@@ -27,12 +27,12 @@ def exists(name: str) -> bool:
     return (ROOT / name).exists() or any(path.endswith(f"/{name}") for path in FILES)
 
 
-def test_the_table_is_read() -> None:
+def test_the_reliability_table_has_more_than_thirty_rows() -> None:
     assert len(ROWS) > 30
 
 
 @pytest.mark.parametrize("row", ROWS, ids=[row[0].strip()[:50] for row in ROWS])
-def test_a_row_has_four_cells_and_names_what_exists(row: list[str]) -> None:
+def test_each_row_of_the_reliability_table_names_existing_files(row: list[str]) -> None:
     _, tested, _, result = row
     assert result.strip()
     named = [one for one in re.findall(r"`([^`]+)`", tested) if "/" in one or one.endswith(".py")]

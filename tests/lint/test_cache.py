@@ -74,14 +74,14 @@ def test_changed_settings_invalidate_the_cache(node, capsys, analysed, settings)
     assert analysed == ["node.py", "node.py"]
 
 
-def test_another_version_ignores_the_cache(node, capsys, analysed, monkeypatch):
+def test_the_cache_of_another_version_is_ignored(node, capsys, analysed, monkeypatch):
     lint(capsys)
     monkeypatch.setattr(cache, "__version__", "0.0.0")
     lint(capsys)
     assert analysed == ["node.py", "node.py"]
 
 
-def test_without_cache_nothing_is_read_or_written(node, capsys, analysed):
+def test_with_the_option_no_cache_no_cache_is_read_or_written(node, capsys, analysed):
     lint(capsys, "--no-cache")
     assert not Path(".tarl").exists()
     lint(capsys)
@@ -99,7 +99,7 @@ def test_without_cache_nothing_is_read_or_written(node, capsys, analysed):
         lambda data: data.partition(b"\n")[0] + b"\n[]",
     ],
 )
-def test_a_damaged_file_is_ignored(node, capsys, analysed, damage):
+def test_a_damaged_cache_file_is_ignored(node, capsys, analysed, damage):
     first = lint(capsys)
     (file,) = entries()
     file.write_bytes(damage(file.read_bytes()))
@@ -109,7 +109,7 @@ def test_a_damaged_file_is_ignored(node, capsys, analysed, damage):
     assert len(analysed) == 2
 
 
-def test_a_file_of_another_structure_is_ignored(node, capsys, analysed):
+def test_a_cache_file_of_another_structure_is_ignored(node, capsys, analysed):
     first = lint(capsys)
     (file,) = entries()
     for value in ([], {}, 3, [{}, []], [[], {}], None):

@@ -61,21 +61,21 @@ def ends(directory, name, before="pass"):
         ('sys.argv[1] if len(sys.argv) > 1 else "/scan"', "/scan"),
     ],
 )
-def test_the_default_names_the_topic(tmp_path, name, topic):
+def test_the_default_in_the_code_names_the_topic(tmp_path, name, topic):
     assert ends(tmp_path, name) == ((topic,), (topic,))
 
 
 @pytest.mark.parametrize(
     "name", ['os.environ["X"]', 'os.environ.get("X")', "sys.argv[1]", 'rospy.get_param("~t")']
 )
-def test_a_name_without_default_is_unknown(tmp_path, name):
+def test_a_topic_name_without_a_default_is_unknown(tmp_path, name):
     assert ends(tmp_path, name) == ((), ())
 
 
-def test_a_literal_is_no_default(tmp_path):
+def test_a_topic_name_that_is_a_literal_does_not_count_as_default(tmp_path):
     assert ends(tmp_path, '"cmd_vel"') == (("cmd_vel",), ())
 
 
-def test_a_default_decides_no_condition(tmp_path):
+def test_a_default_does_not_decide_a_condition(tmp_path):
     before = 'mode = os.environ.get("MODE", "a")\n        name = "x" if mode == "a" else "y"'
     assert ends(tmp_path, "name", before) == (("x", "y"), ())

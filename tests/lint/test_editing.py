@@ -305,6 +305,6 @@ def test_queries_about_the_text_of_a_module_are_recorded():
     assert moved_lines("def f():\n    return 1\n", "def f():\n    return 2\n", observed.reading()) is None
 
 
-def test_words_in_the_text_of_a_group_cause_its_run():
+def test_a_group_is_run_if_its_text_contains_certain_words():
     assert two_sided(["rospy.Subscriber(", "pub.publish(1)"], Config())
     assert not two_sided(["rospy.Subscriber(", "# pub.publish(1)"], Config())

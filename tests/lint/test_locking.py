@@ -81,7 +81,7 @@ RCLPY = """
         ("pass", 0),
     ],
 )
-def test_state_that_a_callback_and_a_timer_share_needs_its_lock(body, found):
+def test_access_without_the_lock_to_state_shared_by_a_callback_and_a_timer_is_reported(body, found):
     assert len(lines("TARL201", inside(ROSPY, body, 12))) == found
 
 
@@ -101,7 +101,7 @@ def test_rclpy_callbacks_overlap_only_with_a_suitable_executor_and_group(executo
     assert len(lines("TARL201", text)) == found
 
 
-def test_state_read_by_a_custom_thread_needs_the_lock_in_rclpy_too():
+def test_a_read_without_the_lock_in_a_custom_thread_is_reported_in_rclpy_too():
     text = RCLPY.format(executor="SingleThreadedExecutor", group="ReentrantCallbackGroup", given="self.group")
     text = text.replace(
         "self.create_timer(0.1, self.on_timer, callback_group=self.group)",
@@ -156,7 +156,7 @@ GLOBAL = """
         ("pub.publish(1.0)", 0),
     ],
 )
-def test_globals_need_their_lock_too(body, found):
+def test_access_to_a_global_variable_without_its_lock_is_reported(body, found):
     assert len(lines("TARL201", inside(GLOBAL, body, 8))) == found
 
 

@@ -66,7 +66,7 @@ def test_an_object_that_stands_for_many_is_never_updated_strongly(ctx):
     assert heap.read_field(ctx, obj, "x").deps == DATA | OTHER
 
 
-def test_a_store_to_an_unknown_element_may_hit_any_element(ctx):
+def test_a_store_to_an_unknown_element_may_change_any_element(ctx):
     obj = instance(ctx, "a")
     updates.write_item(ctx, pointer(obj), const(0), Value(DATA))
     updates.add_element(ctx, pointer(obj), Value(OTHER))

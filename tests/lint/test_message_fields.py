@@ -36,7 +36,7 @@ def test_the_types_of_fields_are_those_of_the_definitions() -> None:
     assert stated == {(name, field): expected[name][field] for name, field in stated}
 
 
-def test_fields_of_copies_are_in_every_release() -> None:
+def test_the_fields_of_types_whose_copies_are_tracked_are_the_same_in_every_release() -> None:
     for store in (Stores.ROS1_NOETIC, Stores.ROS2_JAZZY):
         expected = {
             name: set(fields) - {"seq"} for name, fields in defined([store]).items() if name in FIELDS

@@ -68,7 +68,7 @@ def rendered(tmp_path, name, source, sink):
 @pytest.mark.parametrize("name", sorted(FORMATS))
 @settings(max_examples=25)
 @given(source=TOPICS, sink=TOPICS)
-def test_no_report_is_broken_by_a_topic(tmp_path_factory, name, source, sink):
+def test_no_report_is_broken_by_special_characters_in_a_topic(tmp_path_factory, name, source, sink):
     directory = tmp_path_factory.mktemp("node")
     text = rendered(directory, name, source, sink)
     assert not STEERING.search(text)

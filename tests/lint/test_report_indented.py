@@ -14,7 +14,7 @@ VALUES = st.recursive(LEAVES, lambda v: st.lists(v) | st.dictionaries(st.text(),
 
 
 @given(VALUES)
-def test_the_output_equals_that_of_python(value):
+def test_the_output_equals_that_of_json_dumps(value):
     assert dumped(value) == json.dumps(value, indent=1)
 
 
@@ -24,6 +24,6 @@ def test_preserialised_parts_are_inserted_at_their_level(value):
     assert whole == json.dumps({"a": [value]}, indent=1)
 
 
-def test_the_report_contains_the_document(example):
+def test_the_json_report_parses_to_the_document(example):
     result = everything(example)
     assert text_of("json", result) == json.dumps(document(result), indent=1) + "\n"

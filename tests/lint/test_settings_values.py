@@ -84,7 +84,7 @@ def test_a_number_of_processes_is_one_or_more_or_auto(text, number):
 
 
 @pytest.mark.parametrize("text", ["0", "-1", "1.5", "many", ""])
-def test_another_number_of_processes_is_refused(text):
+def test_an_invalid_number_of_processes_is_refused(text):
     with pytest.raises(argparse.ArgumentTypeError, match="write 1 or more, or auto"):
         options._jobs(text)
 
@@ -118,7 +118,7 @@ def test_without_options_the_working_directory_is_linted_with_the_cache():
     )
 
 
-def test_options_are_passed_on():
+def test_command_line_options_are_parsed_into_fields():
     found = parsed("a", "b.py", "--select", "TARL1,TARL2", "--ignore", "TARL102", "--no-cache", "--jobs", "3",
                    "--fail-on", "implicit", "--per-file-ignores", "t/:TARL1", "--exclude", "x",
                    "--extend-exclude", "y,z",

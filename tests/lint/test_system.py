@@ -139,7 +139,7 @@ def test_progress_names_each_program_that_is_analysed(workspace):
     assert told == ["Looking for packages", "Reading 1 file", "Analysing arm/scripts/relay.py"]
 
 
-def test_the_search_ends_on_cycles(workspace, capsys):
+def test_the_search_for_chains_ends_on_cycles(workspace, capsys):
     file = launched(workspace, relay("one", "/a", "/b") + relay("two", "/b", "/a"))
     _, out, _ = run(capsys, "--launch", file)
     assert flows(out) == [

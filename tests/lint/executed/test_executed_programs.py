@@ -78,12 +78,12 @@ def test_an_execution_shows_what_was_published():
     assert dependences(NODE, 1, 40) == {("a", "out")}
 
 
-def test_an_execution_with_an_exception_of_a_builtin_outside_of_handlers_is_not_judged():
+def test_an_execution_that_an_unhandled_exception_ends_is_not_judged():
     with pytest.raises(UnhandledError):
         run(NODE, ("b", 0))
 
 
-def test_a_wrong_program_is_not_taken_for_one_that_fails_on_purpose():
+def test_an_error_in_a_generated_program_is_not_taken_for_an_intended_exception():
     with pytest.raises(NameError):
         run(NODE.replace("raise ValueError", "missing"), ("a", 2))
 

@@ -97,7 +97,7 @@ def test_the_statement_around_another_one_is_known():
     assert text.by_start[1, 0].around is None
 
 
-def test_columns_count_characters_from_one():
+def test_columns_are_counted_in_characters_from_one():
     text = text_of("x = 'ä'; y = 'ö' + z\n")
     assert text.stretch((1, 0, 1, 7)) == Span("node.py", 1, 1, 1, 7)
     written = text.by_start[1, 10]

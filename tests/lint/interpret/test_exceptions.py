@@ -106,7 +106,7 @@ def test_statements_after_a_handler_that_catches_do_not_depend_on_the_exception(
     assert flows(AROUND.format(raised=raised, caught=caught)) == []
 
 
-def test_a_name_of_two_classes_may_be_either():
+def test_an_exception_whose_name_has_two_definitions_may_be_of_either_class():
     twice = "if rospy:\n    class Fault(ValueError):\n        pass\nelse:\n    class Fault(Exception):\n        pass\n"
     assert flows(AROUND.format(raised="Fault", caught="ValueError"), classes=twice) == ["implicit"]
 
@@ -157,7 +157,7 @@ def test_a_finally_lets_an_exception_pass():
 
 
 @pytest.mark.parametrize("leaving", ["raise ValueError", "return", "return self.risky(0)"])
-def test_stores_before_an_exception_and_of_a_finally_last(leaving):
+def test_stores_before_an_exception_and_in_a_finally_block_are_kept(leaving):
     publish = "self.pub.publish(self.x)"
     assert flows(f"self.x = msg.data\n{leaving}", publish) == ["explicit"]
     final = f"try:\n    {leaving}\nfinally:\n    self.x = msg.data"

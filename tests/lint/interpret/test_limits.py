@@ -50,7 +50,7 @@ def three(x):
 
 
 @pytest.mark.parametrize("most", [1, 2, 3])
-def test_a_function_beyond_the_most_contexts_returns_the_data_of_its_arguments(monkeypatch, most):
+def test_a_function_called_beyond_the_context_limit_returns_the_data_of_its_arguments(monkeypatch, most):
     body = "out.publish(one(msg.data)[0])  # data\nout.publish(one(1.0)[0])  # clean"
     assert differing(in_callback(body, CHAIN)) == {}
     assert machine(in_callback(body, CHAIN)).cut == {}
@@ -59,7 +59,7 @@ def test_a_function_beyond_the_most_contexts_returns_the_data_of_its_arguments(m
     assert list(machine(in_callback(body, CHAIN)).cut) == ["node.py"]
 
 
-def test_an_analysis_with_too_many_edges_is_cut(monkeypatch):
+def test_an_analysis_with_too_many_edges_is_cut_short(monkeypatch):
     text = in_callback("out.publish(msg.data)")
     edges = machine(text).graph.edges
     monkeypatch.setattr(fixpoint, "MAX_EDGES", edges + 1)
@@ -68,7 +68,7 @@ def test_an_analysis_with_too_many_edges_is_cut(monkeypatch):
     assert list(machine(text).cut) == ["node.py"]
 
 
-def test_roots_run_until_nothing_is_new_or_the_rounds_are_spent(monkeypatch):
+def test_entry_points_run_until_nothing_is_new_or_the_round_limit_is_reached(monkeypatch):
     steps = "\n".join(f"def on_{n}(msg):\n    global x_{n + 1}\n    x_{n + 1} = x_{n}" for n in range(6))
     names = "\n".join(f"x_{n} = 0.0" for n in range(8))
     registered = "\n".join(f'rospy.Subscriber("s{n}", Float64, on_{n})' for n in reversed(range(6)))
@@ -83,7 +83,7 @@ def test_roots_run_until_nothing_is_new_or_the_rounds_are_spent(monkeypatch):
     assert not reached()
 
 
-def test_a_crash_on_one_file_is_kept_with_its_file_or_raised(monkeypatch):
+def test_a_crash_on_one_file_is_stored_on_request_and_otherwise_raised(monkeypatch):
     def crash(*_: object) -> bool:
         raise KeyError("x")
 
@@ -96,7 +96,7 @@ def test_a_crash_on_one_file_is_kept_with_its_file_or_raised(monkeypatch):
     assert list(failures) == ["node.py"]
 
 
-def test_the_first_crash_on_a_file_is_kept():
+def test_only_the_first_crash_on_a_file_is_stored():
     made = machine("x = 1\n", failures={})
     first, second = ValueError(), KeyError()
     made._failed("a.py", first)
@@ -115,13 +115,13 @@ def topics(body: str) -> set[str]:
     return {name for flow in flows(in_callback(body)) for name in flow.sink.topics}
 
 
-def test_names_are_computed_for_each_combination_up_to_a_number(monkeypatch):
+def test_topic_names_are_computed_for_each_combination_of_parts_up_to_a_limit(monkeypatch):
     assert topics(NAMES) == {"left/left", "left/right", "right/left", "right/right"}
     monkeypatch.setattr(operators, "MAX_TEXTS", 3)
     assert topics(NAMES) == set()
 
 
 @pytest.mark.parametrize("length", [1, 300, 301])
-def test_only_short_names_are_computed(length):
+def test_topic_names_are_computed_up_to_300_characters(length):
     body = f'pub = rospy.Publisher("{"a" * (length - 1)}" + "b", Float64)\npub.publish(msg.data)'
     assert topics(body) == ({"a" * (length - 1) + "b"} if length <= 300 else set())

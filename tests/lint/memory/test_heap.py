@@ -83,7 +83,7 @@ def test_the_content_of_a_part_includes_the_data_of_the_whole_object(ctx):
     assert heap.content(ctx, made(ctx, "ext", "library")) is UNKNOWN
 
 
-def test_an_unset_message_field_has_the_value_that_all_messages_have_there(ctx):
+def test_an_unset_message_field_has_the_value_that_other_runs_stored_there(ctx):
     message = made(ctx, "message", "m")
     ctx.shared.leave(ctx.shared.ends, ctx.store.root, (message, "x"), ONE)
     assert heap.read_field(ctx, message, "x") == Value(frozenset([1]), frozenset([message.sub("x")]))
@@ -302,7 +302,7 @@ def test_adding_an_element_to_an_object_without_elements_does_nothing(ctx):
     assert heap.read_any(ctx, listed).deps == {1}
 
 
-def test_a_negative_index_counts_from_a_known_end(ctx):
+def test_a_negative_index_counts_from_the_end_if_the_length_is_known(ctx):
     obj = made(ctx, "sequence", "a")
     base = pointer(obj)
     ctx.store.put((obj, "[0]"), ONE)
@@ -315,7 +315,7 @@ def test_a_negative_index_counts_from_a_known_end(ctx):
     assert heap.read_field(ctx, obj, "[0]").deps == {1, 3}
 
 
-def test_keys_depend_on_the_data_that_chose_the_key_of_a_store(ctx):
+def test_the_keys_of_a_mapping_depend_on_the_data_that_chose_them(ctx):
     mapping, listed = made(ctx, "mapping", "a"), made(ctx, "sequence", "b")
     key = Value(frozenset([5]))
     updates.write_item(ctx, Value(pts=frozenset([mapping, listed])), key, ONE)
@@ -425,7 +425,7 @@ def test_an_older_library_object_is_kept_only_while_something_else_points_to_it(
     assert ctx.store.get((obj, "x")) in (None, ABSENT)
 
 
-def test_fields_are_copied_with_parts_and_joined(ctx):
+def test_copied_fields_include_parts_and_are_joined_with_existing_values(ctx):
     one, two = made(ctx, "lib", "a"), made(ctx, "lib", "b")
     ctx.store.put((one, "x"), ONE)
     ctx.store.put((one.sub("pose"), "y"), ONE)
@@ -436,7 +436,7 @@ def test_fields_are_copied_with_parts_and_joined(ctx):
     assert ctx.store.get((one, "x")) is ONE
 
 
-def test_fields_are_cleared_with_parts(ctx):
+def test_clearing_the_fields_of_an_object_clears_its_parts(ctx):
     obj = made(ctx, "lib", "a")
     folded = obj
     for _ in range(MAX_NESTING):
@@ -588,7 +588,7 @@ def test_the_default_of_a_parameter_is_a_name_that_the_robot_may_replace():
     assert symbolic_names.with_default(pointer(Obj("lib", 1))) is None
 
 
-def test_an_object_in_use_becomes_an_older_one_when_its_site_makes_the_next(ctx, frame):
+def test_the_newest_object_becomes_an_older_one_when_its_allocation_site_creates_the_next(ctx, frame):
     holder = made(ctx, "instance", "holder")
     box = recency.intern(ctx, "instance", "box")
     recency.renew(ctx, box, frame)
@@ -606,7 +606,7 @@ def test_an_object_in_use_becomes_an_older_one_when_its_site_makes_the_next(ctx,
     assert ctx.store.get((box, "x")) is None
 
 
-def test_an_object_with_callbacks_stands_for_all_of_its_site(ctx, frame):
+def test_an_object_with_callbacks_stands_for_all_objects_of_its_allocation_site(ctx, frame):
     box = recency.intern(ctx, "instance", "box")
     ctx.given.add(box)
     recency.renew(ctx, box, frame)

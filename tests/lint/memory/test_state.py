@@ -181,7 +181,7 @@ def test_peeking_at_a_value_records_no_read(store, obj):
     assert store.reads.keys == set()
 
 
-def test_the_values_of_recorded_reads_are_found(store, obj):
+def test_the_current_values_of_recorded_reads_are_looked_up(store, obj):
     here, gone, unset = ((obj, name) for name in ("here", "gone", "unset"))
     store.put(here, ONE)
     store.put(gone, ABSENT)
@@ -189,7 +189,7 @@ def test_the_values_of_recorded_reads_are_found(store, obj):
     assert store.found_by(reads) == ({here: ONE, gone: None, unset: None}, {here: True, unset: False})
 
 
-def test_reading_the_fields_of_an_object_records_its_first_stamp_and_the_reader(store, obj):
+def test_reading_the_fields_of_an_object_records_its_first_version_and_the_reader(store, obj):
     store.look(obj)
     obj.changed("x")
     store.look(obj)
@@ -218,7 +218,7 @@ def test_the_first_wait_records_the_keys_stored_before_it_and_later_waits_change
     assert reads.own == {(obj, "x"), (obj, "y")}
 
 
-def test_recorded_reads_include_what_a_caller_needs_but_no_reads_of_earlier_runs(obj):
+def test_finished_reads_keep_what_a_replay_needs_and_drop_values_that_the_call_stored(obj):
     here, mine = (obj, "here"), (obj, "mine")
     outer, inner = Reads(written={mine}), Reads(keys={here, mine}, stored={here})
     outer.add(inner)
@@ -391,7 +391,7 @@ def test_new_data_in_an_object_reruns_the_roots_that_found_no_data_in_it(shared)
     assert shared.doubters == {}
 
 
-def test_the_generation_of_a_frame_counts_its_ancestors_with_the_same_function(ctx):
+def test_the_generation_of_a_frame_is_its_number_of_ancestors_with_the_same_function(ctx):
     (program,) = ctx.programs.values()
     first = Root("a", "timer", function=program.function)
     other = Root("b", "timer", maker=first)

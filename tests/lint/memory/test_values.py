@@ -116,7 +116,7 @@ def test_the_constants_of_a_value_can_be_a_subset_of_those_of_another_value():
     assert not UNKNOWN.consts_in(constants(1))
 
 
-def test_objects_come_in_order_of_creation():
+def test_objects_are_iterated_in_order_of_creation():
     objects = [Obj("lib", key) for key in range(20)]
     assert in_order(frozenset(objects)) == objects
     assert Value(pts=frozenset(objects)).objects == objects
@@ -158,7 +158,7 @@ def test_a_matrix_has_a_bounded_number_of_separate_cells():
     assert len({listed.sub(f"[{n}]") for n in range(MAX_CELLS + 1)} - {listed}) == MAX_CELLS + 1
 
 
-def test_changes_are_recorded_in_order():
+def test_an_object_records_its_changes_in_order():
     obj = Obj("lib", "a")
     obj.changed("x")
     obj.changed(DATA)

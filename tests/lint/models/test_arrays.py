@@ -25,7 +25,7 @@ def test_a_library_call_fills_an_array_that_was_created_without_data(name):
 
 
 @pytest.mark.parametrize("operator", sorted(ARITHMETIC))
-def test_an_array_computed_from_an_array_without_data_is_filled_too(operator):
+def test_a_library_call_also_fills_an_array_that_was_computed_from_an_array_without_data(operator):
     assert differing(in_callback(fills(f"np.ones(4) {operator} 2"), HEAD)) == {}
 
 

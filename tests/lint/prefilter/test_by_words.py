@@ -59,7 +59,7 @@ def test_a_word_shows_that_a_module_may_subscribe_or_publish(text, found):
     assert endpoint_words(Config())(text) is found
 
 
-def test_settings_add_words():
+def test_functions_in_the_settings_add_words_that_make_a_module_relevant():
     assert endpoint_words(Config(tf2=True))("tf.lookupTransform(a, b)")
     assert endpoint_words(Config(), clients=True)("rospy.ServiceProxy('a', F)")
     assert endpoint_words(Config(sources=("bus.listen",)))("listen('a', f)")
@@ -109,7 +109,7 @@ def test_a_group_includes_imported_modules_and_orders_them_before_their_importer
         "if 1: import p.m",
     ],
 )
-def test_modules_are_imported_in_every_way(statement):
+def test_every_form_of_import_is_recognised(statement):
     found = grouped(a=f"{PUBLISHER}{statement}\n", p__m="x = 1\n", other="x = 1\n")
     assert found == [["p.m", "a"]]
 
@@ -130,7 +130,7 @@ def test_relative_imports_are_resolved_in_the_package(statement, found):
     assert made == ([["p.m", "p.a"]] if found else [["p.a"]])
 
 
-def test_a_package_imports_relative_to_itself():
+def test_relative_imports_in_an_init_file_start_at_its_own_package():
     assert grouped(p__init=f"{PUBLISHER}from . import m\n", p__m="x = 1\n") == [["p.m", "p"]]
     assert grouped(p__init=f"{PUBLISHER}from .x import m\n", p__m="x = 1\n") == [["p"]]
 
@@ -147,7 +147,7 @@ def test_relevant_modules_are_listed_once():
     assert len(groups(scripts(a="rospy.ServiceProxy('a', F)\n"), Config(), clients=True)) == 1
 
 
-def test_modules_that_others_reach_keep_their_order():
+def test_imported_modules_are_listed_in_the_given_order():
     first = scripts(a="import b\n")
     others = scripts(d="x = 1\n", c="x = 1\n", b="import c\n", e="import d\n")
     assert [one.name for one in reached(first, others)] == ["c", "b"]

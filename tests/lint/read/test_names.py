@@ -100,7 +100,7 @@ def test_of_several_modules_the_nearest_one_is_imported():
     assert found("other", File("b/node.py", "node"), *files) == ""
 
 
-def test_a_file_of_a_package_may_import_its_neighbours_as_a_script():
+def test_a_file_of_a_package_that_runs_as_a_script_may_import_files_beside_it():
     files = File("p/util.py", "p.util"), File("p/q/tool.py", "p.q.tool"), File("p/time.py", "p.time")
     assert found("util", File("p/node.py", "p.node"), *files) == "p/util.py"
     assert found("util", File("p/__init__.py", "p", is_package=True), *files) == "p/util.py"
@@ -121,7 +121,7 @@ def declared(folder: Path, path: str, module: str) -> tuple[str, ...]:
     return Declarations().of(f"{folder}/{path}", module)
 
 
-def test_entry_points_of_the_nearest_package_count(tmp_path):
+def test_only_the_entry_points_of_the_nearest_package_count(tmp_path):
     written(
         tmp_path,
         {
@@ -153,6 +153,6 @@ def test_entry_points_of_the_nearest_package_count(tmp_path):
         ({"plugin.xml": f"<class type='arm.node.X'/>{' ' * 500_000}"}, ()),
     ],
 )  # fmt: skip
-def test_names_in_descriptions_are_entry_points(tmp_path, files, names):
+def test_functions_named_in_package_descriptions_are_entry_points(tmp_path, files, names):
     written(tmp_path, {"package.xml": "<package/>", **files})
     assert declared(tmp_path, "arm/node.py", "arm.node") == names

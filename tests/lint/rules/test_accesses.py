@@ -72,7 +72,7 @@ HELD = [
 
 
 @pytest.mark.parametrize(("body", "held", "tried"), HELD)
-def test_the_locks_around_a_place_are_held_there(body, held, tried):
+def test_the_locks_held_and_tried_at_a_statement_are_found(body, held, tried):
     node, outline = place(body)
     assert locks_around(node, outline) == held
     assert tried_around(node, outline) == tried
@@ -109,7 +109,7 @@ def test_a_lock_has_the_name_of_its_variable(text, name):
         ("while here:\n    pass\nwith self.a:\n    pass", set()),
     ],
 )
-def test_a_check_before_an_early_return_belongs_to_the_locks_taken_after_it(body, asked):
+def test_locks_taken_after_a_check_for_an_early_return_are_found(body, asked):
     node, outline = place(body)
     assert asked_before(node, outline) == asked
 

@@ -86,7 +86,7 @@ def test_a_statement_computes_a_new_number(statement, computed):
     [("x > 1", 1), ("x > 1 and y == 2", 2), ("x is None", 0), ("x is not None and x > 1", 1), ("1 < x is y", 0),
      ("x", 0)],
 )  # fmt: skip
-def test_comparisons_by_size_or_equality_are_counted(test, count):
+def test_the_comparisons_in_a_condition_are_found(test, count):
     assert len(list(comparisons(expression(test)))) == count
 
 
@@ -109,7 +109,7 @@ def test_the_fields_in_a_condition_have_their_full_names(test, names):
 @pytest.mark.parametrize(
     ("call", "name"), [("f(x)", "f"), ("a.b.c(x)", "c"), ("f(x)(y)", ""), ("a[0](y)", "")]
 )
-def test_a_call_has_the_last_part_of_its_name(call, name):
+def test_the_name_of_a_call_is_the_last_part_of_the_called_expression(call, name):
     found = expression(call)
     assert isinstance(found, ast.Call)
     assert call_name(found) == name

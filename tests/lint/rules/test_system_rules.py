@@ -70,7 +70,7 @@ def test_similar_spellings_of_names_are_recognised(one, other, alike):
     assert spelled_alike(other, one) is alike
 
 
-def test_an_end_has_a_single_type_if_it_is_known():
+def test_an_endpoint_has_a_single_type_if_exactly_one_type_is_known():
     assert [single(end("calls", "a", kind)) for kind in ("Twist", "Twist | Pose", "AnyMsg", "")] == [
         "Twist",
         "",
@@ -82,7 +82,7 @@ def test_an_end_has_a_single_type_if_it_is_known():
 HEARS, SAYS = end("subscribes", "cmd_vel"), end("publishes", "cmd_val")
 
 
-def test_the_report_of_a_subscription_without_a_publisher_names_a_similar_one():
+def test_the_report_of_a_subscription_without_a_publisher_names_a_similar_topic():
     assert messages(301, node("/a", HEARS), node("/b", SAYS)) == [
         "/a subscribes to /cmd_vel (Twist), which no node publishes; /b publishes /cmd_val, to which no node subscribes"
     ]
@@ -101,7 +101,7 @@ def test_the_report_of_a_subscription_without_a_publisher_names_a_similar_one():
         [node("/b", SAYS), node("/c", interface=Interface("c.py"))],
     ],
 )
-def test_a_subscription_that_may_have_a_publisher_is_correct(others):
+def test_a_subscription_that_may_have_a_publisher_is_not_reported(others):
     assert messages(301, node("/a", HEARS), *others) == []
 
 
@@ -112,7 +112,7 @@ def test_a_subscription_of_unknown_type_or_name_or_of_the_publisher_itself_is_no
     assert messages(301, node("/a", HEARS, SAYS)) == []
 
 
-def test_ends_of_a_topic_have_one_type():
+def test_a_subscription_whose_type_no_publisher_has_is_reported():
     pose = end("publishes", "cmd_vel", "Pose")
     assert messages(302, node("/a", HEARS), node("/b", pose)) == [
         "/a subscribes to /cmd_vel as Twist, but /b publishes Pose"
@@ -152,7 +152,7 @@ def test_a_subscription_that_requests_a_stricter_qos_than_offered_is_reported(as
     ]
 
 
-def test_the_report_of_a_client_without_a_server_names_a_similar_one():
+def test_the_report_of_a_client_without_a_server_names_a_similar_service():
     calls, serves = end("calls", "home", "Trigger"), end("serves", "~home", "Trigger")
     assert messages(304, node("/client", calls), node("/arm", serves)) == [
         "/client calls /home (Trigger), which no node offers; /arm offers /arm/home"
@@ -253,7 +253,7 @@ def test_a_parameter_is_absent_only_if_no_node_with_the_setting_may_have_it():
     assert messages(307, node("/k", unread=True, settings=(setting,))) == []
 
 
-def test_a_section_without_a_namespace_is_for_a_node_without_one():
+def test_a_parameter_section_without_a_namespace_is_for_a_node_without_one():
     section = yaml("k: {ros__parameters: {gain: 1, a: 2, b: 3, c: 4}}")
     lost = "/n/k does not get a, b, c …: the section k of k.yaml is for /k; name it /n/k or /**/k"
     assert messages(307, keeper("/n/k", section)) == [lost]
@@ -304,7 +304,7 @@ def test_a_remapping_of_a_name_that_the_node_may_use_is_not_reported():
     assert messages(308, silent) == ["/k uses no name cmd_val, so renaming it to y has no effect"]
 
 
-def test_a_remapping_of_a_group_is_for_any_of_its_nodes():
+def test_a_remapping_of_a_group_is_reported_once_if_no_node_of_the_group_uses_the_name():
     first, other = (
         mover("/k", remaps=(("cmd_val", "y"),), inherited=1),
         mover("/l", remaps=(("cmd_val", "y"),), inherited=1),

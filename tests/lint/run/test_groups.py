@@ -95,7 +95,7 @@ def test_programs_of_edited_files_come_first_and_then_small_ones(performed):
     assert performed == ["d.py", "b.py", "c.py", "a.py"]
 
 
-def test_without_a_reader_programs_keep_their_order(performed):
+def test_programs_keep_their_order_if_no_partial_results_are_requested(performed):
     examine(scripts(30, 10, 20), Config(), Memory("c.py"))
     assert performed == ["a.py", "b.py", "c.py"]
 

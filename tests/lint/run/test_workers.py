@@ -91,7 +91,7 @@ def test_a_failure_ends_the_other_work(pool):
     assert "PYTHONSAFEPATH" not in os.environ
 
 
-def test_without_support_for_processes_none_is_returned(monkeypatch):
+def test_the_result_is_none_if_the_system_does_not_support_processes(monkeypatch):
     monkeypatch.setattr(workers, "_context", lambda: None)
     assert in_processes(str, [1], [1], 2, silent) is None
 

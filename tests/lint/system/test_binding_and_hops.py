@@ -114,7 +114,7 @@ def test_a_launched_node_sees_parameters_below_a_name_as_a_table():
     assert node.value("~none") is DEFAULT
 
 
-def test_an_end_with_no_or_several_names_is_undetermined(example):
+def test_an_endpoint_with_no_or_several_names_is_undetermined(example):
     assert not undetermined(Interface("n.py", endpoints=(end("calls", "a"),), flows=(example.finding(),)))
     assert undetermined(Interface("n.py", endpoints=(end("calls", "a"), end("calls"))))
     assert undetermined(Interface("n.py", endpoints=(end("calls", "a", "b"),)))
@@ -176,7 +176,7 @@ def test_the_flows_of_a_node_have_launched_topics(example):
     assert made(instance("/k", replace(example.finding(), flow=None))) == []
 
 
-def test_the_ends_of_a_service_flow_are_named_request_and_response(example):
+def test_the_source_and_sink_of_a_service_flow_are_named_request_and_response(example):
     server = instance("/s", flow(example, ("add",), ("add",), heard="rospy.Service", said="rospy.Service"))
     assert made(server) == [("/s", "/add (request)", "/add (response)", "explicit")]
 

@@ -87,7 +87,7 @@ def test_a_profile_in_a_variable_is_followed_with_the_policies_assigned_to_it(be
     assert quality(f"{before}\n{SUBSCRIBED.format('self.p')}") == found
 
 
-def test_a_call_at_another_place_has_no_quality_of_service():
+def test_no_quality_of_service_is_read_at_a_position_without_a_call():
     assert of_call(Outline(ast.parse("f(1)")), (1, 0, 1, 3)) is None
 
 
@@ -161,7 +161,7 @@ def test_a_program_reads_only_parameters_that_it_names(text, named):
     assert reads_named_parameters([module("x = 1"), module(text)]) is named
 
 
-def test_the_strings_of_a_program_are_its_possible_names():
+def test_all_strings_of_a_program_may_be_names_that_it_uses():
     assert words([module("a = '~b/'\nc = f'x{1}'"), module("'/d/e'; 1; b'f'")]) == {"b", "x", "d/e"}
 
 

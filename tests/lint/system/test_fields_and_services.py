@@ -115,6 +115,6 @@ def test_the_service_that_a_client_calls_is_a_literal(call, found):
         ("rospy.Subscriber", "", ""),
     ],
 )
-def test_an_end_of_a_flow_is_a_part_of_a_service_or_action(api, sent, received):
+def test_the_part_of_a_service_or_action_that_is_sent_or_received_is_named(api, sent, received):
     assert part(api, sent=True) == sent
     assert part(api, sent=False) == received

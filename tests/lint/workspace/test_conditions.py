@@ -147,7 +147,7 @@ def test_opposite_conditions_of_ros2_differ(package):
     assert exclusive(*found.nodes[2:])
 
 
-def test_tests_are_no_nodes_of_the_robot(package):
+def test_programs_in_test_elements_do_not_count_as_nodes_of_the_robot(package):
     found = launched(
         package,
         """<launch><node pkg="arm" type="drive" name="drive"/>
@@ -164,7 +164,7 @@ def test_tests_are_no_nodes_of_the_robot(package):
     assert not reasons(found)
 
 
-def test_variables_that_every_robot_has_keep_no_default(package):
+def test_the_default_of_an_environment_variable_that_is_always_set_is_ignored(package):
     found = launched(
         package,
         """<launch><node pkg="arm" type="d" name="a"><param name="x" value="$(optenv HOME /root)/log"/>

@@ -150,7 +150,7 @@ CASES = dict(one.split("\n", 1) for one in ACTIONS.strip().removeprefix("# ").sp
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_an_action_has_its_effect(package, name):
+def test_each_launch_action_has_its_effect(package, name):
     lines = CASES[name].split("\n")
     body = "\n".join(line for line in lines if line[:3] not in ("=> ", "!! "))
     nodes = [

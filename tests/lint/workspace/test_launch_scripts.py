@@ -14,7 +14,7 @@ def script(package: Path, text: str) -> Launch:
     return launched(package, text, "start.py")
 
 
-def test_a_parent_starts_launch_files_with_arguments(package):
+def test_a_roslaunch_parent_starts_launch_files_with_arguments(package):
     found = script(
         package,
         """

@@ -60,7 +60,7 @@ def test_the_kind_of_a_package_is_its_build_system(tmp_path, inside, files, kind
         ("<!ENTITY a 'b'>", "folder", "it declares entities"),
     ],
 )
-def test_a_package_without_a_readable_name_has_that_of_its_folder(tmp_path, text, name, problem):
+def test_a_package_without_a_readable_name_has_the_name_of_its_folder(tmp_path, text, name, problem):
     (tmp_path / "folder").mkdir()
     (tmp_path / "folder/package.xml").write_bytes(text.encode("latin-1"))
     found, problems = manifest(tmp_path / "folder")

@@ -119,7 +119,7 @@ def test_files_with_other_names_have_no_contents(tmp_path: Path, name: str) -> N
     assert list(walk(bag(tmp_path, connection(3, "/a"), name=name))) == []
 
 
-def test_files_with_another_beginning_have_no_contents(tmp_path: Path) -> None:
+def test_files_without_the_magic_bytes_have_no_contents(tmp_path: Path) -> None:
     path = bag(tmp_path, connection(3, "/a"))
     path.write_bytes(path.read_bytes().replace(b"V2.0", b"V1.2"))
     assert list(walk(path)) == []

@@ -174,7 +174,7 @@ class Found:
         (["--fail-if-changed"], None, 1),
     ],
 )
-def test_a_difference_fails_only_on_request(
+def test_the_command_diff_fails_on_a_difference_only_on_request(
     calls: Calls, capsys: Printed, flags: list[str], asked: Any, status: int
 ) -> None:
     found = Found()
@@ -455,7 +455,7 @@ def test_the_command_fleet_fails_if_one_condition_of_fail_if_is_met(
     assert cli.main(["fleet", "data", *flags]) == status
 
 
-def test_a_day_has_the_form_of_iso_8601() -> None:
+def test_a_day_is_given_in_the_form_of_iso_8601() -> None:
     assert fleet_commands._day(None) is None
     with pytest.raises(SettingsError, match="--since must be a day such as 2026-10-01, got yesterday"):
         fleet_commands._day("yesterday")

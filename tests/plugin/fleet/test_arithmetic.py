@@ -205,7 +205,7 @@ ROWS = st.lists(
 
 
 @given(ROWS, st.integers(0, 12))
-def test_rows_from_several_files_are_merged_and_sorted(
+def test_rows_of_a_mission_from_several_files_are_merged_and_sorted(
     rows: list[tuple[int, int, int, int, float]], cut: int
 ) -> None:
     parts = [transitions(*some) for some in (rows[:cut], rows[cut:]) if some]

@@ -89,7 +89,7 @@ def test_a_bag_that_is_truncated_or_does_not_fit_the_test_is_named_and_skipped(
     assert [row[0] for row in missions(project)] == ["good"]
 
 
-def test_the_error_says_whether_the_test_or_the_monitor_is_missing(
+def test_the_error_says_whether_the_project_the_test_or_the_monitor_is_missing(
     project: pytest.Pytester, capsys: pytest.CaptureFixture[str]
 ) -> None:
     bag = write_bag(project.path / "r0.bag", mission(1.0, 1))

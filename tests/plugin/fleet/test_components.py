@@ -104,7 +104,7 @@ def test_the_effects_of_a_version_and_a_season_that_always_coincide_cannot_be_se
     assert "season (month)" in said[3]
 
 
-def test_missions_without_a_repair_are_named_among_the_lowest() -> None:
+def test_missions_without_a_repair_are_named_as_a_level_of_the_factor_repair() -> None:
     repair = Component("repair", 0.5, 0.1, 0.9, 2, effects=(-0.25, 0.25))
     assert lowest(repair, ("", "guard-1")) == "no repair -0.25"
 

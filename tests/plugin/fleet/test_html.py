@@ -109,7 +109,7 @@ def test_the_page_contains_the_figures_of_the_text_report(found: Answer) -> None
     assert "<b>" not in seen
 
 
-def test_many_robots_make_a_small_page(found: Answer) -> None:
+def test_the_page_of_many_robots_is_smaller_than_600_kilobytes(found: Answer) -> None:
     assert len(html.render(many(found))) < 600_000
 
 

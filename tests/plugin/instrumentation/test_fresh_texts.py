@@ -88,7 +88,7 @@ def test_a_constant_that_an_installed_function_read_from_an_edited_file_is_compu
     edited(["workspace", "site", "workspace"], ["number", "inside", "constant"])
 
 
-def test_an_edited_helper_that_another_module_still_holds_is_reported(tmp_path: Path) -> None:
+def test_an_edited_helper_of_which_another_module_still_uses_an_old_copy_is_reported(tmp_path: Path) -> None:
     node, leaf = laid_out(tmp_path, ["workspace"], [])
     kept: list[Any] = []
 

@@ -367,7 +367,7 @@ def test_a_script_without_a_plan_runs_unchanged(project):
     assert recorded(recorder) == []
 
 
-def test_imports_are_searched_once(project, monkeypatch):
+def test_the_import_of_each_module_is_searched_once(project, monkeypatch):
     asked: list[str] = []
 
     class Listener:

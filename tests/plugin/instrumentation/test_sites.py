@@ -80,7 +80,7 @@ def test_each_pair_of_topics_has_one_list():
     ]
 
 
-def test_lists_share_global_site_numbers():
+def test_taint_lists_refer_to_sites_by_common_numbers():
     result = planned(
         flow(step(20, "b"), step(10, "a")), flow(step(10, "a"), step(30, "c"), sink=("/lights",))
     )

@@ -305,7 +305,7 @@ def test_flow_values_are_finite_and_limited() -> None:
 # code of a node
 
 
-def test_columns_become_bytes_from_zero() -> None:
+def test_columns_in_characters_from_one_become_byte_offsets_from_zero() -> None:
     text = "x = 1\né = y = 2\n"
     positions: Any = {(1, 1): 0, (2, 1): 1, (2, 5): 2, (9, 4): 3}
     assert _offsets(text, positions) == {(1, 1): (1, 0), (2, 1): (2, 0), (2, 5): (2, 5), (9, 4): (9, 0)}

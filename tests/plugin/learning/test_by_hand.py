@@ -232,7 +232,7 @@ def difference(**changes: Any) -> Difference:
     return Difference(replace(VERDICT, **changes), Region(((1,),)), {})
 
 
-def test_a_sequence_of_checks_adjusts_p_values_and_confidence() -> None:
+def test_p_values_and_confidence_are_adjusted_for_several_checks() -> None:
     interval = LossInterval(0.1, 0.9, 0.98)
     seen = [
         (Look(10, 0.25), difference(p_loss=0.01, p_drift=0.2, p_failures=0.02)),

@@ -36,7 +36,7 @@ def test_at_most_the_share_alpha_of_all_groups_has_a_p_value_below_alpha(
             assert (np.array(p_values) <= alpha + 1e-12).mean() <= alpha + 1e-12
 
 
-def test_successes_that_never_vary_leave_the_test_of_the_loss_as_it_is() -> None:
+def test_if_all_missions_succeed_the_p_value_of_the_loss_is_that_of_the_test_without_successes() -> None:
     for seed in range(5):
         one, other = (outcomes(seed + at, 30, failing=0.0, linked=False) for at in (0, 100))
         alone = permuted_loss(one[:, 0], other[:, 0], generator(seed, "groups"))
@@ -59,7 +59,7 @@ def test_failures_with_a_constant_reward_have_the_exact_p_value_of_fisher(
     assert p_loss == 1.0
 
 
-def test_failures_that_earn_more_are_found_beside_totals_that_do_not_decrease() -> None:
+def test_an_increase_of_failures_is_found_even_if_the_reward_increases() -> None:
     rng = generator(2, "early")
     one = np.stack([rng.normal(-10.0, 1.0, 40), np.ones(40)], axis=1)
     other = np.stack([rng.normal(-6.0, 1.0, 20), (rng.random(20) < 0.6).astype(float)], axis=1)
@@ -68,7 +68,7 @@ def test_failures_that_earn_more_are_found_beside_totals_that_do_not_decrease() 
     assert p_loss > 0.9
 
 
-def test_more_successes_are_no_failures() -> None:
+def test_an_increase_of_successes_is_not_significant() -> None:
     one = outcomes(0, 30, failing=0.5, linked=False)
     other = np.stack([one[:20, 0], np.ones(20)], axis=1)
     assert permuted_decreases(one, other, generator(0, "groups"))[1] > 0.9

@@ -114,7 +114,7 @@ def test_td_lambda_uses_the_whole_return_for_lambda_1_and_one_step_for_lambda_0(
     assert next_only.table([(0,)], np.inf).tolist() == [[0.5 * 1.0, 2.0]]
 
 
-def test_the_flow_term_can_be_switched_off() -> None:
+def test_an_infinite_scale_switches_off_the_flow_values() -> None:
     trace = Trace(
         cells=((0,),),
         site=np.array([0, 1], np.int32),

@@ -265,7 +265,9 @@ CHECKED = [
 
 @pytest.mark.filterwarnings("ignore::SyntaxWarning")
 @pytest.mark.parametrize(("text", "checked"), CHECKED, ids=[text for text, _ in CHECKED])
-def test_a_place_counts_as_checked_if_it_is_reached_only_with_the_value(text: str, checked: bool) -> None:
+def test_a_statement_counts_as_checked_if_it_runs_only_after_the_value_is_set(
+    text: str, checked: bool
+) -> None:
     source = document("a.py", "def f():\n" + "".join(f"    {line}\n" for line in text.split("\n")))
     assert is_checked(source, place(source), "x") is checked
 

@@ -247,7 +247,7 @@ content = st.tuples(st.lists(line, max_size=12), st.booleans())
 
 @settings(max_examples=60)
 @given(before=content, after=content)
-def test_applying_gives_the_new_bytes(
+def test_applying_a_patch_gives_exactly_the_new_bytes(
     tmp_path_factory: pytest.TempPathFactory, before: tuple[list[str], bool], after: tuple[list[str], bool]
 ) -> None:
     old, new = ("\n".join(lines) + ("\n" if final and lines else "") for lines, final in (before, after))
@@ -266,7 +266,7 @@ def test_applying_gives_the_new_bytes(
 @pytest.mark.parametrize("tops", [(), (".",), ("ws",), ("ws/src",), (".", "ws"), ("other",), (".", "other")])
 @pytest.mark.parametrize("root", ["ws", "ws/src/pkg", "other"])
 @pytest.mark.parametrize("names", [("ws/src/pkg/node.py",), ("ws/src/pkg/node.py", "ws/src/lib/helper.py")])
-def test_the_command_works_in_any_folder(
+def test_the_printed_apply_command_works_in_any_folder(
     tmp_path: Path, tops: tuple[str, ...], root: str, names: tuple[str, ...]
 ) -> None:
     files = [tmp_path / name for name in names]

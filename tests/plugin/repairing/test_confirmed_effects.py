@@ -30,7 +30,7 @@ def effect(code: str, best: float, gain: float) -> OperandEffect:
         ({SITE: [effect("LIMIT", 2.0, 1.0)]}, [("0.8", 4.0, 5.0), ("LIMIT", 2.0, 1.0)]),
     ],
 )
-def test_the_gain_of_the_repair_replaces_what_the_search_did_not_measure(
+def test_the_gain_of_the_repair_is_shown_if_the_search_did_not_measure_that_change(
     known: dict[str, list[OperandEffect]], shown: list[tuple[str, float, float]]
 ) -> None:
     candidate = Candidate(Unit((KP,)).mutations(mutations, 5.0), ALWAYS)

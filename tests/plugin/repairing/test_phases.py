@@ -262,7 +262,7 @@ def test_the_template_decides_whether_larger_or_smaller_factors_are_weaker(
     assert structures.weaker(one, factor) is expected
 
 
-def test_a_candidate_may_be_examined_beyond_the_share_of_its_templates() -> None:
+def test_the_examination_of_a_candidate_may_exceed_the_episodes_of_its_group_of_templates() -> None:
     structures = Structures.__new__(Structures)
     structures.trials = Trials(lambda *_: Outcome(1.0, True), budget=10, reserve=4)
     steps = structures._beyond_its_share(ONE, whole=30)

@@ -81,7 +81,7 @@ def test_open_ends_are_null_and_string_categories_are_kept(two_lists, tmp_path):
     assert two == [{"light": ["day", "day"]}, {"light": ["night", "night"]}]
 
 
-def test_a_site_of_two_lists_appears_once_with_its_largest_change(two_lists, tmp_path):
+def test_a_site_in_two_taint_lists_appears_once_with_its_largest_change(two_lists, tmp_path):
     found = written(two_lists, tmp_path)["sites"]
     shared = two_lists.lists[0].taint_list.sites[1].id
     differences = [

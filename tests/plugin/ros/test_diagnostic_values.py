@@ -176,7 +176,7 @@ def test_the_ages_of_stamps_are_compared_with_bounds(
     assert again.message == "No data since last update."
 
 
-def test_stamps_of_both_generations_are_read(at: At) -> None:
+def test_stamps_of_ros1_and_ros2_are_read(at: At) -> None:
     task = TimeStampStatus()
     at(10.0)
     message: Any = message_type("builtin_interfaces/msg/Time")(sec=7, nanosec=500_000_000)

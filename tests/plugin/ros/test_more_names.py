@@ -223,7 +223,7 @@ def test_parts_of_a_stub_can_be_imported_from_it(start: Start) -> None:
              "pcl_msgs/msg/PolygonMesh", "control_msgs/action/PointHead", "rcl_interfaces/srv/GetLoggerLevels",
              "laser_assembler/AssembleScans2", "audio_common_msgs/AudioData"],
 )  # fmt: skip
-def test_further_message_types_are_known(name: str) -> None:
+def test_message_types_of_less_common_packages_are_known(name: str) -> None:
     found = message_type(name)
     assert found.__name__ == name.rpartition("/")[2]
 

@@ -257,7 +257,9 @@ def test_a_file_that_includes_the_launch_file_supplies_its_arguments(tmp_path: P
     assert found.note == "parameters and arguments of arm come from robot.launch (driver.launch)."
 
 
-def test_of_differing_launch_files_the_one_named_after_the_script_counts(tmp_path: Path) -> None:
+def test_if_launch_files_differ_the_parameters_come_from_the_one_named_after_the_script(
+    tmp_path: Path,
+) -> None:
     node = '<node pkg="saver" type="node.py" name="saver"><param name="rate" value="{0}"/></node>'
     found = in_package(tmp_path, slow=node.format(1), fast=node.format(2), sample_node=node.format(3))
     assert found.private == {"rate": 3}

@@ -136,7 +136,7 @@ def test_grey_images_become_opaque_colours_and_lose_depth_by_rounding() -> None:
         ("rgb8", "16UC3"),
     ],
 )
-def test_conversions_without_a_meaning_are_refused(encoding: str, wanted: str) -> None:
+def test_conversions_from_encodings_that_are_not_colours_are_refused(encoding: str, wanted: str) -> None:
     image = np.zeros((2, 2) if encoding.startswith("bayer") else (2, 2, 3), dtype=np.uint8)
     with pytest.raises(CvBridgeError, match=rf"\[{encoding}\] is not a color format"):
         CvBridge().imgmsg_to_cv2(picture(encoding, image), wanted)

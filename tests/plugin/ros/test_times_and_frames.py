@@ -196,7 +196,7 @@ def test_a_loop_of_frames_does_not_cause_an_endless_search() -> None:
         tree.look_up("a", "d", 0)
 
 
-def test_interpolated_turns_take_the_shorter_arc_and_nearly_equal_ones_the_nearer_end() -> None:
+def test_interpolation_takes_the_shorter_arc_and_for_nearly_equal_rotations_the_nearer_end() -> None:
     start, end = (
         (0.0, 0.0, 0.0, 1.0),
         (0.0, 0.0, -math.sin(0.5), -math.cos(0.5)),

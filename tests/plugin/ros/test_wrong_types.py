@@ -123,7 +123,7 @@ def test_a_service_of_another_type_is_reported_with_both_types(start: Start, nod
 @pytest.mark.parametrize("node", CLIENTS)
 @pytest.mark.parametrize("made", [TRIGGER.Response(message="a"), OLD_TRIGGER._response_class(True, "a")])
 @pytest.mark.parametrize("served", [TRIGGER, OLD_TRIGGER])
-def test_responses_of_both_generations_are_accepted(start: Start, node: str, made: Any, served: Any) -> None:
+def test_responses_of_ros1_and_ros2_are_accepted(start: Start, node: str, made: Any, served: Any) -> None:
     ros = start("pass")
     ros.bus.serve("dock", served, lambda _: made)
     start(CLIENTS[node], ros=ros)

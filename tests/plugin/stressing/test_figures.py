@@ -79,5 +79,5 @@ def luminance(colour: str) -> float:
 
 
 @pytest.mark.parametrize("background", [*COLOURS.values(), "#ffffff"])
-def test_ink_has_a_contrast_of_at_least_4_5_to_every_background(background: str) -> None:
+def test_text_has_a_contrast_of_at_least_4_5_to_every_background(background: str) -> None:
     assert (luminance(background) + 0.05) / (luminance(INK) + 0.05) >= 4.5

@@ -362,7 +362,7 @@ def test_the_sample_has_as_many_rows_as_the_budget_allows(size: int, left: int, 
 
 
 @given(st.floats(0, 1))
-def test_shares_stand_for_numbers_of_a_range_and_for_options(share: float) -> None:
+def test_a_share_is_converted_to_a_number_of_a_range_or_to_an_option(share: float) -> None:
     assert _number(Choice(("a", "b", "c")), share) == min(int(share * 3), 2)
     number = _number(Span(-1.0, 3.0, 0.0), share)
     assert -1.0 <= number <= 3.0

@@ -38,7 +38,7 @@ SPACE = space_of(mud=Drift.range(0.0, 1.0, nominal=0.0))
 PLACES = (("n.py", 1, "a"), ("n.py", 2, "b"), ("m.py", 7, "c <"))
 
 
-def test_places_are_statements_that_do_something_with_columns_in_characters() -> None:
+def test_places_are_statements_with_an_effect_and_their_columns_count_characters() -> None:
     text = (
         '"""é"""\nimport a\n\n\ndef f(x):\n    "doc"\n    if x: é = 1; y = 2\n    elif x > 1:\n        pass\n'
     )

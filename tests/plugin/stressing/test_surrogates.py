@@ -59,7 +59,7 @@ def test_the_evidence_of_losses_is_the_density_of_a_normal_distribution() -> Non
     assert LossField(prior, losses, errors).evidence == pytest.approx(density, abs=1e-4)
 
 
-def test_failing_shares_follow_the_counts() -> None:
+def test_predicted_failure_rates_follow_the_counted_failures() -> None:
     vectors = drifts(2, 60)
     shares = np.where(vectors[:, 0] > 0.3, 0.9, 0.02)
     episodes = np.full(60, 50.0)
@@ -92,7 +92,7 @@ def test_a_fit_that_starts_from_another_fit_reaches_the_same_maximum(seed: int, 
     assert warm.evidence == pytest.approx(cold.evidence, abs=0.1)
 
 
-def test_the_right_direction_has_the_larger_evidence() -> None:
+def test_the_evidence_is_larger_if_the_direction_that_matters_has_the_larger_scale() -> None:
     vectors = drifts(4, 40)
     losses = vectors[:, 0] ** 2
     errors = 1e-3 * np.eye(40)

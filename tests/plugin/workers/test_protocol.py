@@ -62,7 +62,7 @@ def differs_from_default(value: Any) -> list[str]:
     return [name for name, default in defaults.items() if getattr(value, name) == default]
 
 
-def test_the_examples_set_every_field() -> None:
+def test_the_examples_of_these_tests_set_every_field() -> None:
     assert differs_from_default(PLAN) == differs_from_default(RUN) == []
 
 
