@@ -3,7 +3,7 @@
     python benchmarks/fleet.py [--robots 1000] [--missions 100] [--logs 20] [--seed 0]
     python benchmarks/fleet.py --robots 10000 --data DIR     # only write the data set and its recording
 
-Robots drive past ten places, dry or wet, at 40 sites. Three things differ from the recorded world:
+Robots drive past ten places, dry or wet, at 40 sites. Four things differ from the recorded world:
 
 - 1 % of the robots drift: from a random mission on, a place costs reward, and some missions fail there
 - the last release, rolled out to 4 of the sites after two thirds of the missions, costs reward at another place

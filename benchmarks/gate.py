@@ -43,7 +43,7 @@ class Seen:
     drift: bool
     kolmogorov: bool
     threshold: bool
-    held: float  # share of the changed cells that were visited and are in the region
+    held: float  # of the changed cells that the missions visited, the share that is in the region
     others: int  # number of cells in the region that the drift does not change
 
 
@@ -78,7 +78,7 @@ def rows(world: str, mode: Mode, repetitions: int, sizes: Sequence[float] = SIZE
         for repetition in range(repetitions):
             draws = seeds.generator(repetition, f"{world}/{mode}/{size}")
             order = draws.permutation(designed.episodes)
-            # Without drift, both samples come from the same pool but share no mission.
+            # Without a drift, both samples come from the same pool; they must not share a mission.
             chosen = order[-ONLINE:] if size == 0.0 else draws.permutation(there.sample.episodes)[:ONLINE]
             recordings = drawn(designed, order[:OFFLINE]), drawn(there.sample, chosen)
             judged.append(_judged(*recordings, there.changed, draws))

@@ -35,7 +35,8 @@ ORACLES = Path(__file__).parent / "launch_oracles"
 COMMAND = "<what a command prints>"
 Fact = tuple[str, ...]  # kind and values
 _ENVIRONMENT = re.compile(r"\$\(env (\w+)\)")
-_ROBOT = re.compile(r"ENV_\w|/absent/|/nonexistent")  # values that roslaunch and launch cannot know either
+# matches values that roslaunch and launch cannot know either
+_ROBOT = re.compile(r"ENV_\w|/absent/|/nonexistent")
 
 
 def main() -> None:
@@ -164,11 +165,13 @@ def _of_launch(launch: Launch, two: bool) -> Iterator[Fact]:
         if node.kind == "component":
             continue
         name = _node(node.package, node.executable, node.namespace, node.name)
-        given = (ros2 if two else ros1)(node.arguments)  # arguments, which the originals pass on to the node
+        # the settings in the node's arguments; roslaunch and launch only pass them on to the node
+        given = (ros2 if two else ros1)(node.arguments)
         pairs = [pair for pair in node.remaps if pair not in given.remaps]
         if (
             node.kind != "test"
-        ):  # the originals list tests apart from nodes, and their parameters with the others
+            # roslaunch and launch do not list tests among the nodes, but list their parameters among the others
+        ):
             yield ("node", *(_of_environment(one) for one in name))
             for old, new in {_plain(old): _plain(new) for old, new in pairs}.items():
                 yield ("remap", *name, old, new)

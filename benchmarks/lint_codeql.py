@@ -40,7 +40,7 @@ COMMENT = re.compile(
     r"(?P<how>MISSING:|SPURIOUS:)|flow=(?P<quote>[\"'])(?P<what>.*?)(?:, l:?(?P<offset>[-+]?\d+))? -> .*?(?P=quote)"
     r"|(?P<bare>\bflow\b(?!=))"
 )
-ANY = 0  # stands for any line: the comment does not state the line of the source
+ANY = 0  # stands for any line, because the comment does not state the line of the source
 
 Pair = tuple[int, int]  # lines of source and sink
 
@@ -72,7 +72,7 @@ def expected(text: str) -> Expected:
                 into = result.missed if match["how"] == "MISSING:" else result.invented
                 continue
             if match["bare"] and told:
-                continue  # CodeQL lists the same flow on another path
+                continue  # the comment lists a flow again that CodeQL also finds on another path
             source = ANY if match["bare"] else number + int(match["offset"] or 0)
             into.add((source, number))
             told.add((source, number))

@@ -8,8 +8,8 @@ holds for all runs of a function with the same key:
 - *arguments*: the kinds and classes of the arguments' objects, their constants, and whether they carry data. The
   result also depends on what the function reads elsewhere, so no correct summary reaches this bound.
 - *reads*: the same for every value that the run read before storing to it, by kind of object and name of field.
-- *aliases*: also which of these objects are the same, by the paths that lead to them, and at which statements no
-  source had arrived.
+- *aliases*: in addition, which of these objects are identical, by the paths that lead to them, and which statements no
+  source had reached.
 """
 
 from __future__ import annotations

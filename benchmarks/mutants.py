@@ -35,7 +35,8 @@ ROOT = Path(__file__).resolve().parent.parent
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 ELSEWHERE = {"realros"}  # folders of tests that need a real ROS: make test-ros1, make test-ros2
 LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache", "*.egg-info", ".coverage*")
-BUDGET = 120.0  # CPU seconds of tests per fault, as measured without the fault
+# CPU seconds of tests that are run for each fault; the times are those measured without the fault
+BUDGET = 120.0
 PATIENCE = 120.0  # seconds allowed beyond three times the CPU time of the tests without the fault
 SETTINGS = """[run]
 source = {source}

@@ -97,7 +97,7 @@ def table(which: str, bare: Any, observed: Any) -> None:
 
 def block(cycles: int, *, observed: bool, realtime: bool) -> dict[str, Any]:
     """Run a block of cycles and return their times in µs."""
-    if realtime:  # the priority of `chrt -f 10 tarl observe node.py`
+    if realtime:  # set the priority that `chrt -f 10 tarl observe node.py` sets
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log"

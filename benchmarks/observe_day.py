@@ -32,7 +32,7 @@ from pytest_tarl.observing.writer import Rotation, unpacked
 
 RATE = 100  # number of cycles per second
 BEHIND = RATE  # maximum number of steps that wait for the observer's thread
-OBJECTS = 1000  # maximum growth of the number of memory blocks that Python holds
+OBJECTS = 1000  # the number of memory blocks that Python holds may grow by at most this
 SAMPLES = 24  # number of memory samples and of missions
 ABOUT = {"node": "node.py", "sites": [], "sensors": [one.name for one in SENSORS]}
 

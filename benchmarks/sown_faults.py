@@ -51,7 +51,7 @@ _TEXT: dict[type[ast.cmpop] | type[ast.operator] | type[ast.boolop], str] = {
     ast.And: "and",
     ast.Or: "or",
 }
-# no faults here: not every message needs a test
+# kinds of statements without faults, because not every message needs a test
 _UNSEEN = (ast.Import, ast.ImportFrom, ast.Assert, ast.Raise)
 
 
@@ -115,7 +115,7 @@ def _compiles(fault: Fault, data: bytes, functions: list[tuple[int, int]]) -> bo
     start, end = functions[bisect_right(functions, (fault.start, len(data))) - 1]
     text = data[start : fault.start] + fault.now.encode() + data[fault.end : end]
     if text[:1].isspace():
-        text = b"if True:\n" + text  # the body of a class is indented
+        text = b"if True:\n" + text  # a method is indented, so its text needs a block around it
     try:
         compile(text, "<mutant>", "exec", dont_inherit=True)
     except (SyntaxError, ValueError):

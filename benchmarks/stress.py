@@ -41,7 +41,7 @@ from pytest_tarl.stressing.search import along_rays, near_ends  # noqa: E402
 GRID, EPISODES = 41, 40  # number of values, and number of episodes at each of them
 RECORDED = 100
 SHARE = 0.15  # share of the grid's episodes that a stress run may use
-NEAR = 0.05  # maximum distance between the boundary and that of the grid, as a share of the range
+NEAR = 0.05  # two boundaries agree if their distance is at most this share of the range
 RISK = 0.05 / 3  # alpha of a run with one ray, divided among the ray, the combinations and the nominal drift
 SIZE = "size"  # name of the only direction
 EXAMPLES = {"line_follower": HERE.parent / "examples" / "line_follower"}

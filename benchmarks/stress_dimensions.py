@@ -83,8 +83,9 @@ SCENARIO = "stress"
 LARGEST = 2.0  # upper limit of distances: no drift in four directions is farther from nominal
 FORMULA = Designation(
     (), (), min_success=0.95, tolerance=TOLERANCE
-)  # the test of a world of stress_worlds.py
-OWN = ("ours", "confirmed")  # what a stress run offers: all failing drifts, or only those that it confirmed
+)  # the arguments of the marker for the worlds that are formulas
+# the two results of a stress run: all failing drifts, and only the confirmed ones
+OWN = ("ours", "confirmed")
 PEERS = {"Ψ-TaLiRo": "psy_taliro_peer.py", "STGEM": "stgem_peer.py"}
 
 
@@ -252,7 +253,8 @@ def placed(space: Space, numbers: Sequence[float]) -> Point:
         assert isinstance(extent, Span)
         usual = nominal(extent)
         low, high = usual - extent.low, extent.high - usual
-        if low == 0.0 or high == 0.0:  # nominal is an end of the range, so use the absolute value
+        # nominal is an end of the range: both signs of a coordinate lead into the range
+        if low == 0.0 or high == 0.0:
             found[name] = usual + (high - low) * min(abs(number), 1.0)
         else:
             found[name] = usual + (high if number > 0 else low) * min(max(number, -1.0), 1.0)

@@ -102,4 +102,4 @@ def pytest_unconfigure() -> None:
 
 
 if "SUITE_RESULT" in os.environ:
-    begin()  # before any conftest.py imports the package
+    begin()  # called on import, before any conftest.py imports the package

@@ -65,7 +65,8 @@ SUITES = {
         "2f8490dbdbd419366cef1516032ab06d07ccb5839ef54905e842a472692d4204",
         "transitions",
         needs=("six==1.17.0", "dill==0.4.0", "mock==5.2.0"),
-        options=("-o", "addopts=", "--ignore=tests/test_codestyle.py"),  # checks its sources with other tools
+        # this file checks the sources with other tools
+        options=("-o", "addopts=", "--ignore=tests/test_codestyle.py"),
     ),
     "jinja2": Suite(
         "3.1.6",
@@ -90,7 +91,7 @@ SUITES = {
             "jsonschema==4.24.0",
             "pytz==2025.2",
             "pytest-mock==3.14.1",
-            "pytest-benchmark==5.1.0",  # the settings of the suite contain options of this plugin
+            "pytest-benchmark==5.1.0",  # needed because the suite's settings contain options of this plugin
             "email-validator",
         ),
         # a plugin that runs tests in threads registers the marks that its tests use

@@ -156,7 +156,7 @@ def ended(child: int, limit: float) -> str:
             return "timeout"
         time.sleep(POLL)
     with suppress(ProcessLookupError):
-        os.killpg(child, 9)  # processes that the tests left behind
+        os.killpg(child, 9)  # kill the processes that the tests left behind
     return str(os.waitstatus_to_exitcode(found[1]))
 
 

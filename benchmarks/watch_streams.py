@@ -82,7 +82,8 @@ def _pool(world: str, size: float) -> Sample:
     if world in WORLDS:
         found = simulated(world, "hidden", size, POOLED[size == 0.0]).sample
     elif world in EXAMPLES:
-        with ProcessPoolExecutor(1) as fresh:  # each example has a module `world` of its own
+        # a new process, because each example has its own module named `world`
+        with ProcessPoolExecutor(1) as fresh:
             found = fresh.submit(recorded, world, size, POOLED_EXAMPLE[size == 0.0]).result().sample
     else:
         draws = (SYNTHETIC[world](generator(n, world)) for n in range(POOLED[True]))

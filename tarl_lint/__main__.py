@@ -1,4 +1,4 @@
-"""The process `tarl-lint`, also as `python -m tarl_lint`: nothing of the linted files can be imported."""
+"""The entry point of the process `tarl-lint`, also by `python -m tarl_lint`; it cannot import linted files."""
 
 import sys
 

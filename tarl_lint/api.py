@@ -59,7 +59,7 @@ class Analysis:
         """Return the statements outside of the flows that fill an object with constants, and the sites that use it.
 
         Examples are `self.pid = PID(1.0, 0.1, 0.0)` if a statement of a flow calls `self.pid(…)`, and
-        `GAINS = [0.5, 2.0]` if one iterates over GAINS.
+        `GAINS = [0.5, 2.0]` if a statement of a flow iterates over GAINS.
         """
         return self.prober.configuring
 
@@ -67,7 +67,7 @@ class Analysis:
     def making(self) -> Mapping[SiteId, tuple[Step, tuple[SiteId, ...]]]:
         """Return the statements outside of the flows that pass constants to objects of the program's own classes.
 
-        An example is `self.left = Wheel(0.16)`. With each of them are the sites that use the object.
+        An example is `self.left = Wheel(0.16)`. Each statement comes with the sites that use the object.
         """
         return self.prober.making
 

@@ -76,7 +76,7 @@ class Workspace:
 
 
 class _Memory(Cache):
-    """Reports of the last runs by key, and those of the cache on disk. The cache on disk is never written."""
+    """The reports of the last runs, by key, in memory. The cache on disk is read but never written."""
 
     adapts = True
 

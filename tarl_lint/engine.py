@@ -49,7 +49,7 @@ def examine(
 
     The last element holds the classes outside the files at which flows ended.
 
-    With `isolated`, the rest is analysed as if the failed code did nothing; otherwise, failures are raised. With
+    With `isolate`, the rest is analysed as if the failed code did nothing; otherwise, failures are raised. With
     `readings`, what was read of each file is stored there.
     """
     if one_sided(modules, config, HAZARDS):

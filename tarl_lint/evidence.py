@@ -174,7 +174,7 @@ class Evidence:
                     yield Read(module.path, node, list(outline.around(node)))
 
     def _looked_up(self, node: ast.Constant, outline: Outline) -> bool:
-        """Return whether a string may be used to look up a name. A string that names a topic is not."""
+        """Return whether a string may be used to look up a name. A string that names a topic does not count."""
         outer = outline.parents.get(node)
         if isinstance(outer, ast.Call) and last_name(outer.func) in LOOK_UPS:
             return True

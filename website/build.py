@@ -28,7 +28,7 @@ BUILD = HERE.parent / "build"
 def settings(address: str, quick: bool) -> str:
     """Return the settings of zensical: website/zensical.toml plus the folders, the address and the menu of versions."""
     text = (HERE / "zensical.toml").read_text("utf-8")
-    tomllib.loads(text)  # reports a syntax error with its line
+    tomllib.loads(text)  # parsed only to report a syntax error with its line
     known = [
         'docs_dir = "pages"',
         'site_dir = "site"',
@@ -38,7 +38,8 @@ def settings(address: str, quick: bool) -> str:
         text = "".join(line for line in text.splitlines(keepends=True) if '"gallery/index.md"' not in line)
     text = text.replace("[project]\n", "[project]\n" + "\n".join(known) + "\n", 1)
     text = text.replace("[project.theme]\n", '[project.theme]\ncustom_dir = "overrides"\n', 1)
-    if address:  # published beside other versions, with a menu to switch between them
+    # a site with an address is published beside other versions and has a menu to switch between them
+    if address:
         text = text.replace("[project.extra]\n", '[project.extra]\nversion = { provider = "mike" }\n', 1)
     return text.replace('paths = ["."]', 'paths = [".."]', 1)
 

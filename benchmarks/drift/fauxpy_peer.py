@@ -66,7 +66,7 @@ def localised(stage: Stage, seed: int, method: str, python: str | None) -> dict[
     ]
     path = os.pathsep.join(
         [str(Path(python).parent), os.environ.get("PATH", "")]
-    )  # FauxPy starts "python" for mutants
+    )  # FauxPy runs mutants by the command `python`, so this Python must come first in PATH
     surroundings = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"PATH": path}
     try:
         done = subprocess.run(

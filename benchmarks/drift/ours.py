@@ -37,7 +37,7 @@ def prepared(stage: Stage, seed: int, budget: int = Options.budget, search: str 
     fixture = Fixture(
         stage.test, seed, marked.sensors, stage.sites.lists, offline.topics, offline.sample, tables
     )
-    plugged = ":" in search  # the peers change only constants
+    plugged = ":" in search  # a plugged-in search is that of a peer, which changes only constants
     options = Options(mode="repair", seed=seed, budget=budget, searches=(search,), structure=not plugged)
     online = run_online(stage.rollout, fixture, marked, options, stage.sites, stage.drift, quiet)
     patches = stage.folder / ".tarl" / "patches"

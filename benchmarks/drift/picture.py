@@ -2,9 +2,9 @@
 
     python benchmarks/drift/picture.py [--task pipe_crawler] [--seed 0]
 
-The picture has five panels and the patch. The panels show the rewards of episodes in both worlds, where the worlds
-differ, the utility of the lines there (the slices) beside the result of simulation, what the search tried, and the
-reward of the repair on fresh seeds.
+The picture has five panels and the patch. The panels show the rewards of episodes in both worlds; the cells in which
+the worlds differ; the utility of the code lines in these cells (the slices) beside the effects found by simulation; the
+candidates of the search; and the reward of the repair on fresh seeds.
 """
 
 from __future__ import annotations

@@ -104,7 +104,8 @@ def _jobs(arguments: argparse.Namespace, tasks: Sequence[str], results: Mapping[
             for group in groups:
                 missing = tuple(name for name in group if _key(name, task, seed) not in results)
                 if missing and (seed == 0 or not missing[0].startswith("FauxPy MBFL")):
-                    jobs.append((missing, task, seed))  # mutants take minutes, so only one seed is run
+                    # FauxPy's analysis of mutants takes minutes, so it runs with one seed only
+                    jobs.append((missing, task, seed))
     return jobs
 
 

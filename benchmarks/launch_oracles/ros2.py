@@ -121,7 +121,7 @@ def main():
     with os.fdopen(out, "w") as stream:
         json.dump(answers, stream, default=str)
         signal.alarm(0)
-    os._exit(0)  # threads of rclpy do not end
+    os._exit(0)  # end without waiting for threads of rclpy, which would never end
 
 
 if __name__ == "__main__":

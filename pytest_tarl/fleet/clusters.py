@@ -2,8 +2,8 @@
 
 A residual map holds the mean residual of a visit to each cell. The distance between two robots is the largest
 difference between their maps in any common cell, in standard errors of that difference, so noise alone does not
-separate robots. Complete
-for the numbers of cells and pairs (Bonferroni).
+separate robots. Robots are joined by complete linkage as long as no distance within a cluster is significant after a
+correction for the numbers of cells and pairs (Bonferroni).
 """
 
 from __future__ import annotations

@@ -61,7 +61,7 @@ def _leave(ctx: Interpreter, leaving: Leaving, frame: Frame) -> None:
 
 
 def returned(ctx: Interpreter, value: Value, frame: Frame) -> None:
-    """Return a value from a function, after each `finally` around."""
+    """Return a value from a function after executing every enclosing `finally`."""
     around = next((t for t in reversed(frame.tries) if t.final), None)
     if around is not None:
         around.leaving.append(Leaving(ctx.store.since(around.depth), value))
@@ -70,7 +70,7 @@ def returned(ctx: Interpreter, value: Value, frame: Frame) -> None:
 
 
 def jumped(ctx: Interpreter, kind: Literal["break", "continue"], frame: Frame) -> None:
-    """Leave an iteration of a loop, after each `finally` inside the loop."""
+    """Leave an iteration of a loop after executing every enclosing `finally` inside the loop."""
     if not frame.jumps:
         return
     depth, table = frame.jumps[-1]

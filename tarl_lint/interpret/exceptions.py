@@ -10,7 +10,7 @@ from tarl_lint.models.ros import publications
 
 
 def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:
-    """Pass an exception to the handlers in the function that may catch it, and out of the function unless one does.
+    """Pass an exception to the handlers of the function that may catch it, and to the caller unless one certainly does.
 
     A `finally` on the way is executed first (`branches.py`).
     """

@@ -66,7 +66,7 @@ def note_passed(ctx: Interpreter, key: Key, source: ir.Expr, value: Value, frame
 def note_taken(
     ctx: Interpreter, target: ir.Expr, held: Value, number: int, value: Value, frame: Frame
 ) -> None:
-    """Record a target whose element of a sequence is None only before the first message."""
+    """Record a target that gets an element of a sequence, if the element is None only before the first message."""
     keys = [(o, item_field(number)) for o in held.pts if o.kind == "sequence"]
     for key in keys:
         ctx.store.reads.ask(ctx.nullness.of_key, key)

@@ -64,7 +64,7 @@ class Reads:
             self.facts[question, of] = question(of)
 
     def wait(self, heard: int, own: Set[Key] = frozenset()) -> None:
-        """Record a wait, at which other roots can see the stores so far, and store."""
+        """Record a wait, during which other roots see the stores made so far and can store values themselves."""
         if not self.waits:
             self.waits, self.heard = True, heard
             self.own = frozenset(self.written | own)

@@ -56,7 +56,7 @@ def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Findi
 
 
 def _consumed(flow: Flow, tree: ast.Module | None) -> bool:
-    """Return whether the function that publishes sets an attribute that it publishes back to a constant."""
+    """Return whether the function that publishes an attribute also resets this attribute to a constant."""
     name = flow.sink.qualname.rpartition(".")[2]
     used = " ".join(step.code for step in flow.steps if step.site.qualname == flow.sink.qualname)
     return any(
