@@ -260,6 +260,8 @@ def test_a_parameter_section_without_a_namespace_is_for_a_node_without_one():
     assert messages(307, keeper("/n/k", section), keeper("/k", section, words=("gain", "a", "b", "c"))) == []
     assert messages(307, keeper("/$(arg n)/k", section)) == []
     assert messages(307, keeper("/n/other", section)) == []
+    three = "/n/k does not get a, b, c: the section k of k.yaml is for /k; name it /n/k or /**/k"
+    assert messages(307, keeper("/n/k", yaml("k: {ros__parameters: {a: 2, b: 3, c: 4}}"))) == [three]
     both = yaml("k: {ros__parameters: {gain: 1}}\n/n/k: {ros__parameters: {gain: 2}}")
     assert messages(307, keeper("/n/k", both)) == []
     assert messages(307, keeper("/n/k", yaml("/m/k: {ros__parameters: {gain: 1}}"))) == []
