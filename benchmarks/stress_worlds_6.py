@@ -323,7 +323,7 @@ QUIET_MACHINES: Mapping[str, Machine] = {
             "friction": Span(0.0, 1.2, 0.5),
         },
     ),
-}  # nothing in their ranges breaks the guarantee
+}  # worlds in which no point of the ranges breaks the guarantee
 
 
 def main() -> None:

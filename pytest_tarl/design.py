@@ -39,7 +39,7 @@ def adopted(path: Path) -> tuple[str, ...]:
         start = _PREFIX + int.from_bytes(content[8:_PREFIX], "little")
         names = json.loads(content[start:]).get("design", ())
         return tuple(map(str, names)) if isinstance(names, list) else ()
-    except Exception:  # a damaged zip or JSON; loading the recording later reports it
+    except Exception:  # the zip archive or the JSON is damaged; this is reported when the recording is loaded
         return ()
 
 

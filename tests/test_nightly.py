@@ -44,7 +44,7 @@ def test_the_ci_configuration_has_jobs() -> None:
 
 
 @pytest.mark.parametrize("job", JOBS)
-def test_a_job_installs_what_its_tests_import(job: str) -> None:
+def test_each_ci_job_installs_what_its_tests_import(job: str) -> None:
     extras, more = INSTALLED.findall(JOBS[job])[0]
     allowed = named({*extras.split(",")}) | {re.sub(r"[-_.]+", "-", one).lower() for one in more.split()}
     known = packages_distributions()

@@ -159,7 +159,7 @@ def _stopped() -> Iterator[Event]:
 
     try:
         before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
-    except ValueError:  # not in the main thread
+    except ValueError:  # Python sets signal handlers only in the main thread
         yield stopped
         return
     try:

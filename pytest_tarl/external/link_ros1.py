@@ -165,7 +165,7 @@ class LinkROS1:
         if service not in self._proxies:
             try:
                 kind = _service_type(service, self._master.lookupService(service))
-            except Exception:  # the service does not exist yet
+            except Exception:  # no node offers the service yet
                 return None
             self._proxies[service] = rospy.ServiceProxy(service, _service_class(kind))
         return self._proxies[service]

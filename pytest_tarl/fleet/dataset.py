@@ -92,5 +92,6 @@ def _readable(where: Store, path: str) -> Iterator[None]:
             f"{where.shown(path)} is damaged or cannot be read ({first_line(problem)}): delete it and ingest "
             "its logs again."
         ) from problem
-    except Exception as problem:  # each store raises its own exceptions, such as those of an HTTP client
+    # each kind of store raises exceptions of its own, for example of an HTTP client
+    except Exception as problem:
         raise FleetError(f"{where.shown(path)} cannot be read ({first_line(problem)}): {ADVICE}") from problem

@@ -31,7 +31,7 @@ class Store:
             found = self.fs.find(f"{self.root}/{folder}")
         except FileNotFoundError:
             return []
-        except Exception as problem:  # each store raises its own exceptions
+        except Exception as problem:  # each kind of store raises exceptions of its own
             raise FleetError(f"{self.shown(folder)} cannot be listed ({problem}): {ADVICE}") from problem
         start = len(self.root) + 1
         return sorted(one[start:] for one in found if one.endswith(".parquet"))
@@ -94,7 +94,7 @@ def store(address: str) -> Store:
             install_command("s3") if address.startswith("s3:") else "install the package that the error names"
         )
         raise FleetError(f"{address} cannot be opened ({problem}): {command}.") from problem
-    except Exception as problem:  # each store raises its own exceptions
+    except Exception as problem:  # each kind of store raises exceptions of its own
         raise FleetError(f"{address} cannot be opened ({problem}): {ADVICE}") from problem
     protocol = fs.protocol if isinstance(fs.protocol, str) else fs.protocol[0]
     return Store(fs, str(root).rstrip("/"), protocol)

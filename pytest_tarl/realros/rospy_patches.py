@@ -75,7 +75,7 @@ def _patch_waits(copy: RospyCopy, network: RospyNetwork) -> None:
             if process is None:
                 original(duration)
                 return
-            copy.rostime.get_rostime()  # raises before init_node
+            copy.rostime.get_rostime()  # raises an exception before init_node
             span = duration.to_nsec() if hasattr(duration, "to_nsec") else nanoseconds(duration)
             _sleep(copy, network, process, process.scheduler.time + span)
 

@@ -10,7 +10,7 @@ from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 LATEST = 3
 FEW = 0.25  # a candidate's value counts as nearly right if at most this share of its missions loses reward
-SPREAD = 5  # number of missions that represent a test
+SPREAD = 5  # number of missions of each test that are run
 
 
 @dataclass(frozen=True, slots=True)

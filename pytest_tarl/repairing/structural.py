@@ -36,7 +36,7 @@ MOST = {
 }  # kind of template → maximum number of expressions at which to try one
 COMMANDED = ("stored", "sent")  # kinds of expressions that go into a published message
 NUMBERS = ("value", "input", "stored", "sent")  # kinds of expressions that templates for any number fit
-RESPONDS = 0.2  # minimum gain of a constant whose statement responds, as a share of the wanted gain
+RESPONDS = 0.2  # a statement responds if one of its constants gains at least this share of the wanted gain
 FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third

@@ -23,7 +23,7 @@ _LOCAL_MODES = 3  # index of the local modes in the list that termios.tcgetattr 
 class NodeInterruptedError(KeyboardInterrupt):
     """Ends a read when the episode ends, as Ctrl-C does on a robot."""
 
-    tarl_shutdown = True  # the normal end of a node, not reported
+    tarl_shutdown = True  # this exception ends a node normally, so it is not reported
 
 
 class Terminal(io.TextIOBase):

@@ -18,7 +18,7 @@ _IDLE_EXIT = 50  # number of checks after which an unused watching thread ends
 _DEBUGGERS = ("pdb", "bdb", "pydevd", "debugpy")
 _CLOCK_OF: Callable[[int], int] | None = getattr(
     time, "pthread_getcpuclockid", None
-)  # missing on macOS and Windows
+)  # macOS and Windows lack this function
 _read_clock: Callable[[int], float] | None = getattr(
     time, "clock_gettime", None
 )  # the real clocks, saved before nodes see the virtual clock

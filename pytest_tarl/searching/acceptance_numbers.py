@@ -14,7 +14,7 @@ from math import comb, sqrt
 
 import numpy as np
 
-NEVER = -1  # the candidate cannot be accepted at this look, even without a failure
+NEVER = -1  # at this number of missions, a candidate cannot be accepted even if no mission failed
 
 
 @lru_cache(maxsize=64)

@@ -94,7 +94,9 @@ class Sweep:
         self._tried: set[Candidate] = set()
         self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
-        self.refused: set[tuple[Unit, Guard]] = set()  # confirmed and yielded, then refused by the caller
+        self.refused: set[tuple[Unit, Guard]] = (
+            set()
+        )  # units that were confirmed and yielded, but that the caller refused
         self.preferences = Preferences(self)
         self.combining = Combining(self)
         self._adjusted: set[tuple[Unit, Guard, float]] = set()

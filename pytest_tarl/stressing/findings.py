@@ -11,7 +11,7 @@ from pytest_tarl.spaces import Point, Space, Span
 from pytest_tarl.stressing.guarantee import Evidence, Guarantee
 from pytest_tarl.stressing.rays import Ray, distance
 
-CONFIDENCE = 0.9  # confidence that a boundary lies in its interval
+CONFIDENCE = 0.9  # probability that a boundary lies in the interval that is reported for it
 # maximum probability that the guarantee still holds at the far end of the interval
 FAR_RISK = (1.0 - CONFIDENCE) / 6
 NEARER = 0.98  # maximum ratio of two distances at which the first counts as nearer
@@ -211,7 +211,7 @@ class Stress:
     tried: int = 0  # number of combinations tried
     margin_map: MarginMap | None = None
     statements: Statements | None = None  # None without a confirmed failure
-    sobol: Sobol | None = None  # None if the budget did not suffice, or SALib is not installed
+    sobol: Sobol | None = None  # None if the episodes did not suffice, or if SALib is not installed
     repairs: tuple[Attempt, ...] | None = None  # None if no repair was asked for
     ended: str = ""  # why the search ended early: budget, interrupted, or nominal; else empty
 

@@ -22,10 +22,11 @@ class NullnessFacts:
     doubtful: set[ir.Call] = field(default_factory=set)  # calls whose result may be None because of data
     came: dict[Key, set[int]] = field(
         default_factory=dict
-    )  # copy of a variable in `vacant` → nodes that decide whether the copy is set
+    )  # for each copy of a variable in `vacant`: the nodes that decide whether the copy is set
     came_out: dict[ir.Call, set[int]] = field(
         default_factory=dict
-    )  # call that returns such a copy → nodes that decide whether the copy is set
+        # for each call that returns a copy of a variable in `vacant`: the nodes that decide whether the copy is set
+    )
 
     def of_key(self, key: Key | None) -> tuple[bool, bool, int]:
         """Return the facts about a variable or field; without a key, whether any value may be None because of data."""

@@ -62,7 +62,7 @@ def _changed(
             news = containers.through_statement(ctx, Value(inside), frame, call)
             containers.change(ctx, value, news, [expr], frame)
         return base
-    if arguments[0] or arguments[1]:  # also constants: whether they are drawn can depend on data
+    if arguments[0] or arguments[1]:  # constants count too, because data can decide whether they are drawn
         learnt = Value(call_contexts.all_used(ctx, arguments))
         containers.insert_elements(ctx, pointer(obj), [learnt], frame, call)
     return base

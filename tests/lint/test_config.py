@@ -235,7 +235,7 @@ def test_a_wrapper_of_an_unknown_function_is_refused_with_a_suggestion():
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
 @pytest.mark.parametrize("kind", ["pipe", "device", "folder"])
-def test_settings_cannot_name_a_baseline_that_blocks_its_reader(in_directory, kind):
+def test_a_baseline_in_the_settings_must_be_a_regular_file(in_directory, kind):
     in_directory({"pyproject.toml": "[tool.tarl-lint]\nbaseline = 'accepted'\n"})
     assert resolve(Options()).baseline == Path.cwd() / "accepted"
     if kind == "pipe":

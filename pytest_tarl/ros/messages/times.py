@@ -14,7 +14,7 @@ Self = TypeVar("Self", bound="TVal")
 
 def _split(seconds: float) -> tuple[int, int]:
     whole = int(seconds)
-    return whole, int((seconds - whole) * NANOSECONDS)  # truncated, as genpy does
+    return whole, int((seconds - whole) * NANOSECONDS)  # genpy truncates nanoseconds too
 
 
 class TVal:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os  # nodes call moveit_commander.os._exit
+import os  # imported here because nodes call moveit_commander.os._exit
 from collections.abc import Sequence
 
 from pytest_tarl.ros.missing import refusing

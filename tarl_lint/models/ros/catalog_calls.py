@@ -24,7 +24,7 @@ def ros_call(ctx: Interpreter, it: Invocation) -> Value:
     if "**" in it.arguments[1]:
         it.arguments = it.arguments[0], _unpacked_keywords(ctx, it)
     action = ACTIONS.get(it.fact.kind)
-    return action(ctx, it) if action is not None else UNKNOWN  # this kind of call has no model
+    return action(ctx, it) if action is not None else UNKNOWN  # UNKNOWN if this kind of call has no model
 
 
 def _unpacked_keywords(ctx: Interpreter, it: Invocation) -> dict[str, Value]:

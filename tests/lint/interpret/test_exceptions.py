@@ -141,7 +141,7 @@ def test_the_exception_of_a_called_function_is_caught_by_its_class(caught, kinds
     assert flows(body) == kinds
 
 
-def test_a_finally_lets_an_exception_pass():
+def test_a_finally_block_passes_an_exception_on_unless_it_returns():
     body = """\
     try:
         if msg.data > 1:

@@ -62,7 +62,7 @@ def test_a_file_that_is_not_python_is_reported_in_one_sentence_with_its_line(dat
     assert found.message.startswith(message)
 
 
-def test_a_bounded_file_is_read_up_to_its_size(tmp_path):
+def test_a_file_is_read_only_up_to_the_given_size(tmp_path):
     (tmp_path / "a").write_bytes("ä\n".encode("latin-1"))
     assert read_bytes(tmp_path / "a", 2) == b"\xe4\n"
     assert read_text(tmp_path / "a", 2) == "�\n"

@@ -103,7 +103,7 @@ def test_a_damaged_result_is_skipped_and_the_others_are_read(root: Path, text: s
     assert set(read(root).by_site) == {SPEED, TURN}
 
 
-def test_without_results_there_is_nothing(tmp_path: Path) -> None:
+def test_a_folder_without_results_yields_no_sites_and_no_patches(tmp_path: Path) -> None:
     found = read(tmp_path)
     assert (found.by_site, found.patches) == ({}, {})
 

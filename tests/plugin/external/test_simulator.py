@@ -85,7 +85,7 @@ def test_a_simulator_that_ends_early_is_reported(
         Simulator(SETUP, ros, ()).begin()
 
 
-def test_a_simulator_that_ends_later_is_reported_with_its_time(guardian: Guardian, ros: Ros) -> None:
+def test_the_error_for_a_simulator_that_ended_states_the_simulated_time(guardian: Guardian, ros: Ros) -> None:
     made = begun(SETUP, guardian, ros)
     guardian.events.put({"kind": "ended", "status": -9})
     with pytest.raises(SimulatorLostError, match="ended with status -9 at 2 s of its time"):

@@ -173,7 +173,7 @@ def test_events_of_threads_belong_to_the_step_in_which_they_occur():
     assert trace.event_cell[~of_threads].tolist() == [-1, -1, -1, 0, 0, 0]
 
 
-def test_greenlets_share_the_sequence_of_their_thread():
+def test_greenlets_of_a_thread_record_into_one_sequence():
     recorder = Recorder()
     main = greenlet.getcurrent()
     space = program(recorder, note=lambda value: main.switch())

@@ -204,7 +204,7 @@ def test_adjacent_statements_under_one_guard_share_one_if() -> None:
 
 
 @pytest.mark.parametrize("first", ["mud = 5 * delta", "log(5 * delta)", "a = yield 5"])
-def test_a_statement_that_may_change_the_condition_does_not_share_it(first: str) -> None:
+def test_a_condition_is_repeated_after_a_statement_that_may_change_it(first: str) -> None:
     text = f"def step(delta, mud, pos):\n    {first}\n    b = 0.1 + mud\n"
     analysis = HandMade({"node.py": text}, held=HELD)
     uses = [analysis.operand("5", 5, "5"), analysis.operand("0.1", 0.1, "0.1 + mud")]

@@ -81,7 +81,7 @@ def test_the_best_rejected_candidate_has_its_reward_if_it_was_run() -> None:
     assert repair_words.best_words(run) == f"{WORDS} everywhere (2.50 per episode, mean of 7)"
 
 
-def test_an_attempt_has_its_outcome_and_its_episodes() -> None:
+def test_the_line_of_an_attempt_states_its_outcome_and_its_episodes() -> None:
     one = Attempt("5 → 12", "not confirmed", 2.5, 7, True)
     assert (
         repair_words.attempt_words(one)

@@ -241,7 +241,7 @@ def test_invalid_sizes_and_names_are_refused(make: Any) -> None:
 @pytest.mark.parametrize(
     ("value", "found"), [(0, 0.0), (1e9, 1e9), (-0.1, None), (1.1e9, None), ("1", None), (math.nan, None)]
 )
-def test_a_moment_is_a_time_that_the_clock_can_represent(value: Any, found: float | None) -> None:
+def test_a_value_is_a_moment_if_the_clock_can_represent_its_time(value: Any, found: float | None) -> None:
     assert moment(value) == found
 
 

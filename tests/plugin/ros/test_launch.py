@@ -193,7 +193,7 @@ def test_nodes_that_exclude_each_other_are_never_started_together(tarl: Tarl, tm
     assert tarl.ros.notes == ()
 
 
-def test_tests_of_a_launch_file_are_not_started(tarl: Tarl, tmp_path: Path) -> None:
+def test_test_tags_of_a_launch_file_are_not_started(tarl: Tarl, tmp_path: Path) -> None:
     node = '<node pkg="one" type="relay.py" name="relay"/>'
     checked = '<remap from="out" to="/checked"/>'
     test = f'<test pkg="one" type="relay.py" test-name="check">{checked}</test>'

@@ -85,7 +85,7 @@ def test_a_motion_takes_the_time_of_the_slowest_joint_and_publishes_its_states(s
     assert any("obstacles and accelerations are not considered" in one for one in ros.notes)
 
 
-def test_the_present_state_is_that_of_the_world(start: Start) -> None:
+def test_moveit_reads_the_present_joint_values_from_joint_states(start: Start) -> None:
     ros = start(
         BEGIN + "    rospy.sleep(1.0)\n    found.append(group.get_current_joint_values())",
         parameters=DESCRIBED,

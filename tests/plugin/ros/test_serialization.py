@@ -88,7 +88,7 @@ def test_nodes_receive_and_publish_raw_messages(start: Start) -> None:
     assert ros.namespace["got"] == ["hello"]  # type: ignore[attr-defined]
 
 
-def test_changed_parameters_of_other_nodes_are_handled(start: Start) -> None:
+def test_a_parameter_event_handler_gets_changes_of_other_nodes(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.parameter_event_handler import ParameterEventHandler

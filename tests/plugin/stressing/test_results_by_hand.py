@@ -128,7 +128,9 @@ def test_vectors_are_clipped_to_the_declared_ranges_and_to_a_maximum_length() ->
         (0.8, 0.0, -1.0),
     ],
 )
-def test_the_margin_is_the_smaller_one_of_the_two_shares(passed: float, loss: float, expected: float) -> None:
+def test_the_margin_is_the_minimum_of_the_margins_of_passes_and_of_reward(
+    passed: float, loss: float, expected: float
+) -> None:
     assert GIVEN.margin(passed, loss) == pytest.approx(expected)
 
 

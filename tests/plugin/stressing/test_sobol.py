@@ -78,7 +78,7 @@ def test_the_sample_is_as_large_as_the_budget_allows() -> None:
     assert evaluator.spent == 0
 
 
-def test_text_json_and_page_state_the_shares_and_a_small_budget_leaves_them_out() -> None:
+def test_all_reports_state_the_variance_shares_unless_the_budget_is_too_small() -> None:
     state = np.random.get_state()[1]
     found = stressed(added, SPACE, budget=900, variance=True)
     assert (np.random.get_state()[1] == state).all()  # nodes may use the global generator

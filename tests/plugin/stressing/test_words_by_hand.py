@@ -305,7 +305,7 @@ def test_failures_are_sorted_by_their_distance_from_nominal() -> None:
     assert [one.distance for one in confirmed(found.curves)] == [0.5, 1.0]
 
 
-def test_the_document_has_values_of_the_directions() -> None:
+def test_the_json_document_lists_the_values_of_each_direction() -> None:
     found = json_result.document(
         stress(curve(MUD, GOOD, confirmed=0.75, held=0.5), curve(DOWN, {1.0: -1.0}), seconds=2.0)
     )
