@@ -133,7 +133,7 @@ def test_the_github_action_writes_one_comment_and_later_edits_it(project: Path) 
     assert "❌ degraded" in (project / "body.txt").read_text()
 
 
-def test_inputs_are_never_part_of_a_script() -> None:
+def test_scripts_of_the_action_contain_no_inputs() -> None:
     for one in ACTION["runs"]["steps"]:
         assert "${{" not in one["run"], one["name"]
 

@@ -39,7 +39,7 @@ class Counts:
     passed: int = 0
     without_steps: int = 0
     without_rewards: int = 0
-    beyond_range: int = 0  # totals outside the declared range
+    beyond_range: int = 0  # number of totals outside the declared range
 
 
 @dataclass

@@ -130,7 +130,7 @@ def _whole(file: BinaryIO, path: Path) -> int:
     start = file.read(len(MAGIC))
     if start != MAGIC:
         if MAGIC.startswith(start):
-            return 0  # empty, or truncated within its first line
+            return 0  # the file is empty, or ends within its first line
         raise _foreign(path)
     end = file.tell()
     while next_record(file) is not None:

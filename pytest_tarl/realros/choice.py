@@ -57,7 +57,7 @@ def _imported(file: Path) -> list[Library]:
     try:
         tree = ast.parse(file.read_bytes())
     except (OSError, SyntaxError, ValueError):
-        return []  # the error is reported when the file runs
+        return []  # Python reports the error when the file runs
     found: list[Library] = []
     for node in ast.walk(tree):
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []

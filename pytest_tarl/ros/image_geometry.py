@@ -216,7 +216,7 @@ def _matrix(numbers: Sequence[float], rows: int, columns: int) -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter(
             "ignore", PendingDeprecationWarning
-        )  # numpy.matrix warns; image_geometry returns it
+        )  # numpy.matrix warns that it is outdated, but image_geometry returns this type
         return np.matrix(np.array(list(numbers), dtype="float64").reshape(rows, columns))
 
 

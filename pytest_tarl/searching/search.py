@@ -126,7 +126,7 @@ class Trials:
     # extra episodes, added to the budget once a candidate has gained the share `FAR` of the gain that `worth`
     # wants
     reserve: int = 0
-    worth: Goal | None = None  # the goal whose wanted gain releases `reserve`
+    worth: Goal | None = None  # the goal that states the wanted gain for `reserve`
     # whether a candidate loses the missions that rejected candidates lost
     loses: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world

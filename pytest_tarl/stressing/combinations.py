@@ -40,7 +40,7 @@ class Together:
     tried: int = 0  # number of drifts in several directions that the search tried
     margin_map: MarginMap | None = None
     chains: int = 0  # number of chains tested so far
-    tested: list[Point] = field(default_factory=list)  # the drifts of these chains that ran episodes
+    tested: list[Point] = field(default_factory=list)  # the drifts of these chains at which episodes ran
     # drifts that fail according to the model but are not confirmed
     expected: list[Failure] = field(default_factory=list)
 

@@ -72,7 +72,7 @@ SHALLOW, DEEP = 0.03, 1.2
 # share of the distance below which components may be noise; they are dropped before confirmation
 TRIFLE = 0.15
 
-Steps = Sequence[tuple[float, float]]  # pairs as in EXPECTED: errors of the model, excess
+Steps = Sequence[tuple[float, float]]  # pairs as in EXPECTED: number of standard deviations, and excess
 
 
 @dataclass

@@ -36,7 +36,7 @@ def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - shared signa
         if news is None:
             continue
         value = store.now[key]
-        # the field of a new object that was not set has its default value
+        # a field of a new object has its default value until it is set
         former = ctx.ops.default(ctx, *key) if value is ABSENT else value
         both = store.admit(key, former, news)
         if both is not value:

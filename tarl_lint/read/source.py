@@ -162,7 +162,7 @@ def _decode(path: str, data: bytes) -> str | SourceError:
             line,
             f"The bytes are not valid {error.encoding}: name the encoding in the first line or save as UTF-8.",
         )
-    # for encodings such as rot13, which do not decode bytes to text
+    # encodings such as rot13, which do not decode bytes to text, raise a LookupError
     except (LookupError, UnicodeError) as error:
         return SourceError(path, 1, f"Unknown encoding: {error}. Save the file as UTF-8.")
     return text.replace("\r\n", "\n").replace("\r", "\n")

@@ -74,7 +74,7 @@ def columns(text: str) -> int:
 
 
 def _columns(character: str) -> int:
-    import unicodedata  # most code is ASCII
+    import unicodedata  # imported only when needed, because most code is ASCII
 
     if unicodedata.combining(character):
         return 0

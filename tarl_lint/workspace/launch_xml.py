@@ -197,7 +197,7 @@ class _Reader:
         stated = text(element.get("name", ""))
         name = _parameter(
             above, stated.lstrip("/") if above == "~" else stated
-        )  # remappings of a node are private
+        )  # a parameter inside a <node> is private
         if "command" in element.attrib:
             raise SymbolicError(f"{name} is what a command prints on the robot")
         kind = element.get("type", "auto")

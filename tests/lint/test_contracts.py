@@ -41,7 +41,7 @@ def test_the_contract_names_only_existing_modules():
     assert [name for name in floors() if name not in known] == []
 
 
-def test_inheritance_is_shallow():
+def test_inheritance_has_a_bounded_depth():
     deep = [
         cls
         for name in modules()

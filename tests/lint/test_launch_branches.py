@@ -205,7 +205,7 @@ def test_values_made_within_a_branch_are_known_there(tmp_path: Path) -> None:
     assert [(one.name, one.value) for one in found.settings] == [("~gain", 1.0)]
 
 
-def test_settings_of_a_branch_are_symbolic_after_it(tmp_path: Path) -> None:
+def test_settings_that_only_one_branch_makes_are_symbolic_after_the_branch(tmp_path: Path) -> None:
     statements = """
         found = []
         if REAL:

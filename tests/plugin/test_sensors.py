@@ -137,7 +137,7 @@ def test_rounding_never_moves_a_value_outside_the_range() -> None:
 
 
 @pytest.mark.parametrize("bounds", [(-math.inf, 1.0, 3), (0.0, math.inf, 3), (0.0, 1.0, 2.5)])
-def test_bounds_that_cannot_be_divided_are_refused(bounds: tuple[float, float, int]) -> None:
+def test_infinite_bounds_and_fractions_of_bins_are_refused(bounds: tuple[float, float, int]) -> None:
     low, high, bins = bounds
     with pytest.raises(SettingsError, match="finite"):
         Sensor("x", low=low, high=high, bins=bins)

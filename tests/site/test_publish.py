@@ -30,7 +30,7 @@ def test_the_newest_release_is_the_latest_regardless_of_the_order_of_publication
     assert "latest/index.html" in (tree / "index.html").read_text()
 
 
-def test_before_the_first_release_the_branch_is_the_latest(tmp_path: Path) -> None:
+def test_before_the_first_release_latest_is_the_development_version(tmp_path: Path) -> None:
     (tmp_path / "tree").mkdir()
     publish(built(tmp_path / "site", "dev"), tmp_path / "tree", "dev")
     assert (tmp_path / "tree" / "latest" / "index.html").read_text() == "dev"

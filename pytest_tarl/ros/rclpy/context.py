@@ -53,7 +53,7 @@ class Context:
         """
         if self.process.ending:
             error = RCLError("failed to shutdown: rcl_shutdown already called on the given context")
-            error.tarl_shutdown = True  # not reported: programs often end with this call
+            error.tarl_shutdown = True  # not reported, because programs often end with `shutdown`
             raise error
         if not self.initialised:
             raise RuntimeError("Context must be initialized before it can be shutdown")

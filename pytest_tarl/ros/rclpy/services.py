@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
 
 
-SrvType = TypeVar("SrvType")  # these names are rclpy's, for annotations of nodes
+SrvType = TypeVar("SrvType")  # nodes use these three names of rclpy in annotations
 SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
 

@@ -76,4 +76,4 @@ class Publisher:
     pos: ir.Pos = (0, 0, 0, 0)
     used: bool = False
     kind: Kind = "topic"
-    methods: frozenset[str] = frozenset(["publish"])  # names of the methods that send
+    methods: frozenset[str] = frozenset(["publish"])  # names of the methods that send a message

@@ -71,7 +71,7 @@ def a_function(ctx, name: str, *decorators: str) -> Obj:
 # --- reads --------------------------------------------------------------------------------------------
 
 
-def test_the_content_of_a_part_includes_the_data_of_the_whole_object(ctx):
+def test_the_content_of_a_field_includes_the_data_of_the_whole_object(ctx):
     whole = made(ctx, "lib", "a")
     part = whole.sub("x")
     assert heap.content(ctx, part) is BOTTOM

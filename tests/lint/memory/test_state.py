@@ -444,7 +444,7 @@ def test_reads_after_a_wait_depend_on_the_stores_of_other_roots(store, obj):
     assert store.heard() == {key: TWO}
 
 
-def test_a_root_is_not_rerun_for_a_store_of_another_root_that_adds_nothing_new(store, obj):
+def test_a_store_of_another_root_reruns_no_root_if_it_adds_nothing_new(store, obj):
     store.put((obj, "x"), BOTH)
     store.shared.leave(store.shared.ends, Root("other", "callback"), (obj, "x"), TWO)
     store.waited = True
@@ -478,7 +478,7 @@ def test_a_root_publishes_no_values_that_came_from_other_roots(store, obj):
     assert store.mine(key, Value(frozenset([1, 2]), consts=frozenset())) is None
 
 
-def test_a_root_publishes_no_values_that_existed_at_its_start(store, obj):
+def test_a_root_publishes_only_values_that_did_not_exist_at_its_start(store, obj):
     key = (obj, "x")
     assert store.mine(key, ONE) is ONE
     store.found[key] = ONE

@@ -73,7 +73,7 @@ def test_lines_move_with_blank_lines_comments_and_longer_unread_bodies():
         ("return y\n", "return y\n\nz = 1\n"),
     ],
 )
-def test_a_change_of_something_that_was_read_needs_another_run(was, now):
+def test_a_change_of_code_that_the_analysis_read_requires_a_new_analysis(was, now):
     assert was in OLD
     assert moved(OLD.replace(was, now)) is None
 

@@ -623,7 +623,7 @@ def test_functions_of_the_file_can_be_called_and_report_their_problems(tmp_path)
     assert isinstance(file.called("h"), Unknown)
 
 
-def test_modules_are_interpreted_once_and_their_names_read(tmp_path):
+def test_an_imported_module_is_interpreted_once_and_provides_its_names(tmp_path):
     (tmp_path / "one.py").write_text("import two\nX = two.Y + 1\n_z = 5\nN.append(1)\n")
     (tmp_path / "two.py").write_text("Y = __name__\nN = []\nif absent:\n    Y = 1\n")
     path = tmp_path / "read.py"

@@ -263,7 +263,7 @@ def generate_launch_description():
 """
 
 
-def test_the_function_of_an_opaque_function_reads_configurations_and_conditions(package):
+def test_an_opaque_function_can_read_configurations_and_conditions(package):
     found = launched(package, HEAD + OPAQUE, "a.launch.py", a="2")
     assert [one.name for one in found.nodes] == ["True", "False", "2", "x2", "2", "no", "lacks"]
     assert found.arguments == ("a", "b", "c"), "those that are declared or read"

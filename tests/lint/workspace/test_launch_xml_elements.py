@@ -75,7 +75,7 @@ PARAMETERS = [
 
 
 @pytest.mark.parametrize(("inside", "found", "problems"), PARAMETERS)
-def test_a_parameter_of_a_node_has_its_value(package, inside, found, problems):
+def test_a_parameter_inside_a_node_gets_its_value_from_the_launch_file(package, inside, found, problems):
     launch = launched(package, f'<launch><arg name="n" value="3"/>{NODE.format(inside)}</launch>')
     assert settings(launch.nodes[0]) == found
     assert reasons(launch) == problems

@@ -98,7 +98,7 @@ def test_a_message_at_the_end_of_a_step_belongs_to_the_next() -> None:
     assert seen == [1.0, 3.0]
 
 
-def test_only_the_last_step_ends_the_mission() -> None:
+def test_only_the_last_step_of_a_bag_ends_the_mission() -> None:
     over: list[bool] = []
     bag = Mission([(0.0, "/level", 1.0), (1.2, "/level", 2.0)])
     Played(bag, monitor=lambda moment: over.append(moment.over) or 0.0)

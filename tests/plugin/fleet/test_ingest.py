@@ -155,7 +155,7 @@ def test_interrupted_repeated_and_reordered_runs_give_the_same_rows(
     assert finished <= {path.name for path in (to / "cells").rglob("*.parquet")}
 
 
-def test_the_same_command_again_writes_nothing(tmp_path: Path) -> None:
+def test_ingesting_the_same_logs_again_writes_nothing(tmp_path: Path) -> None:
     test, logs = world(tmp_path)
     to = tmp_path / "data"
     list(ingest(order(test, logs, to)))

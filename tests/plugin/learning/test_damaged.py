@@ -185,7 +185,7 @@ VALUES = st.sampled_from([-(2**62), -2, -1, 0, 1, 7, 10**6, 2**62])
 
 @FUZZ
 @given(st.data())
-def test_inconsistent_columns_are_refused_or_usable(data: st.DataObject) -> None:
+def test_a_recording_with_inconsistent_columns_is_refused_or_remains_usable(data: st.DataObject) -> None:
     header, columns = parts()
     name = data.draw(st.sampled_from(sorted(columns)))
     column = columns[name]

@@ -231,7 +231,7 @@ def test_an_invalid_json_record_is_reported(tmp_path: Path) -> None:
     assert "is damaged at byte" in reading.problems[0]
 
 
-def test_steps_cells_and_new_cells_are_read(tmp_path: Path) -> None:
+def test_the_cells_of_each_mission_are_read_from_a_log(tmp_path: Path) -> None:
     some = walks(4, 7)
     other = type(some[0])(((9, 9), (0, 0), (9, 9)), (1.0, 2.0, 3.0), True)
     path = log(tmp_path / "m.log", [*some, other])

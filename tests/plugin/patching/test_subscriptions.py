@@ -518,7 +518,7 @@ def test_a_value_used_in_another_module_is_stored_in_that_module(importing: str,
     assert ros.published == [12.0, 5.0]
 
 
-def test_a_class_that_the_node_does_not_import_directly_subscribes_itself() -> None:
+def test_the_patch_subscribes_in_a_class_that_the_node_does_not_import_directly() -> None:
     library = LIBRARY.replace(
         "class Controller:\n",
         'class Controller:\n    def __init__(self):\n        """Be ready."""\n        self.on = True\n\n',

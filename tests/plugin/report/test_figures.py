@@ -33,7 +33,7 @@ def test_terrain_splits_the_figure_of_the_shuttle_into_two_rows(shuttle):
     assert found["sites"][5] == [30, "vel = 5 * delta", "traveller.py"]
 
 
-def test_each_value_is_at_its_site_and_position_and_gaps_are_null(shuttle):
+def test_a_figure_has_a_value_for_each_executed_site_and_position_and_null_elsewhere(shuttle):
     true = figure(shuttle)["rows"][1]
     cell = shuttle.cells.index((12, 1))
     assert true["online"][5][12] == pytest.approx(shuttle.lists[0].online[cell, 5], rel=1e-4)

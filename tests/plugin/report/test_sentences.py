@@ -64,7 +64,7 @@ def test_a_repair_is_described_by_its_edits_and_its_condition() -> None:
     assert repair_words.repair_words(Repair(True, "", EDITS)) == f"{WORDS} everywhere"
 
 
-def test_edits_of_one_line_share_its_place() -> None:
+def test_the_line_is_named_once_for_all_edits_of_it() -> None:
     both = (
         Edit("a.py", 3, "-0.1", -0.3),
         Edit("b.py", 4, "KP", 0.5, factor=True),

@@ -71,7 +71,7 @@ def test_a_range_that_does_not_begin_at_zero_is_drawn_from_its_lower_end() -> No
     assert [row.band.part for row in plot.rows] == ["worn"] * 3
 
 
-def test_a_drawing_has_the_rows_of_its_own_range() -> None:
+def test_each_drawing_has_only_the_rows_of_its_range() -> None:
     two: Any = SimpleNamespace(
         sizes={"mud": ONE, "worn": Sizes("worn", 0.5, 0.9, {"online": (0.5, 0.6, 0.7, 0.9)})},
         totals=COMPARISON.totals,

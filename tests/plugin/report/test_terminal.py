@@ -140,7 +140,7 @@ def test_every_reason_for_a_refusal_has_its_own_text(varied, reason):
     assert f"none accepted: {reason}\n" not in text
 
 
-def test_a_percent_sign_stays_on_the_line_of_its_number(varied):
+def test_no_line_of_the_report_starts_with_a_percent_sign(varied):
     for length in range(40):
         note = "x" * length + " 100 % of 12 % are 12 %."
         found = lines(varied(notes=(note,)), width=60, root=ROOT)

@@ -56,7 +56,7 @@ def run(start: Start, source: str, seconds: float = 20.0, **parameters: object) 
     return found(ros)
 
 
-def test_the_robot_is_that_of_the_descriptions(start: Start) -> None:
+def test_moveit_takes_groups_and_links_from_the_descriptions_of_the_robot(start: Start) -> None:
     assert run(
         start,
         """

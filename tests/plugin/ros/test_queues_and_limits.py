@@ -343,7 +343,7 @@ def test_alarms_and_tasks_of_an_instant_run_in_order_and_the_clock_stops_where_i
     assert found[4:] == ["late"]
 
 
-def test_a_fault_is_refused_if_its_topic_had_no_message_from_a_node_or_the_world(start: Start) -> None:
+def test_a_fault_on_a_topic_without_any_message_is_refused(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String

@@ -82,7 +82,9 @@ def test_a_goal_comes_from_an_argument_userdata_or_a_function(start: Start, code
 @pytest.mark.parametrize(
     ("status", "outcome"), [(3, "succeeded"), (4, "aborted"), (2, "aborted"), (5, "aborted")]
 )
-def test_the_status_of_the_goal_is_the_outcome(start: Start, status: int, outcome: str) -> None:
+def test_the_status_of_the_goal_determines_the_outcome_of_the_state(
+    start: Start, status: int, outcome: str
+) -> None:
     names, mover = acted(start, "_, outcome = run()", status)
     assert (names["outcome"], mover.cancelled) == (outcome, [])
 

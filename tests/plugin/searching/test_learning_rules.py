@@ -127,7 +127,7 @@ def test_one_look_has_the_bound_of_clopper_and_pearson(look: int, tolerated: flo
         assert found == NEVER
 
 
-def test_several_looks_share_the_risk_and_count_only_what_was_not_accepted() -> None:
+def test_all_looks_together_accept_with_at_most_the_risk() -> None:
     looks, tolerated, risk = (4, 8), 0.5, 0.2
     first, second = acceptance_numbers(looks, tolerated, risk)
     risks = {}

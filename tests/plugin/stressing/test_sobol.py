@@ -48,7 +48,7 @@ def test_interacting_directions_have_large_total_and_small_first_order_indices()
         assert one.total > 0.8
 
 
-def test_an_option_has_a_share_and_a_constant_margin_has_none() -> None:
+def test_an_option_that_decides_the_margin_has_all_of_its_variance() -> None:
     found = sobol(evaluator_of(lambda point, _: (point["c<"] < 1.0, 1.0), SPACE, budget=400))
     assert found is not None
     assert [round(one.total, 1) for one in found.shares] == [0.0, 0.0, 1.0]
