@@ -78,7 +78,7 @@ def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | Non
 
 
 def _placed(mutants: Mutants, examiner: Examiner, candidate: Candidate) -> tuple[Candidate, int]:
-    """Return the candidate, at its definition if that has the same effect, and the number of episodes."""
+    """Return the candidate, moved to the definition if that has the same effect, and the number of episodes."""
     trials = Trials(lambda one, seed: mutants.run(one, seed, mutants.order.drift), PLACING)
     try:
         return examiner.placing(candidate, trials) or candidate, trials.spent

@@ -50,7 +50,7 @@ def beside(mutants: Mutants, candidate: Candidate) -> Beside:
 
 
 def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
-    """Return whether a test depends on changed files: they are its nodes, or its nodes or the test mention them."""
+    """Return whether a test depends on changed files: its nodes are among them, or its nodes or code mention them."""
     if changed & set(neighbour.nodes):
         return True
     texts = [root / neighbour.test.partition("::")[0], *neighbour.nodes]

@@ -25,7 +25,7 @@ from pytest_tarl.learning.drift import PASS_RATE_LOSS
 from pytest_tarl.model import Reason
 from pytest_tarl.searching.acceptance_numbers import acceptance_numbers
 
-SCREEN = 8  # number of episodes before the test, from which the bet size is chosen
+SCREEN = 8  # number of episodes that run before the test, to choose the bet size
 EARLY = (8, 16, 32)  # early looks: numbers of episodes after which the test can only refuse
 LOOKS = tuple(range(60, 201, 20))  # looks: numbers of episodes after which the test can refuse or accept
 SEEDS = SCREEN + LOOKS[-1]

@@ -26,7 +26,7 @@ from pytest_tarl.searching.search import (
 )
 from tarl_lint.model import Operand
 
-UNMOVED = 0.02  # maximum difference of a factor from 1 at which the constant stays unchanged
+UNMOVED = 0.02  # a factor that differs from 1 by at most this amount leaves the constant unchanged
 MOST_IDLE = 200  # number of consecutive proposals without a new episode after which the search ends
 MOST_AT_ONCE = 1000
 

@@ -50,7 +50,7 @@ class Combining:
         self._unmasked_under: set[tuple[Unit, Guard]] = set()
 
     def best_with_others(self) -> Iterator[Candidate]:
-        """Combine the best operand with others; a proposal only with parameters of the same change."""
+        """Combine the best operand with others; combine a proposed operand only with parameters of the same change."""
         search = self.search
         every = [
             (gain, *key, factor)
@@ -89,7 +89,7 @@ class Combining:
         search.refused -= {tried for tried in search.refused if tried[1] == guard}
         leaders = search.gains.leaders(guard)
         if search.proposed or not leaders or leaders[0][0] >= ALMOST * search.goal.wanted:
-            return  # a change that nearly suffices needs another value rather than another constant
+            return  # the best change nearly suffices, so it needs another value, not another constant
         if leaders[0][0] > search.slack:
             hidden = [unit for unit in search.units if not search.gains.moves(unit)]
             yield from search.joining({}).unions([part for _, part in leaders], guard, hidden)

@@ -18,7 +18,7 @@ from tarl_lint.model import SiteId
 
 COARSE = (1.5, 0.65)
 FINE = (*COARSE, 1.22, 0.82, 1.35, 0.73)
-# maximum ratio of the repaired to the designed mission length, or the reverse, at which a repair needs no alternative
+# if the repaired and the designed mission differ in length by more than this factor, an alternative is sought
 LONGER = 1.3
 
 

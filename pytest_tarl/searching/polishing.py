@@ -15,10 +15,11 @@ KNOWN = 3  # minimum number of seeds on which a combination to adjust has run
 SEEDS = 3  # number of seeds on which factors are compared
 # ratios by which a factor is moved up or down; the second follows when the first no longer helps
 STEPS = (1.2, 1.08)
-SHARP_STEPS = (1.08, 1.03)  # such ratios for a single constant that earns much on most seeds
+SHARP_STEPS = (1.08, 1.03)  # ratios for a single constant that earns much on most seeds
 MUCH = 0.7  # minimum gain of a constant that SHARP_STEPS applies to, as a share of the wanted gain
 EPISODES = 36  # number of episodes after which no further factor is tried
-BEHIND = 0.05  # maximum shortfall on the first seeds, as a share of the wanted gain; beyond it, no further seed runs
+# factors that fall short by more than this share of the wanted gain on the first seeds run on no further seed
+BEHIND = 0.05
 
 Factors = tuple[float, ...]
 Earned = Callable[[Factors, int], float | None]

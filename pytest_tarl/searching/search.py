@@ -73,7 +73,7 @@ class Goal:
     harder: Mapping[int, float] = field(default_factory=dict)
     tolerated: Mapping[int, float] = field(default_factory=dict)
     controls: tuple[Pair, ...] = ()
-    # the drift's size varies by episode, so a mission may fail only because the drift is large
+    # whether the drift's size varies by episode; then a mission may fail only because the drift is large
     ranged: bool = False
     steps: float | None = None  # mean length of a designed mission, if known
 
@@ -127,7 +127,7 @@ class Trials:
     # wants
     reserve: int = 0
     worth: Goal | None = None  # the goal that states the wanted gain for `reserve`
-    # whether a candidate loses the missions that rejected candidates lost
+    # returns whether a candidate loses missions that were lost by rejected candidates
     loses: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world
     # seed → number of candidates that earned too little on it
@@ -255,8 +255,8 @@ class Trials:
     def _come_far(self, goal: Goal) -> bool:
         """Return whether any candidate that ran on several seeds gained at least `FAR` of the wanted gain.
 
-        Missions that rejected candidates lost have other seeds than the goal's pairs. They are compared with the mean
-        of the pairs.
+        Missions that were lost by rejected candidates do not have the seeds of the goal's pairs, so they are compared
+        with the mean of the pairs.
         """
         before = {pair.seed: pair.total for pair in goal.pairs}
         usual = fmean(before.values()) if before else goal.online
@@ -281,11 +281,10 @@ def label(candidate: Candidate) -> str:
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
     """Return whether a candidate passes on further seeds, starting after `goal.pairs[first]`.
 
-    The seeds on which other candidates fell short run first. A candidate is rejected early if it loses the missions
-    that rejected candidates lost in their acceptance tests. A candidate is also rejected at its first failed
-    mission, if missions succeed in the designed world and the drift's size does not vary. The other reasons
-    are a second seed with too little reward, and a low estimate of the candidate's mean total
-    (`falls_short`).
+    The seeds on which other candidates fell short run first. A candidate is rejected early if it loses missions that
+    were lost by rejected candidates in their acceptance tests. A candidate is also rejected at its first failed
+    mission, if missions succeed in the designed world and the drift's size does not vary. The other reasons are a
+    second seed with too little reward, and a low estimate of the candidate's mean total (`falls_short`).
     """
     if trials.loses(candidate):
         return False

@@ -31,7 +31,7 @@ from tarl_lint.model import Operand
 if TYPE_CHECKING:
     import numpy as np
 
-LEADING = 3  # number of best units that get larger steps before the next guard is tried
+LEADING = 3  # number of best units that are tried with larger steps before the next guard is tried
 HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
 FLIP = -1.0  # factor that flips the sign
 BETWEEN = (1.5, 0.65)
@@ -194,7 +194,7 @@ class Sweep:
         yield from self.combining.unmasked(guard)
 
     def _strengthened(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Make proposals stronger that were too weak to have an effect, most of all at statements that respond."""
+        """Strengthen proposals too weak to have an effect; use the largest factors only at statements that respond."""
         for factor in (*NEAR, *(factor for factor, _ in FURTHER)):
             idle = [unit for unit in among if self.gains.idle(unit)]
             if factor not in NEAR:

@@ -44,7 +44,7 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
 
 
 def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Unit, ...]:
-    """Add, after each unit whose constant has a chart, a unit on that chart; for a constant of 0, keep only that."""
+    """Add a unit on its chart after each unit whose constant has one; for a constant of 0, instead replace the unit."""
     found: list[Unit] = []
     for unit in plain:
         chart = charts.get(unit.operands[0])

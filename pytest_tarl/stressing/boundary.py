@@ -13,7 +13,7 @@ from pytest_tarl.stressing.guarantee import Guarantee, most_passed
 
 COARSE, FINE = 16, 32  # maximum number of episodes at a point of the sweep, and near the boundary
 RESOLUTION = 0.02  # width of the interval at which bisection stops, as a share of the declared range
-NOISY = 0.04  # this width while the failing end is undecided, because noise then hides a finer boundary
+NOISY = 0.04  # the same, while the failing end is undecided, because noise then hides a finer boundary
 
 
 def sweep(curve: Curve, evaluator: Evaluator) -> None:
@@ -72,7 +72,7 @@ def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
         nearest = Model(curve.evidence, given.tolerance).failing(most, most_passed(given, most, share))
         chosen += [] if nearest is None else [max(nearest, curve.failing[0])]
         chosen += [t for t in decided if t in curve.ray.extra]  # the ends of the declared `must_hold` range
-    # tried last, in case the few episodes at nearer values failed by chance
+    # these values are tried last, in case the few episodes at nearer values failed by chance
     beyond = [t for t in decided if t > max(chosen)]
     return [*sorted(set(chosen)), *dict.fromkeys([*beyond[len(beyond) // 2 :][:1], *beyond[-1:]])]
 

@@ -29,8 +29,8 @@ class Plan:
 
     The near end is the nearest drift that fails according to the model: `errors` are the errors of the model to allow
     for, in standard deviations, and `depth` is the excess over the guarantee, in units of what fresh episodes can show.
-    Each of `steps` adds a farther drift: the minimum probability that fresh episodes show its failure, and the minimum
-    distance as a multiple of that of the drift before it.
+    Each of `steps` adds a farther drift. A step contains the minimum probability that fresh episodes show the failure
+    of this drift, and its minimum distance as a multiple of the distance of the drift before it.
     """
 
     errors: float
@@ -38,7 +38,8 @@ class Plan:
     steps: tuple[tuple[float, float], ...]
 
 
-FIRST = Plan(0.5, 1.2, ((0.9, 1.06), (0.98, 1.2)))  # while no drift in several directions is confirmed
+# the plan while no drift in several directions is confirmed
+FIRST = Plan(0.5, 1.2, ((0.9, 1.06), (0.98, 1.2)))
 NEXT = Plan(0.35, 1.05, ((0.9, 1.03),))
 
 
@@ -62,9 +63,9 @@ def chain(nearest: Nearest, plan: Plan, limit: float) -> list[Point]:
 def clear(nearest: Nearest) -> list[Point]:
     """Return up to three drifts in several directions that failed in the search, those farthest from nominal first.
 
-    They are tested if no drift is confirmed that the model predicts: the model may be wrong. Of the drifts sorted
-    from the farthest to the nearest, they are those after a half and after three quarters, and the last. The search
-    runs no further episodes there.
+    They are tested if none of the predicted drifts is confirmed, because the model may be wrong. If the drifts are
+    sorted from the farthest to the nearest, the three are at half of the list, at three quarters and at the end. The
+    search runs no further episodes there.
     """
     usual, evaluator = nearest.evaluator.space.nominal, nearest.evaluator
     found = [
@@ -103,7 +104,7 @@ def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Poi
     """Return a drift for each step of the plan, nearer than `limit`, those farthest from nominal first.
 
     The drifts are multiples of `near` or have been tried before. A step takes the nearest drift that is likely enough
-    to be confirmed, or the likeliest one. The plan ends early if no drift is at least `POSSIBLE`.
+    to be confirmed, or else the likeliest one. The plan ends early if no drift is at least `POSSIBLE`.
     """
     coordinates = nearest.nominal
     vectors = _sorted([*_multiples(nearest, near), *nearest.vectors()])

@@ -25,9 +25,9 @@ CONFIRMED = 0.95  # share of the budget that the tests of a nearer failing drift
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 REFINED = 0.08  # share of the budget for the search between the first chains of tests
 ATTEMPTS = 2  # number of chains to test until a drift is confirmed
-# shares of the risk of the first chains; each further chain has half of the rest
+# shares of the whole risk that the first chains get; each further chain gets half of the rest
 SHARES = (0.2, 0.3, 0.2, 0.1)
-QUICK = SIZES[0]  # number of episodes at a confirmed failure
+QUICK = SIZES[0]  # number of episodes that the search runs at a confirmed failure
 
 
 @dataclass
@@ -52,10 +52,10 @@ class Together:
     def confirm(self, chain: Sequence[Point], evaluator: Evaluator) -> bool:
         """Test drifts on fresh seeds, farthest first, until one is not confirmed; return whether one was confirmed.
 
-        Each test has the whole risk of the chain: if the guarantee holds at some of the drifts, an error needs the
-        confirmation of the first of these. The seeds are new for each chain, so its drifts may depend on the outcomes
-        of earlier chains, and the model learns from them afterwards. Skip drifts that contain a confirmed failure:
-        those that change the same values at least as much. Raise BudgetSpentError.
+        Each test has the whole risk of the chain, because every false alarm requires that the first drift at which the
+        guarantee holds is confirmed. The seeds are new for each chain, so its drifts may depend on the outcomes of
+        earlier chains, and the model learns from them afterwards. Skip drifts that contain a confirmed failure: those
+        that change the same values at least as much. Raise BudgetSpentError.
         """
         usual, known = evaluator.space.nominal, self.confirmed
         chain = [

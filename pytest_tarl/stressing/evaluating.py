@@ -24,13 +24,14 @@ from pytest_tarl.stressing.guarantee import (
 
 SIZES = (4, 8, 16, 32)  # numbers of episodes at a drift after which the search checks for a decision
 FRESH = (16, 32)  # numbers of fresh episodes after which a test along a ray checks for a decision
-GLANCE = 2  # number of episodes at a drift of the search in several directions; a model compares the drifts
+# number of episodes at each new drift of the search in several directions; few suffice, because a model combines them
+GLANCE = 2
 # number of seeds among which the drifts of this search choose their first seed in turn
 TURNS = 16
 # numbers of fresh episodes after which a test of a combination checks for a decision; more episodes can
 # confirm failures nearer to the boundary
 NEAREST = (16, 32, 64)
-# shares of the risk that these tests spend; most of it is left for the last one, which can show the most
+# shares of the risk for these numbers of episodes; the last share is the largest, because most episodes show most
 SPENT = (0.1, 0.2, 0.7)
 SEARCH = "search"  # name of the seeds of the search
 RAYS = "rays"  # name of the fresh seeds that all rays share; chains of combinations have seeds of their own
@@ -59,7 +60,7 @@ class Evaluator:
     spent: int = 0
     short: bool = False  # whether a result is missing because the budget did not cover it
     seconds: float | None = None  # time limit in seconds, in addition to the number of episodes
-    begun: float = field(default_factory=lambda: monotonic())  # lambda: tests replace `monotonic`
+    begun: float = field(default_factory=lambda: monotonic())  # a lambda, because tests replace `monotonic`
     _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
     _first: dict[tuple[float, ...], int] = field(default_factory=dict)
     _measured: dict[tuple[float, ...], tuple[float, float]] = field(default_factory=dict)
@@ -210,7 +211,7 @@ class Evaluator:
         return outcomes, nominal
 
     def _pairs(self, pool: str, point: Point) -> tuple[Sequence[Outcome], Sequence[Outcome]]:
-        """Return the known outcomes of a pool at a point that have a nominal one with the same seed, and these."""
+        """Return a pool's outcomes at a point and the nominal outcomes with the same seeds; skip other seeds."""
         outcomes = self._known.get((pool, *point.values()), [])
         nominal = self._known.get((pool, *self.space.nominal.values()), [])
         rows = [row for row in self._rows(pool, point, len(outcomes)) if row < len(nominal)]

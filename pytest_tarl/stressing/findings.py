@@ -184,10 +184,10 @@ class Attempt:
     """A search for a repair in a region, and what an accepted repair changes."""
 
     region: str
-    told: str  # a description of the repair, or why there is none
+    told: str  # description of the repair, or reason why there is none
     accepted: bool = False
-    patch: str | None = None  # also None if the repair is withheld
-    withheld: str = ""  # reason, or empty
+    patch: str | None = None  # None if there is no repair, or if it is withheld
+    withheld: str = ""  # why the repair is withheld, or empty
     moved: tuple[Moved, ...] = ()
     draws: Draws | None = None
 
@@ -210,7 +210,7 @@ class Stress:
     must_hold: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     tried: int = 0  # number of combinations tried
     margin_map: MarginMap | None = None
-    statements: Statements | None = None  # None without a confirmed failure
+    statements: Statements | None = None  # None if no failure is confirmed
     sobol: Sobol | None = None  # None if the episodes did not suffice, or if SALib is not installed
     repairs: tuple[Attempt, ...] | None = None  # None if no repair was asked for
     ended: str = ""  # why the search ended early: budget, interrupted, or nominal; else empty

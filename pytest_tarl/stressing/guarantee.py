@@ -19,9 +19,9 @@ from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
 
-LOWEST = -1.5  # lower limit of margins: how clearly a drift fails says little about where the boundary is
+LOWEST = -1.5  # lower limit of margins, because still lower ones say little about where the boundary is
 LEAST = 8  # minimum number of episodes for the result "holds"; if 1 in 12 fails, 8 episodes all pass half of the time
-HOPEFUL = 0.84  # one-sided confidence of a bound one standard error above the mean
+HOPEFUL = 0.84  # one-sided confidence of a bound that lies one standard error above the mean
 # approximate error probability of each decision of the search; only fresh seeds give a guarantee
 SEARCH_RISK = 0.05
 

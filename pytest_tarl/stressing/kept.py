@@ -1,6 +1,6 @@
 """Failing drifts of earlier runs, in a database of Hypothesis below `.tarl/stress`; they are replayed first.
 
-The replay only reports whether they still fail. The replay does not affect the search.
+The replay only reports whether they still fail; it does not affect the search.
 """
 
 from __future__ import annotations

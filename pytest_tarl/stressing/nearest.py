@@ -42,18 +42,18 @@ NEARER = 0.98  # maximum distance of the next failing drift, as a share of the b
 LARGEST = 2.0  # maximum distance of the drifts that are searched
 PREDICTED = 3  # number of predicted drifts to try in a row
 GAIN = 0.01  # minimum expected gain of a drift that is tried, in units of the best distance
-# numbers of standard deviations by which the predictions may be optimistic, in turn
+# numbers of standard deviations by which successive predictions are optimistic
 BOLD = (0.0, 1.0, 0.0, 0.5)
-# a tried drift also counts as failing if its predicted excess loss is below the detectable excess by at most this share
+# the predicted excess loss of a drift that counts as failing may be smaller than the detectable one by this share
 SURE = 0.5
-# number of standard deviations below 0 at which the margin of a tried drift clearly shows a failure
+# a margin that lies at least this number of standard deviations below 0 clearly shows a failure
 CLEAR = 4.0
 GENERATED = 24  # maximum number of drifts from Hypothesis
 ROUNDS = 24  # number of rounds of the first search
 EXPLORED = 4  # number of drifts that each round explores without the model
 GUIDED = 4  # number of drifts that the model chooses in each round
 AMONG = 4  # number of candidates among which the model chooses one drift
-HOPE = 1.0  # number of standard deviations of the model that count in favour of a drift
+HOPE = 1.0  # number of standard deviations by which predictions are raised, to favour uncertain drifts
 DESCENDED = 2  # number of drifts near the best one that are tried in each round
 AGAIN = 4  # number of rounds of the search that follows the single directions
 SAME = 0.02  # relative difference of drifts below which they count as the same
@@ -69,7 +69,7 @@ STANDARD = 3.8
 POWER, IMPOSSIBLE = 0.6, 0.99
 # limits of the excess loss that fresh episodes can show, in units of the tolerated loss
 SHALLOW, DEEP = 0.03, 1.2
-# share of the distance below which components may be noise; they are dropped before confirmation
+# components below this share of the distance may be noise, so they are dropped before confirmation
 TRIFLE = 0.15
 
 Steps = Sequence[tuple[float, float]]  # pairs as in EXPECTED: number of standard deviations, and excess
@@ -82,7 +82,7 @@ class Nearest:
     evaluator: Evaluator
     curves: Sequence[Curve]
     tried: list[Point] = field(default_factory=list)
-    tested: list[Point] = field(default_factory=list)  # drifts with fresh episodes
+    tested: list[Point] = field(default_factory=list)  # drifts at which fresh episodes ran
     risk: float = 0.01  # error probability of a test on fresh seeds; limits which failures can be shown
     _spread: Iterator[Vector] | None = None
     _fitted: tuple[int, Prediction] | None = None  # (number of episodes that the model was fitted to, model)

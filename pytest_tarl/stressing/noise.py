@@ -11,9 +11,10 @@ import numpy as np
 from pytest_tarl.stressing.coordinates import Vector
 from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
 
-HIGHEST = 1.0 - LOWEST  # losses beyond this count as this, because margins below LOWEST do
+HIGHEST = 1.0 - LOWEST  # larger losses count as this one, because margins below LOWEST count as LOWEST
 WIDTH = 0.3  # standard deviation of the weights of drifts by their mean loss, in units of the tolerated loss
-LIKE = 2.0  # degrees of freedom of the typical variance where no drift has a similar mean loss
+# weight of the typical variance, in degrees of freedom, beside those of drifts with a similar mean loss
+LIKE = 2.0
 PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
 
 
@@ -26,7 +27,7 @@ def cut_off(losses: Sequence[float]) -> Vector:
 def typical_variance(every: Sequence[Vector]) -> float:
     """Return the mean variance of the losses of several drifts, with a cap so that noisy drifts do not dominate.
 
-    The losses are cut off. A drift far beyond the boundary, where all of them are, does not count.
+    The losses are cut off. If all losses of a drift are cut off, it lies far beyond the boundary and does not count.
     """
     found = [float(np.var(one, ddof=1)) for one in every if len(one) > 1 and one.min() < HIGHEST]
     return max(fmean(min(one, 4.0 * median(found)) for one in found), 1e-6) if found else 1e-6

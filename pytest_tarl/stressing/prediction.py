@@ -29,7 +29,7 @@ RAREST = 0.007  # minimum failure rate that the model assumes at nominal
 # possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
 SCALES = (9.0, 36.0, 144.0)
 IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
-LOGIT = 4.0  # difference of logits that counts as much as the whole tolerated loss
+LOGIT = 4.0  # this difference of logits counts as much as the whole tolerated loss
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ class Prediction:
             )
 
     def deeper(self, times: float) -> Prediction:
-        """Return a copy that requires `times` the smallest excess over the guarantee that fresh episodes can detect."""
+        """Return a copy that requires `times` as large an excess over the guarantee as fresh episodes can detect."""
         other = copy(self)
         other.shown = Shown(self.shown.depth * times, self.shown.share ** (1.0 / times))
         return other

@@ -20,7 +20,7 @@ SINGLE, SINGLE_LENGTH = 0.3, 0.3  # prior variance and length scale of a smooth 
 LOCAL, LENGTH = 0.15, 0.3  # prior variance and length scale of local deviations
 STEPS = 50  # maximum number of Newton steps
 CLOSE = 0.05  # Newton's method stops when no logit changes by more than this
-LEAP = 4.0  # maximum change of a logit in one step
+LEAP = 4.0  # maximum change of a logit in one Newton step
 JITTER = 1e-8
 
 
