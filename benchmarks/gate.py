@@ -31,7 +31,8 @@ from pytest_tarl.sensors import Cell
 ALPHA = 0.05
 SIZES = (0.0, 0.1, 0.2, 0.5, 1.0)
 OFFLINE, ONLINE = 200, 40
-POOLED = {True: 3000, False: 1500}  # number of missions in a pool: as designed (True), drifting (False)
+# number of missions in the pool of designed (True) and of drifting missions (False)
+POOLED = {True: 3000, False: 1500}
 POOLED_EXAMPLE = {True: 1000, False: 300}
 
 

@@ -19,7 +19,8 @@ from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 
-# Large libraries that the tests import, but no plugins of pytest: it rewrites their assertions when it imports them.
+# Large libraries that the tests import. Plugins of pytest are left out, because pytest rewrites their assertions when
+# it imports them.
 LIBRARIES = (
     "_pytest.config",
     "_pytest.pytester",

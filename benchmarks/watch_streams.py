@@ -24,7 +24,8 @@ from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
 OFFLINE = 200  # number of missions in a recording
-POOLED = {True: 3000, False: 1500}  # number of missions in a pool: as designed (True), drifting (False)
+# number of missions in the pool of designed (True) and of drifting missions (False)
+POOLED = {True: 3000, False: 1500}
 POOLED_EXAMPLE = {True: 1000, False: 300}
 FAILING = 0.03  # share of the designed missions that count as failed: those with the smallest totals
 Rows = NDArray[np.int64]

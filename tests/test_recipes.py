@@ -99,7 +99,9 @@ def test_the_recipe_of_a_format_gives_a_document(tmp_path: Path) -> None:
     assert "/out, 1" in rows[2][3]
 
 
-def test_the_recipe_of_a_model_replaces_the_default(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_model_of_the_recipe_replaces_the_default_model_of_a_call(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (code,) = snippets("model.md", "python")
     assert [flow.kind for flow in analysed(tmp_path, node=NODE).flows] == ["explicit"]
     model = made(

@@ -63,7 +63,7 @@ class Guardian:
         """
         try:
             wait_for_end_of_parent()
-        except OSError:  # an old kernel, or the test has already ended
+        except OSError:  # the kernel is too old for this wait, or the test has already ended
             return
         self._finish()
 

@@ -21,7 +21,8 @@ from pytest_tarl.ros.argv import command_line
 from pytest_tarl.sensors import binning_digest
 from tarl_lint.api import analyse
 
-SHUT_DOWN = "ExternalShutdownException"  # rclpy raises it after a signal; rospy raises a KeyboardInterrupt
+# name of the exception that rclpy raises after a signal; rospy raises KeyboardInterrupt
+SHUT_DOWN = "ExternalShutdownException"
 
 
 @dataclass(frozen=True)

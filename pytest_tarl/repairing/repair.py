@@ -56,7 +56,7 @@ class _Findings:
     interrupted: bool = False
     late: bool = False  # whether the search reached its time limit
     episodes: int = 0
-    ranking: Ranking | None = None  # set if all sites were ranked
+    ranking: Ranking | None = None  # None unless all sites were ranked
     structure: int = 0  # number of episodes spent on structural changes; included in `episodes`
 
     def take(self, purse: Purse) -> None:

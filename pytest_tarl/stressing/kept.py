@@ -51,7 +51,7 @@ class Kept:
             database.delete(self._name, value)
         for value in after - before:
             database.save(self._name, value)
-        if self._values() != after:  # Hypothesis raises no error
+        if self._values() != after:  # Hypothesis raises no error if it cannot write
             raise OSError(errno.EIO, "Hypothesis could not store the failing drifts", str(self.folder))
 
     def read(self, space: Space) -> list[Point]:

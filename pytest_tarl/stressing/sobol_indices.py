@@ -40,7 +40,7 @@ def sobol(evaluator: Evaluator) -> Sobol | None:
     before = evaluator.spent
     margins = _margins(evaluator, rows)
     names = [*evaluator.space.extents]
-    if float(np.ptp(margins)) == 0.0:  # no variance to explain
+    if float(np.ptp(margins)) == 0.0:  # all margins are equal, so there is no variance to explain
         shares = tuple(Share(name, 0.0, 0.0, 0.0, 0.0) for name in names)
         return Sobol(evaluator.spent - before, shares, hopeless=float(margins[0]) == LOWEST)
     from SALib.analyze import sobol as estimates

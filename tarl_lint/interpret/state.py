@@ -44,8 +44,8 @@ class Work:
     """The work done, in statements: in this run of a root, and by each program in earlier runs."""
 
     spent: int = 0  # number of statements of work in this run
-    saved: int = 0  # part of `spent` in replayed calls
-    idled: int = 0  # part of `spent` in calls into modules without ROS calls
+    saved: int = 0  # the part of `spent` that was done in replayed calls
+    idled: int = 0  # the part of `spent` that was done in calls into modules without ROS calls
     limit: int = MAX_STATEMENTS
     # value of `spent` at which the current call into a module without ROS calls ends; None outside of such a call
     call_limit: int | None = None

@@ -162,7 +162,8 @@ def _inside_all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit, depth: 
     if None in insides:
         insides = [_deep(ctx, obj, visit, depth) for obj in laden]
     full = [inside for inside in insides if inside]
-    return full[0] if len(full) == 1 else NONE.union(*full)  # reuse a set: its hash is computed already
+    # a single set is reused, because its hash is already computed
+    return full[0] if len(full) == 1 else NONE.union(*full)
 
 
 def _laden(ctx: Interpreter, objects: frozenset[Obj]) -> list[Obj]:

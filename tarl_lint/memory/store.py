@@ -112,8 +112,8 @@ class Store:
     def former(self, key: Key) -> Value | None:
         """Return the current value of a key to which another path stores, for the join with the value of that path.
 
-        If this run creates the object only on other paths, every run creates its own. As long as only joins read the
-        object's keys, the run's own stores to them then do not make the root run again.
+        If this run creates the object only on other paths, every run creates its own. Then the run's own stores to the
+        object's keys do not make the root run again, as long as only joins read these keys.
         """
         owner = key[0]
         whole = owner.outermost or owner

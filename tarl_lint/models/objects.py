@@ -46,7 +46,7 @@ def is_instance(ctx: Interpreter, it: Invocation) -> Value:
         return UNKNOWN
     named = [one for part in sizes.unpacked(ctx, given[1]) or [given[1]] for one in part.objects]
     if not named or not all(one.kind == "ext" and MESSAGE_MODULE in one.name for one in named):
-        # such a test is for a base class of all messages, or for a class of the analysed files
+        # the class may be a base class of all messages, or a class of the analysed files
         return UNKNOWN
     ctx.look(given[0].pts)
     received = {

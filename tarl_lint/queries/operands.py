@@ -181,7 +181,7 @@ def _parts(expr: ir.Expr) -> Sequence[ir.Expr]:
     """Return the subexpressions that contribute to the value as numbers."""
     if isinstance(expr, ir.Operation):
         lists = [one for one in expr.parts if isinstance(one, ir.SequenceDisplay)]
-        # the other operand is no number of the value: in `[0.1] * 5`, 5 is a size
+        # the value does not contain the other operand as a number: in `[0.1] * 5`, 5 is a size
         return () if expr.operator == "text" else lists or expr.parts
     if isinstance(expr, ir.Choice):
         return (expr.test, expr.then, expr.other)

@@ -61,7 +61,8 @@ def interface(
     machine, flows = engine.trace(modules, plain, thorough=False, parameters=parameters, fixed=fixed)
     tracer = Tracer(machine)
     outlines = {module.path: Outline(module.tree) for module in modules}
-    texts = Texts({module.path: module for module in modules})  # includes modules in which no code runs
+    # texts of all modules, even if none of their code runs
+    texts = Texts({module.path: module for module in modules})
     calls = (end for each in modules for end in _clients(machine, each, outlines[each.path], texts))
     ends = (*_endpoints(machine, tracer, outlines), *calls)
     endpoints = tuple(sorted(dict.fromkeys(ends), key=lambda e: (e.span, e.role, e.names)))

@@ -196,7 +196,7 @@ def test_configurations_are_interpreted(tmp_path: Path) -> None:
     assert [one["name"] for one in group["parameters"]] == ["max_x", "max_y"]
 
 
-def test_configurations_report_non_constant_values(tmp_path: Path) -> None:
+def test_values_in_a_cfg_file_that_are_not_constant_are_reported(tmp_path: Path) -> None:
     text = CFG.replace("10, 1, 100.0", "rospy.get_param('rate'), 1, 100.0").replace('"Arm")', "name)")
     (tmp_path / "Arm.cfg").write_text(text)
     found, problems = configurations(tmp_path / "Arm.cfg")

@@ -68,7 +68,9 @@ def test_headers_of_patches_contain_no_control_sequences(
     assert not COMMANDS.search(text)
 
 
-def test_names_of_missing_files_are_printed_safely(capsys: pytest.CaptureFixture[str]) -> None:
+def test_names_of_missing_files_are_printed_without_control_sequences(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     for command in ("apply", "revert", "suggest", "show"):
         text = told(capsys, command, f"{HOSTILE.replace(chr(0), '')}.patch")
         assert "owned" in text
@@ -76,7 +78,7 @@ def test_names_of_missing_files_are_printed_safely(capsys: pytest.CaptureFixture
 
 
 @slow
-def test_errors_of_nodes_are_printed_safely(tank: pytest.Pytester) -> None:
+def test_errors_of_nodes_are_printed_without_control_sequences(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "            flow = GAIN * missing", "            flow = GAIN * missing / FACTOR")
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 2.0\nFACTOR = 1.0\n")
     assert tank.runpytest_subprocess(*RECORD).ret == 0

@@ -73,7 +73,7 @@ def test_omitted_lines_may_contain_anything() -> None:
     assert shortened("cut off...\nz\n", "1\n2\n3\n4\n") == "1\n2\n3\n4\n"
 
 
-def test_a_page_is_updated_in_place(tmp_path: Path) -> None:
+def test_outdated_output_in_a_page_is_replaced(tmp_path: Path) -> None:
     page = 'Text.\n\n```text title="a.txt"\nhello\n```\n\n```console\n$ cat a.txt\nbye\n$ echo two\ntwo\n```\n\nMore.\n'
     ran = list(run(page, tmp_path))
     assert renewed(page, ran) == page.replace("bye", "hello")

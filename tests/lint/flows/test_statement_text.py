@@ -36,7 +36,7 @@ HEADERS = [
 
 
 @pytest.mark.parametrize(("source", "shown", "code"), HEADERS)
-def test_a_statement_is_shown_by_its_header(source, shown, code):
+def test_a_compound_statement_is_shown_by_its_header(source, shown, code):
     text = text_of(source)
     written = text.statement((1, 0, 0, 0))
     if shown is None:

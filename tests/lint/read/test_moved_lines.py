@@ -113,7 +113,7 @@ def test_changed_functions_of_equal_names_need_another_run():
     assert moved(other.replace("2", "3"), other, unread=[(1, 0), (4, 0)]) == {1: 1, 4: 4}
 
 
-def test_an_answer_about_the_text_must_stay_the_same():
+def test_another_answer_about_the_text_requires_a_new_analysis():
     asked = (lambda text: "unread" in text, True)
     new = OLD.replace("return 1", "return 3")
     assert moved(new, answers=[asked]) is not None
@@ -121,7 +121,7 @@ def test_an_answer_about_the_text_must_stay_the_same():
     assert moved(new, answers=[asked, (lambda text: "return 3" in text, False)]) is None
 
 
-def test_a_text_that_was_read_whole_or_cannot_be_parsed_needs_another_run():
+def test_a_change_of_a_text_that_was_read_whole_or_cannot_be_parsed_requires_a_new_analysis():
     assert moved(OLD, whole=True) is None
     assert moved(OLD + "\n(") is None
     assert moved(OLD, OLD + "\n(") is None

@@ -52,7 +52,7 @@ def test_conditions_that_cannot_hold_together_exclude_each_other(one: str, other
         ("$(eval '$(var mode)' == '$(var one)')", "$(eval '$(var mode)' == '$(var two)')"),
     ],
 )
-def test_other_conditions_may_hold_together(one: str, other: str) -> None:
+def test_conditions_that_may_hold_together_are_not_exclusive(one: str, other: str) -> None:
     assert not exclusive(node(one), node(other))
 
 

@@ -44,7 +44,7 @@ def test_a_roslaunch_parent_starts_launch_files_with_arguments(package):
     assert not found.ros2
 
 
-def test_nodes_of_the_core_api_are_nodes(package):
+def test_nodes_that_a_script_starts_through_the_core_api_are_found(package):
     found = script(
         package,
         """

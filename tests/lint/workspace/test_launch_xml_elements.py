@@ -98,7 +98,7 @@ def test_remappings_and_parameters_apply_to_the_nodes_after_them(package):
     assert [(one.name, one.value) for one in found.settings] == [("/r", 3)]
 
 
-def test_a_condition_decides_whether_an_element_counts(package):
+def test_an_element_of_a_launch_file_counts_only_if_its_condition_holds(package):
     found = launched(
         package,
         """<launch><arg name="on" default="true"/><arg name="open"/>

@@ -119,7 +119,7 @@ def test_arguments_that_do_not_contradict_each_other_are_accepted(changed: Any) 
     watch._check(replace(ORDER, **changed))
 
 
-def test_the_state_is_named_after_the_recording() -> None:
+def test_the_state_file_of_a_watch_is_named_after_the_recording() -> None:
     assert default_state(Path("x/y/f.npz")) == Path(".tarl/watch/f.npz")
 
 

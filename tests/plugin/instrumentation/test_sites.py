@@ -66,7 +66,7 @@ def test_flows_that_order_steps_differently_contribute_each_step_once():
     assert codes(result) == ["a", "b"]
 
 
-def test_each_pair_of_topics_has_one_list():
+def test_each_pair_of_source_and_sink_topic_has_one_taint_list():
     result = planned(
         flow(step(10, "a"), step(20, "b")),
         flow(step(10, "a"), step(30, "c"), sink=("/lights",)),

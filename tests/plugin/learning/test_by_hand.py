@@ -222,7 +222,7 @@ def test_bisection_finds_the_largest_value_that_the_test_refutes(edge: float) ->
     assert coarse == int(edge * 8) / 8
 
 
-def test_each_check_spends_the_square_of_its_share_of_alpha() -> None:
+def test_the_risk_spent_grows_with_the_square_of_the_share_of_episodes() -> None:
     assert planned(40, 3) == (Look(10, 1 / 16), Look(20, 3 / 16), Look(40, 3 / 4))
     assert planned(39, 3) == (Look(19, (19 / 39) ** 2), Look(39, 1 - (19 / 39) ** 2))
     assert planned(5, 3) == (Look(5, 1.0),)

@@ -117,7 +117,9 @@ def test_settings_that_only_select_or_judge_episodes_do_not_count(project: Path)
         ({"sensors": (Sensor("level", bins=2, low=0.0, high=1.0),)}, "the sensors changed"),
     ],
 )
-def test_settings_that_change_episodes_count(project: Path, options: Any, said: str) -> None:
+def test_settings_that_change_the_episodes_are_conditions_of_a_run(
+    project: Path, options: Any, said: str
+) -> None:
     assert changed(found(project), found(project, **options)) == said
 
 

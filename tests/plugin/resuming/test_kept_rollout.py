@@ -154,7 +154,7 @@ def test_episodes_that_are_not_evidence_are_not_kept(path: Path, changes: Any) -
     assert journal.episodes == 0
 
 
-def test_failed_episodes_are_kept(path: Path) -> None:
+def test_failed_episodes_are_kept_for_a_resumed_run(path: Path) -> None:
     journal = opened(path)
     KeptRollout(Inner(changes={"passed": False, "crashed": True}), journal, SCOPE, "shown")(EpisodePlan(1))
     assert journal.episodes == 1

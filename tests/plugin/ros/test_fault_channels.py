@@ -151,7 +151,7 @@ def test_each_number_is_changed_and_whole_numbers_stay_whole(value: Any, expecte
     ]
 
 
-def test_arrays_keep_their_type() -> None:
+def test_a_fault_keeps_the_type_of_an_array() -> None:
     found = altered(SimpleNamespace(x=array("f", [1.0, 2.0])), "x", lambda x: x + 0.5).x
     assert found == array("f", [1.5, 2.5])
     whole = altered(SimpleNamespace(x=np.array([[1, 2]], np.int16)), "x", lambda x: 1.75 * x).x

@@ -121,7 +121,7 @@ def test_integer_in_a_float_field_fails_as_in_ros(start: Start) -> None:
         """)
 
 
-def test_parameters_are_declared_typed_and_guarded(start: Start) -> None:
+def test_a_declared_parameter_keeps_its_type_and_is_checked_by_the_callback(start: Start) -> None:
     ros = start(
         """
         import rclpy

@@ -82,7 +82,7 @@ class Called:
         (lambda: None, "<lambda>"),
     ],
 )
-def test_the_place_of_a_callable_is_its_definition(function: Any, name: str) -> None:
+def test_the_reported_place_of_a_callable_is_its_definition(function: Any, name: str) -> None:
     place = blame.of_function(function)
     assert place is not None
     assert (place[0], place[2]) == (__file__, name)

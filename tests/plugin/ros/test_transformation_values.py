@@ -279,7 +279,7 @@ def test_cells_of_crystals_become_orthogonal() -> None:
 
 
 @pytest.mark.parametrize("scaling", [False, True])
-def test_superimposed_points_lie_on_their_targets(scaling: bool) -> None:
+def test_the_superimposition_matrix_moves_points_onto_their_targets(scaling: bool) -> None:
     points = np.random.default_rng(5).normal(size=(3, 7)) * [[1], [2], [3]] + [[1], [2], [3]]
     factor = 2.5 if scaling else 1.0
     matrix = tf.translation_matrix([1, -2, 3]) @ tf.euler_matrix(0.3, 0.2, -1.0) @ tf.scale_matrix(factor)

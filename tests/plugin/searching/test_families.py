@@ -37,7 +37,7 @@ def constant(line: int, code: str, value: float | bool | None, path: str = "node
         ("self.gains[i]", ""),
     ],
 )
-def test_the_name_of_a_family_leaves_the_place_open(code: str, shared: str) -> None:
+def test_the_name_of_a_family_has_a_star_where_its_members_differ(code: str, shared: str) -> None:
     assert shared_name(code) == shared
 
 

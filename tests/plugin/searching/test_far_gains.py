@@ -58,7 +58,7 @@ def test_few_constants_that_matter_get_many_inward_steps_and_many_get_few(count:
     assert all(0.4 < step < 2.2 for step in steps)
 
 
-def test_a_narrow_value_of_another_constant_is_found_despite_a_far_gain() -> None:
+def test_a_narrow_good_range_of_another_constant_is_found_although_a_large_change_gains() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
         right = abs(factors.get(GAINS[2], 1.0) - 1.33) < 0.04

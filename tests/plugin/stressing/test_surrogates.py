@@ -104,7 +104,7 @@ def test_the_evidence_is_larger_if_the_direction_that_matters_has_the_larger_sca
     assert evidence([1.0, 0.3]) > evidence([0.3, 1.0])
 
 
-def test_linear_algebra_takes_one_thread_inside_and_as_many_as_before_outside() -> None:
+def test_the_decorated_function_uses_one_blas_thread_and_others_keep_theirs() -> None:
     def threads() -> set[int]:
         return {one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"}
 

@@ -187,7 +187,7 @@ def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_co
         (curve(DOWN, {1.0: -1.0}), True),
     ],
 )
-def test_a_direction_holds_alone_up_to_a_share_if_no_smaller_failure_was_found(
+def test_each_direction_is_said_to_hold_alone_only_if_no_smaller_failure_was_found(
     changed: Curve, alone: bool
 ) -> None:
     one = combined(mud=1.0, slope=0.5)

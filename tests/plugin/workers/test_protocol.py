@@ -95,7 +95,7 @@ def test_the_result_of_an_episode_survives_transport_from_a_worker(threads: bool
     "error",
     [RecordingError("no"), protocol.SkippedError("rain"), protocol.EndedError("enough"), TarlError("x")],
 )
-def test_an_error_arrives_with_its_class_and_text(error: TarlError) -> None:
+def test_an_error_of_a_worker_keeps_its_class_and_text(error: TarlError) -> None:
     message = protocol.error_message(error)
     for read in (protocol.refused, lambda one: protocol.answered(PLAN, one)):
         with pytest.raises(type(error)) as raised:
