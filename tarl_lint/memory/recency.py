@@ -16,6 +16,8 @@ from tarl_lint.memory.store import AGING
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value, join
 
 MAX_NESTING = 7
+# kinds of objects that may cease to represent one concrete object
+CONTAINING = AGING - {"lib"}
 MAKING = (ir.Call, ir.SequenceDisplay, ir.MappingDisplay, ir.Comprehension)
 
 
@@ -51,9 +53,21 @@ def renew(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
             _one_of_many(ctx, obj)
             return
         _age(ctx, obj, frame)
-    if not obj.many:
+    if single(ctx, obj):
         clear_fields(ctx, obj)
     ctx.store.put((obj, BORN), BOTTOM)
+
+
+def single(ctx: Interpreter, obj: Obj) -> bool:
+    """Return whether an object represents one concrete object. If it ceases to, this root runs again."""
+    if obj.many:
+        return False
+    if obj.kind in CONTAINING:
+        roots = ctx.shared.certain.get(obj)
+        if roots is None:
+            roots = ctx.shared.certain[obj] = {}
+        roots[ctx.store.root] = None
+    return True
 
 
 def _one_of_many(ctx: Interpreter, obj: Obj) -> None:
@@ -61,7 +75,7 @@ def _one_of_many(ctx: Interpreter, obj: Obj) -> None:
     if not obj.many:
         obj.many = True
         ctx.shared.edition += 1  # a new edition invalidates all recorded calls, so none is replayed
-        ctx.pending.update(dict.fromkeys(root for root, _ in ctx.roots.values()))
+        ctx.pending.update(ctx.shared.certain.get(obj, {}))
 
 
 def _age(ctx: Interpreter, obj: Obj, frame: Frame) -> None:

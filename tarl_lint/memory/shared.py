@@ -52,6 +52,8 @@ class Shared:
     joiners: dict[Key, set[Root]] = field(default_factory=dict)  # key → roots that only joined its value
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
+    # object → roots that have relied on it being one concrete object, in order
+    certain: dict[Obj, dict[Root, None]] = field(default_factory=dict)
     dirty: set[Root] = field(default_factory=set)
     edition: int = 0  # number of changes so far of a class, a `from … import *` or a `__dict__`
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tarl_lint.interpret.interpreter import Interpreter
-from tarl_lint.memory import heap
+from tarl_lint.memory import heap, recency
 from tarl_lint.memory.heap import ANY, HOLLOW, KEYS, RENAMING, item_field
 from tarl_lint.memory.values import Obj, Value, in_order, join
 
@@ -20,7 +20,7 @@ def write_field(ctx: Interpreter, base: Value, name: str, value: Value) -> None:
         obj, field = heap.renamed(ctx, held, name) if held.kind in RENAMING else (held, name)
         for attributes in heap.replaced_attributes(ctx, obj):
             weaken(ctx, attributes, item_field(field), value)
-        if certain and not obj.many:
+        if certain and recency.single(ctx, obj):
             ctx.store.put((obj, field), value)
         else:
             weaken(ctx, obj, field, value)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tarl_lint.interpret.interpreter import Interpreter
-from tarl_lint.memory import heap, updates
+from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, KEYS, item_field
 from tarl_lint.memory.shared import BORN
@@ -54,7 +54,7 @@ def _take_key(ctx: Interpreter, base: Value, obj: Obj, key: Value | None, decide
         scatter(ctx, obj, decided)
         return
     field, gone = heap.attribute_of_item(obj, constant), Value(decided.left)
-    if alone(base, obj) and heap.content(ctx, obj) is BOTTOM:
+    if alone(ctx, base, obj) and heap.content(ctx, obj) is BOTTOM:
         ctx.store.put((obj, field), gone if decided.left else ABSENT)
     elif decided.left:
         updates.weaken(ctx, obj, field, gone)
@@ -70,7 +70,7 @@ def _take_index(ctx: Interpreter, base: Value, obj: Obj, index: Value | None, de
         return
     assert isinstance(place, int)  # noqa: S101 - checked above
     place %= len(known)
-    if not alone(base, obj):
+    if not alone(ctx, base, obj):
         scatter(ctx, obj)
         return
     for number, value in enumerate([*known[:place], *known[place + 1 :], ABSENT]):
@@ -81,7 +81,7 @@ def reverse(ctx: Interpreter, base: Value, decided: Decision) -> None:
     """Reverse sequences."""
     for obj in base.objects:
         known = sizes.unpacked(ctx, pointer(obj)) if obj.kind == "sequence" else None
-        if known is not None and alone(base, obj):
+        if known is not None and alone(ctx, base, obj):
             for number, value in enumerate(reversed(known)):
                 ctx.store.put((obj, item_field(number)), _marked(value, decided))
         elif obj.kind == "sequence":
@@ -109,7 +109,7 @@ def empty(ctx: Interpreter, base: Value, decided: Decision) -> None:
     for obj in base.objects:
         if obj.kind not in CONTAINERS:
             continue
-        if not alone(base, obj):
+        if not alone(ctx, base, obj):
             scatter(ctx, obj, decided)
             continue
         places = [name for name in list(obj.fields) if name.startswith("[")] if decided.left else []
@@ -125,15 +125,15 @@ def attribute(ctx: Interpreter, base: Value, name: str, decided: Decision) -> No
         if obj.kind != "instance":
             continue
         default = _marked(ctx.ops.default(ctx, obj, name), decided)
-        if alone(base, obj):
+        if alone(ctx, base, obj):
             ctx.store.put((obj, name), default)
         else:
             updates.weaken(ctx, obj, name, default)
 
 
-def alone(base: Value, obj: Obj) -> bool:
+def alone(ctx: Interpreter, base: Value, obj: Obj) -> bool:
     """Return whether a pointer certainly leads to this object."""
-    return len(base.pts) == 1 and not obj.many
+    return len(base.pts) == 1 and recency.single(ctx, obj)
 
 
 def _count(ctx: Interpreter, obj: Obj, decided: Decision) -> None:

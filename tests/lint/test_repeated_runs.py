@@ -95,3 +95,44 @@ def test_a_run_reads_the_values_that_an_earlier_run_stored(lines):
     machine = linked(*lines)
     assert machine.runs["on"] > 1
     assert [flow.kind for flow in Tracer(machine).flows()] == ["explicit"]
+
+
+ROBOTS = """
+import rospy
+from std_msgs.msg import Float64, String
+
+class Robot:
+    def __init__(self):
+        self.x = 0
+        self.pub = rospy.Publisher("out", Float64)
+        rospy.Subscriber("in", Float64, self.on)
+
+    def on(self, msg):
+        self.x = msg.data
+        self.pub.publish(self.x)
+
+class Other:
+    def __init__(self):
+        self.pub = rospy.Publisher("other_out", Float64)
+        rospy.Subscriber("other_in", Float64, self.other)
+
+    def other(self, msg):
+        self.pub.publish(msg.data)
+
+def more(msg):
+    for name in msg.data:
+        Robot()
+
+rospy.init_node("n")
+Other()
+rospy.Subscriber("more", String, more)
+rospy.spin()
+"""
+
+
+def test_an_object_that_begins_to_stand_for_several_reruns_only_the_roots_that_stored_to_it():
+    machine = Counted(ROBOTS)
+    with_deep_stack(machine.link)
+    assert any(obj.many and obj.name == "Robot" for obj in machine.objects.values())
+    assert machine.runs["on"] == 2
+    assert machine.runs["other"] == 1

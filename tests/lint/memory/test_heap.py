@@ -21,7 +21,7 @@ from tarl_lint.memory import (
 from tarl_lint.memory.frames import Attempt, Frame
 from tarl_lint.memory.heap import ANY, KEYS, item_field
 from tarl_lint.memory.recency import MAX_NESTING
-from tarl_lint.memory.shared import BORN
+from tarl_lint.memory.shared import BORN, Root
 from tarl_lint.memory.values import (
     ABSENT,
     BOTTOM,
@@ -616,6 +616,22 @@ def test_an_object_with_callbacks_stands_for_all_objects_of_its_allocation_site(
     assert box.many
     updates.write_field(ctx, pointer(box), "x", const(2))
     assert ctx.store.get((box, "x")) == Value(consts=frozenset([1, 2]))
+
+
+def test_roots_that_relied_on_a_single_object_run_again_when_it_stands_for_several(ctx, frame):
+    first, other = Root("first", "callback"), Root("other", "callback")
+    box, lib = recency.intern(ctx, "instance", "box"), made(ctx, "lib", "lib")
+    ctx.store.root = first
+    assert recency.single(ctx, lib)
+    assert recency.single(ctx, box)
+    recency.renew(ctx, box, frame)
+    ctx.store.root = other
+    ctx.given.add(box)
+    recency.renew(ctx, box, frame)
+    assert not recency.single(ctx, box)
+    assert first in ctx.pending
+    assert other not in ctx.pending
+    assert lib not in ctx.shared.certain
 
 
 def test_a_try_catches_what_one_of_its_handlers_catches():
