@@ -30,6 +30,7 @@ class Reads:
     objects: dict[Obj, int] = field(
         default_factory=dict
     )  # object → its stamp (version of its fields, parts and data)
+    single: set[Obj] = field(default_factory=set)  # objects that the call treated as one concrete object
     # nodes that no source had reached when the call used them
     unreached: set[int] = field(default_factory=set)
     holders: dict[Obj, int] = field(
@@ -92,6 +93,7 @@ class Reads:
     def _add_rest(self, inner: Reads) -> None:
         """Merge the reads that do not depend on the current path, which is needed only once."""
         self.unreached |= inner.unreached
+        self.single |= inner.single
         complete(self.objects, inner.objects)
         if inner.holders:
             complete(self.holders, inner.holders)

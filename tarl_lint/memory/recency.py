@@ -63,6 +63,7 @@ def single(ctx: Interpreter, obj: Obj) -> bool:
     if obj.many:
         return False
     if obj.kind in CONTAINING:
+        ctx.store.reads.single.add(obj)
         roots = ctx.shared.certain.get(obj)
         if roots is None:
             roots = ctx.shared.certain[obj] = {}
@@ -74,7 +75,7 @@ def _one_of_many(ctx: Interpreter, obj: Obj) -> None:
     """Let an object stand for all objects of its allocation site, since callbacks refer to it."""
     if not obj.many:
         obj.many = True
-        ctx.shared.edition += 1  # a new edition invalidates all recorded calls, so none is replayed
+        ctx.shared.several.add(obj)
         ctx.pending.update(ctx.shared.certain.get(obj, {}))
 
 

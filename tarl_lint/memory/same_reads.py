@@ -15,7 +15,7 @@ def unchanged(
     reads: Reads, found: Mapping[Key, Value | None], stored: Mapping[Key, bool], store: Store, graph: Graph
 ) -> bool:
     """Return whether all recorded reads (with values `found`, flags `stored`) would have the same results now."""
-    if not reads.unreached.isdisjoint(graph.live):
+    if not (reads.unreached.isdisjoint(graph.live) and reads.single.isdisjoint(store.shared.several)):
         return False
     current, waited = store.now, store.waited
     for key, value in found.items():

@@ -54,6 +54,7 @@ class Shared:
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
     # object → roots that have relied on it being one concrete object, in order
     certain: dict[Obj, dict[Root, None]] = field(default_factory=dict)
+    several: set[Obj] = field(default_factory=set)  # objects that have ceased to be one concrete object
     dirty: set[Root] = field(default_factory=set)
     edition: int = 0  # number of changes so far of a class, a `from … import *` or a `__dict__`
 

@@ -632,6 +632,7 @@ def test_roots_that_relied_on_a_single_object_run_again_when_it_stands_for_sever
     assert first in ctx.pending
     assert other not in ctx.pending
     assert lib not in ctx.shared.certain
+    assert ctx.store.reads.single == ctx.shared.several == {box}
 
 
 def test_a_try_catches_what_one_of_its_handlers_catches():

@@ -321,6 +321,17 @@ def test_recorded_reads_are_outdated_when_a_new_object_has_fields_or_holders(sto
     assert not same(store, Reads(objects={obj: NEW}))
 
 
+def test_recorded_reads_are_outdated_when_an_object_ceases_to_be_a_single_one(store, obj):
+    outer, inner = Reads(), Reads(single={obj})
+    outer.add(inner)
+    assert same(store, outer)
+    store.shared.several.add(Obj("instance", "another"))
+    assert same(store, outer)
+    store.shared.several.add(obj)
+    assert not same(store, outer)
+    assert same(store, Reads())
+
+
 # --- shared stores ------------------------------------------------------------------------------------
 
 
