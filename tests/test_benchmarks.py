@@ -66,7 +66,7 @@ def named(extras: set[str]) -> set[str]:
     return names
 
 
-def test_imports_of_the_benchmarks_are_declared() -> None:
+def test_packages_that_the_benchmarks_import_are_declared() -> None:
     known, allowed = packages_distributions(), named({"bench"})
     assert {"scipy", "pymunk", "numpy", "rosbags"} <= allowed
     own = {path.stem for path in FOLDER.rglob("*.py")} | {"pytest_tarl", "tarl_lint"} | ROS

@@ -92,6 +92,6 @@ def test_the_results_agree_with_git(tmp_path: Path, lines: list[str]):
     st.lists(st.sampled_from(["*a", "**/", "?*", "[ab]*", "*", "a*/", "*b*"]), min_size=10, max_size=60),
     st.lists(st.sampled_from(["a" * 60, "a", "ab" * 30]), min_size=1, max_size=40),
 )
-def test_no_pattern_needs_exponential_time(pieces: list[str], names: list[str]):
+def test_no_pattern_of_a_gitignore_file_needs_exponential_time(pieces: list[str], names: list[str]):
     """Backtracking expressions need exponential time for `*a*a*a…b` against a name of many letters a."""
     parse("/top", ["".join(pieces) + "c"]).verdict(f"/top/{'/'.join(names)}", is_directory=False)

@@ -63,7 +63,7 @@ def test_a_link_to_a_missing_page_is_refused() -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_snippets_parse(page: Path) -> None:
+def test_the_snippets_of_each_page_are_valid(page: Path) -> None:
     readers = {"python": _python, "toml": tomllib.loads, "yaml": yaml.safe_load, "json": json.loads}
     for _, language, text in FENCE.findall(page.read_text("utf-8")):
         if language in readers:

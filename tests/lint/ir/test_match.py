@@ -84,5 +84,5 @@ CASES = dict(one.split("\n", 1) for one in PROGRAMS.removeprefix("### ").split("
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_a_pattern_captures_its_part_of_the_subject(title):
+def test_a_match_pattern_captures_its_part_of_the_subject(title):
     assert differing(in_callback(CASES[title], HEAD)) == {}

@@ -168,5 +168,5 @@ ACCESSES = [
 
 
 @pytest.mark.parametrize(("body", "expected"), ACCESSES)
-def test_an_access_reads_replaces_or_changes_shared_state(body, expected):
+def test_an_access_is_classified_as_a_read_a_replacement_or_a_change(body, expected):
     assert found(body) == expected

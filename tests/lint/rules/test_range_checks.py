@@ -56,7 +56,7 @@ def test_the_side_on_which_a_condition_bounds_a_value_is_determined(test, holds,
      "x = T(stamp=a)", "x = a.width + 1", "x = table[int(a)]", "x = table[a.b]", "x = table[a + 1]",
      "x = self.table[a // 2]", "x = abs(min(a, 1))"],
 )  # fmt: skip
-def test_a_statement_limits_a_value(statement):
+def test_statements_that_limit_a_value_are_recognised(statement):
     assert limits(ast.parse(statement), frozenset({"mine"}))
 
 
@@ -66,7 +66,7 @@ def test_a_statement_limits_a_value(statement):
      "x = table[0]", "x = table[i]", "x = msg.ranges[n // 2]", "x = ranges[len(ranges)]", "x = data[a.b]",
      "x.linear = a", "x = -a", "x = [a, *b]", "x = a if b else c"],
 )  # fmt: skip
-def test_a_statement_keeps_the_magnitude_of_a_value(statement):
+def test_statements_that_do_not_limit_a_value_are_recognised(statement):
     found = limits(ast.parse(statement), frozenset({"mine"}))
     assert found is ("len(" in statement), "the length of a list is limited"
 
@@ -77,7 +77,7 @@ def test_a_statement_keeps_the_magnitude_of_a_value(statement):
      ("x = abs(a)", False), ("x = a", False), ("x = float(a)", False), ("publish(a)", False),
      ("publish(2 * a)", True)],
 )  # fmt: skip
-def test_a_statement_computes_a_new_number(statement, computed):
+def test_statements_that_compute_a_new_number_are_recognised(statement, computed):
     assert computes(ast.parse(statement)) is computed
 
 

@@ -29,7 +29,7 @@ def safe_path(monkeypatch):
 
 
 @pytest.mark.usefixtures("safe_path")
-def test_answers_have_the_order_of_the_work():
+def test_results_come_in_the_order_of_the_tasks():
     if threading.active_count() > 1:
         pytest.skip("a process with threads is not forked")
     answers = in_processes(doubled, [3, 1, 2], [1, 9, 5], 2, silent)
@@ -69,7 +69,7 @@ def pool(monkeypatch) -> Pool:
     return made
 
 
-def test_the_largest_work_starts_first(pool, monkeypatch):
+def test_the_largest_task_starts_first(pool, monkeypatch):
     monkeypatch.setenv("PYTHONSAFEPATH", "")
     assert in_processes(str, [10, 20, 30], [1, 3, 2], 4, silent) == ["10", "20", "30"]
     assert (pool.work, pool.chunk, pool.path) == ([20, 30, 10], 1, "1")
@@ -84,7 +84,7 @@ def test_much_work_is_given_in_chunks_of_a_sixteenth_for_each_process(pool, coun
 
 
 @pytest.mark.usefixtures("safe_path")
-def test_a_failure_ends_the_other_work(pool):
+def test_a_failing_task_ends_the_other_tasks(pool):
     with pytest.raises(ValueError, match="no 1"):
         in_processes(failing, [1, 2], [1, 1], 2, silent)
     assert pool.shut == {"wait": False, "cancel_futures": True}

@@ -297,11 +297,11 @@ def generate_launch_description():
         ('<launch><arg name="a"/></launch>', False),
     ],
 )
-def test_an_xml_file_is_for_the_ros_whose_elements_it_has(package, text, ros2):
+def test_the_elements_of_an_xml_launch_file_show_its_ros_version(package, text, ros2):
     assert launched(package, text, "a.launch.xml").ros2 is ros2
 
 
-def test_an_xml_file_without_such_elements_is_for_the_ros_of_its_package(package):
+def test_an_xml_launch_file_without_typical_elements_has_the_ros_version_of_its_package(package):
     text = '<launch><arg name="a"/></launch>'
     (package / "package.xml").write_text(
         "<package><name>arm</name><export><build_type>ament_cmake</build_type></export></package>"

@@ -242,7 +242,7 @@ def test_the_programs_that_cmake_installs_are_found(tmp_path, name):
     assert dict(cmake(tmp_path, "arm").programs) == programs
 
 
-def test_words_of_cmake_keep_quotes_together_and_drop_comments(tmp_path):
+def test_quoted_words_of_cmake_stay_together_and_comments_are_dropped(tmp_path):
     text = 'set(A "x y") #[==[ set(A z) ]==] # set(A w)\nf(${A} "${A} b" c"d" (e (f)) )\n)g(h)'
     assert [(one.name, one.words) for one in commands(text, tmp_path, "arm")] == [
         ("set", ("A", "x y")),
@@ -284,7 +284,7 @@ def test_a_parameter_that_is_not_constant_is_a_problem_with_its_line(tmp_path, l
     assert (found.line, found.reason) == (3, problem)
 
 
-def test_nested_groups_know_their_enclosing_groups(tmp_path):
+def test_nested_groups_of_a_cfg_file_name_their_enclosing_groups(tmp_path):
     lines = "a = gen.add_group('A b', state=False)\nb = a.add_group('C')\nb.add('x', bool_t, 0, names())"
     (tmp_path / "Arm.cfg").write_text(CFG.format(lines))
     ((found,), _) = configurations(tmp_path / "Arm.cfg")

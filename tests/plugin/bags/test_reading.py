@@ -79,7 +79,7 @@ def test_damage_before_the_first_message_is_noted(tmp_path: Path) -> None:
     ("name", "told"),
     [("gone.bag", "gone.bag: no such bag"), ("a.txt", "a.txt is not a bag: --tarl-bag takes")],
 )
-def test_other_files_are_refused(tmp_path: Path, name: str, told: str) -> None:
+def test_files_that_are_not_bags_are_refused(tmp_path: Path, name: str, told: str) -> None:
     (tmp_path / "a.txt").write_text("")
     with pytest.raises(LogError, match=told):
         opened(tmp_path / name)

@@ -91,7 +91,7 @@ def test_each_message_of_a_sensor_is_delivered_at_its_time_and_steps_follow_each
     assert round(played.end * 10) == (START // 10**9) * 10 + 20
 
 
-def test_a_message_at_the_end_of_a_step_belongs_to_the_next() -> None:
+def test_a_message_at_the_end_of_a_step_belongs_to_the_next_step() -> None:
     seen: list[float] = []
     bag = Mission([(0.0, "/level", 1.0), (0.5, "/level", 2.0), (0.9, "/level", 3.0)])
     Played(bag, monitor=lambda moment: seen.append(moment.latest("/level").data) or 0.0)
@@ -111,7 +111,7 @@ def test_steps_before_the_nodes_are_ready_are_not_rewarded() -> None:
 
 
 @pytest.mark.parametrize("dt", [0.0, -0.1, 1e-10])
-def test_a_step_without_a_length_is_refused(dt: float) -> None:
+def test_a_step_of_zero_seconds_is_refused(dt: float) -> None:
     with pytest.raises(SettingsError, match=r"tarl\.step\(0\)"):
         Played(Mission([(0.0, "/level", 1.0)]), dt=dt)
 

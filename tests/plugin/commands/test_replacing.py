@@ -155,7 +155,9 @@ def test_a_directory_or_link_in_place_of_a_file_is_not_replaced(
     assert files[0].read_bytes() == b"old"
 
 
-def test_other_failures_are_passed_on(files: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_permission_error_of_the_system_is_raised(
+    files: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
     opening = os.open
 
     def denied(path: Any, *given: Any, **named: Any) -> int:

@@ -283,7 +283,7 @@ def test_with_once_an_interruption_ends_the_watch_between_two_missions(begun: An
     assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == before
 
 
-def test_a_second_interruption_ends_at_once() -> None:
+def test_a_second_interruption_ends_the_watch_at_once() -> None:
     with watch._stopped() as stopped:
         signal.raise_signal(signal.SIGTERM)
         assert stopped.is_set()

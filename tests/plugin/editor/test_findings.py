@@ -148,7 +148,7 @@ def test_the_title_of_a_lens_names_each_topic_once_by_kind(flows: Any, title: st
     assert findings.title(flows) == title
 
 
-def test_statements_of_other_files_are_located_there(places: Places, tmp_path: Path) -> None:
+def test_statements_of_other_files_are_located_in_these_files(places: Places, tmp_path: Path) -> None:
     (told,) = one(finding(of=flow(steps=(step(2, "b", path="other.py"),))), places).related_information or []
     assert told.location.uri == (tmp_path / "other.py").as_uri()
     assert told.location.range.start == types.Position(1, 0)

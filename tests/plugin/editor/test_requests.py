@@ -299,7 +299,7 @@ def answering(session: Session) -> Session:
     return session
 
 
-def test_lenses_are_those_of_the_file(answering: Session) -> None:
+def test_a_request_for_lenses_returns_those_of_its_file(answering: Session) -> None:
     def titles(name: str) -> list[str]:
         asked = types.CodeLensParams(types.TextDocumentIdentifier(answering.uri(name)))
         return [one.command.title for one in answering.asked("textDocument/codeLens", asked)]

@@ -31,7 +31,7 @@ def pose(kind: str) -> Any:
 
 
 @pytest.mark.parametrize(("kind", "generation"), [("", "ros1"), ("msg/", "ros2")])
-def test_messages_survive_as_plain_data(kind: str, generation: Any) -> None:
+def test_a_message_converted_to_plain_data_and_back_is_unchanged(kind: str, generation: Any) -> None:
     one = pose(kind)
     data = to_plain(one)
     assert (data["header"]["frame_id"], data["poses"][1]["position"]) == (
@@ -47,7 +47,7 @@ def test_messages_survive_as_plain_data(kind: str, generation: Any) -> None:
     assert list(filled(type(image)(), data, lambda *_: None).data) == [1, 2, 255]
 
 
-def test_values_become_plain_data() -> None:
+def test_values_of_fields_are_converted_to_plain_data() -> None:
     assert to_plain(np.array([[1.0, 2.0]])) == [[1.0, 2.0]]
     assert to_plain(array.array("d", [1.5])) == [1.5]
     assert to_plain(bytearray(b"\x01\xff")) == [1, 255]
@@ -93,7 +93,7 @@ def test_an_empty_command_and_no_topic_are_refused(monkeypatch: pytest.MonkeyPat
         checked(monkeypatch, **changes)
 
 
-def test_the_installed_ros_is_used_and_ros2_first(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_installed_ros_is_used_and_ros2_if_both_are_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert checked(monkeypatch, ("rospy",)).ros == "ros1"
     assert checked(monkeypatch, ("rospy", "rclpy")).ros == "ros2"
     with pytest.raises(SettingsError, match="neither is installed"):

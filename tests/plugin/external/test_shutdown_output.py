@@ -59,7 +59,7 @@ def interrupted(program: str) -> str:
 
 
 @pytest.mark.parametrize("kind", INTERRUPTED)
-def test_traceback_of_an_interrupt_is_left_out(kind: str) -> None:
+def test_the_traceback_of_an_interrupt_is_left_out_of_the_output(kind: str) -> None:
     output = interrupted(INTERRUPTED[kind])
     assert "Traceback" in output
     assert without_interrupts(output) == ""
@@ -67,7 +67,7 @@ def test_traceback_of_an_interrupt_is_left_out(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", FAULTY)
-def test_errors_while_the_simulator_ends_remain(kind: str) -> None:
+def test_errors_while_the_simulator_ends_stay_in_the_output(kind: str) -> None:
     program, error = FAULTY[kind]
     output = interrupted(program)
     assert error in output

@@ -74,13 +74,13 @@ def test_the_entry_of_a_function_is_after_its_docstring_and_declarations(text: s
         ("class A:\n    x: int\n    y = 1", "class A:\n    x: int\n    new()\n    y = 1"),
     ],
 )
-def test_a_statement_is_inserted_at_the_entry(text: str, expected: str) -> None:
+def test_a_statement_is_inserted_at_the_entry_of_a_function(text: str, expected: str) -> None:
     node = function(text)
     enter(node, body("new()")[0])
     assert ast.unparse(ast.parse(ast.unparse(node))) == ast.unparse(ast.parse(expected))
 
 
-def test_all_parameters_are_found() -> None:
+def test_all_kinds_of_parameters_of_a_function_are_found() -> None:
     found = parameters(function("def f(a, /, b, c=1, *d, e, g=2, **h): pass").args)
     assert sorted(one.arg for one in found) == list("abcdegh")
     assert [one.arg for one in parameters(function("def f(a, *, b): pass").args)] == ["a", "b"]

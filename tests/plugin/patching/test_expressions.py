@@ -148,7 +148,7 @@ def test_code_keeps_its_meaning_at_every_place_without_needless_parentheses(plac
         (True, "True"),
     ],
 )
-def test_numbers_have_four_digits(value: float, text: str) -> None:
+def test_numbers_are_written_with_four_digits(value: float, text: str) -> None:
     assert number(value) == text
 
 

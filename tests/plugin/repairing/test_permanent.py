@@ -95,7 +95,7 @@ def test_an_applied_repair_and_a_new_recording_make_the_drift_the_design(worn: p
     assert "the design has the drift 'worn', but tarl_drift held only 'clogged'" in told
 
 
-def test_workers_have_the_same_design(worn: pytest.Pytester) -> None:
+def test_recordings_under_a_permanent_drift_are_the_same_with_workers(worn: pytest.Pytester) -> None:
     changed(worn, "keeper", "GAIN = 2.0", "GAIN = 20.0")
     worn.runpytest(*RECORD, *WORN).assert_outcomes(passed=1, deselected=1)
     alone = fixture_file(worn).read_bytes()

@@ -293,7 +293,9 @@ def test_other_uses_of_a_changed_constant_are_listed_and_their_tests_run(worn: p
 @pytest.mark.parametrize(
     ("edit", "first"), [("use", "-            self.valve"), ("definition", "-GAIN"), ("auto", "-GAIN")]
 )
-def test_the_flag_chooses_use_or_definition(worn: pytest.Pytester, edit: str, first: str) -> None:
+def test_the_flag_edit_chooses_between_use_and_definition(
+    worn: pytest.Pytester, edit: str, first: str
+) -> None:
     node(worn, before="GAIN = 2.0\n", use="GAIN")
     _, _, lines = repaired(worn, f"--tarl-edit={edit}")
     assert lines.startswith(first)

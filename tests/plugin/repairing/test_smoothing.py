@@ -86,14 +86,14 @@ def test_the_size_of_a_change_is_compared_with_the_mean_over_the_steps_where_it_
     assert form_values(found[1].mutations[0]) == {"share": pytest.approx(0.25 / 0.5 / 0.45, rel=0.05)}
 
 
-def test_a_condition_that_never_held_has_no_size() -> None:
+def test_a_change_under_a_condition_that_never_held_is_not_smoothed() -> None:
     asked = order(0, 3)
     asked.online.recorded.sample = visited((1, 30.0), (2, 100.0))
     assert list(smoothed(asked, Candidate((Mutation(NAMED, 1.5),), LONG))) == []
 
 
 @pytest.mark.parametrize(("away", "smooth"), [(10.0, True), (10.1, False)])
-def test_a_sensor_rests_at_zero_if_it_is_there_in_nine_of_ten_steps(away: float, smooth: bool) -> None:
+def test_a_sensor_rests_at_zero_if_it_is_near_zero_in_nine_of_ten_steps(away: float, smooth: bool) -> None:
     asked = order(0, 3)
     asked.fixture.sample = visited((0, 50.0), (5, away), (0, 40.0))
     assert bool(list(smoothed(asked, Candidate((Mutation(NAMED, 1.5),), LONG)))) is smooth

@@ -146,7 +146,7 @@ def test_a_repair_that_restores_nearly_all_is_reported_with_a_sufficient_toleran
         refused(9.0, fresh=False),
     ],
 )
-def test_other_repairs_need_no_wider_tolerance(varied: Varied, repair: Repair | None) -> None:
+def test_other_repairs_come_without_advice_on_the_tolerance(varied: Varied, repair: Repair | None) -> None:
     totals = {"offline": (10.0, 10.0), "online": (0.0, 0.0)}
     margin = replace(varied().verdict, tolerance=0.5)
     assert repair_words.wider_tolerance(varied(totals=totals, verdict=margin, repair=repair)) == ""
@@ -175,7 +175,7 @@ def test_violated_formulas_come_first(varied: Varied) -> None:
     assert not formulas.violated(FORMULAS[1])
 
 
-def test_a_loss_has_interval_confidence_and_size(varied: Varied) -> None:
+def test_a_loss_is_printed_with_interval_confidence_and_effect_size(varied: Varied) -> None:
     totals = {"offline": (1.0, 3.0, 5.0), "online": (0.0, 2.0, 4.0)}
     verdict = Verdict("degraded", 0.1, 0.1, 1.0, 1.0, 1.0, LossInterval(0.5, 1.5, 0.9))
     one = varied(totals=totals, verdict=verdict)

@@ -26,7 +26,7 @@ def test_each_size_belongs_to_one_interval_and_the_last_one_includes_its_end() -
     ]
 
 
-def test_words_name_the_interval_and_the_rewards() -> None:
+def test_each_line_names_an_interval_of_the_range_and_its_rewards() -> None:
     first, _, last = sizes.lines(COMPARISON)
     assert first.startswith("mud 0 to 1: 7")
     assert last.startswith("mud 2 to 3: 2")

@@ -19,7 +19,7 @@ def test_rewards_are_printed_with_about_three_digits(value, text):
 @pytest.mark.parametrize(
     ("value", "text"), [(2.0, "+2.00"), (-2.0, "-2.00"), (0.0, "+0.00"), (math.nan, "n/a")]
 )
-def test_differences_have_a_sign(value, text):
+def test_differences_are_printed_with_a_sign(value, text):
     assert amounts.signed(value) == text
 
 

@@ -148,7 +148,7 @@ def test_episodes_of_another_scope_or_plan_are_run(path: Path) -> None:
     "changes",
     [{"broken": "NameError"}, {"stuck": True}, {"older": (Path("node.py"),)}],
 )
-def test_episodes_that_are_not_evidence_are_not_kept(path: Path, changes: Any) -> None:
+def test_episodes_that_cannot_be_evaluated_are_not_kept(path: Path, changes: Any) -> None:
     journal = opened(path)
     KeptRollout(Inner(changes=changes), journal, SCOPE, "shown")(EpisodePlan(1))
     assert journal.episodes == 0

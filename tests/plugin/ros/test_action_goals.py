@@ -182,7 +182,7 @@ def test_a_cancel_request_after_the_end_changes_nothing(scene: Scene) -> None:
     assert (scene.log, scene.ended()) == ([False], [("a", SUCCEEDED)])
 
 
-def test_a_server_that_has_no_goal_ends_none(scene: Scene) -> None:
+def test_a_server_without_a_goal_ignores_set_succeeded(scene: Scene) -> None:
     scene.do("server.set_succeeded()", "log.append(server.is_active())")
     assert (scene.log, scene.results) == ([False], [])
 

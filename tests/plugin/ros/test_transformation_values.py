@@ -246,7 +246,7 @@ def test_decomposed_matrices_have_the_parts_they_were_composed_of(
         assert tf.compose_matrix(*tf.decompose_matrix(bent)) == pytest.approx(bent, abs=1e-6)
 
 
-def test_parts_are_applied_from_the_right() -> None:
+def test_a_composed_matrix_applies_its_parts_from_right_to_left() -> None:
     assert moved(tf.compose_matrix(scale=[2, 3, 4]), [1, 1, 1]).tolist() == [2, 3, 4]
     assert moved(tf.compose_matrix(shear=[1, 2, 4]), [1, 1, 1]).tolist() == [4, 5, 1]
     assert moved(tf.compose_matrix(shear=[1, 2, 4], scale=[2, 3, 4]), [1, 1, 1]).tolist() == [13, 19, 4]
@@ -257,7 +257,7 @@ def test_parts_are_applied_from_the_right() -> None:
     assert moved(tf.compose_matrix(perspective=[0, 0, 1, 1]), [2, 4, 3]) == pytest.approx([0.5, 1, 0.75])
 
 
-def test_singular_matrices_have_no_parts() -> None:
+def test_singular_matrices_cannot_be_decomposed() -> None:
     with pytest.raises(ValueError, match="zero"):
         tf.decompose_matrix(np.diag([1.0, 1, 1, 0]))
     with pytest.raises(ValueError, match="singular"):

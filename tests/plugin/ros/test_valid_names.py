@@ -98,7 +98,7 @@ def test_the_rules_of_ros_2_are_those_of_rcl(name: str) -> None:
         assert expected in (problem or ("", 0))[0]
 
 
-def test_the_index_shows_the_wrong_character() -> None:
+def test_the_index_in_a_problem_points_at_the_wrong_character() -> None:
     found = [ros_names.topic_problem(name) for name in ("a b", "a/1", "ab{c", "ab/", "a/~b", "{a-}")]
     assert [problem[1] for problem in found if problem] == [1, 2, 2, 2, 2, 2]
     found = [ros_names.full_topic_problem(name) for name in ("/a//b", "/a/1", "/a b", "/ab/")]
@@ -212,7 +212,7 @@ def test_a_remapping_of_a_test_is_checked() -> None:
         Ros(remappings={"a": "b c"})
 
 
-def test_rosgraph_here_agrees_with_an_installed_one(start: Start) -> None:
+def test_legal_names_are_those_of_an_installed_rosgraph(start: Start) -> None:
     """Compare with the module of an installed ROS 1, if there is one."""
     python = shutil.which("python3", path="/usr/bin")
     names = ["", "a", "/a", "~a", "~/a", "1a", "/1", "_a", "/_a", "a b", "a-b", "a//b", "a/", "a/~b", "a:b"]

@@ -49,7 +49,7 @@ def search() -> tuple[dict[Operand, float], int]:
     return {mutation.operand: float(mutation.value) for mutation in found.mutations}, trials.spent
 
 
-def test_a_pair_on_a_ridge_is_found() -> None:
+def test_two_constants_that_must_grow_together_are_found() -> None:
     found, spent = search()
     assert found.keys() == {STIFF, DAMPED}
     assert 2.0 < found[STIFF] < 4.5

@@ -28,13 +28,13 @@ def mean(factors: Factors) -> float:
 
 
 @pytest.mark.parametrize("begin", [(0.75, 1.5), (0.6, 1.2), (0.5, 1.9)])
-def test_factors_climb_to_the_best_nearby(begin: Factors) -> None:
+def test_polishing_moves_factors_to_the_best_values_nearby(begin: Factors) -> None:
     found = polished(begin, earned, range(8), 17.0)
     assert mean(found) > mean(begin)
     assert all(one == pytest.approx(best, rel=0.08) for one, best in zip(found, BEST, strict=True))
 
 
-def test_the_best_factors_and_those_that_fail_are_kept() -> None:
+def test_polishing_keeps_the_best_factors_and_those_that_always_fail() -> None:
     assert polished(BEST, earned, range(8), 17.0) == BEST
     assert polished((6.0, 1.5), earned, range(8), 17.0) == (6.0, 1.5)
 

@@ -52,7 +52,7 @@ def test_missions_count_as_longer_if_they_last_a_fifth_longer(steps: int, expect
     assert longer(base, selection(trials)) is expected
 
 
-def test_missions_of_unknown_length_do_not_last_longer() -> None:
+def test_missions_of_unknown_length_do_not_count_as_longer() -> None:
     base = Joint(((Unit((PULL,)), 0.65),), ALWAYS)
     trials = Trials(lambda *_: Outcome(1.0, False, steps=None), 9)
     trials(base.candidate(mutations), PAIRS[0].seed)

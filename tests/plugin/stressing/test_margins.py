@@ -46,7 +46,7 @@ def test_margins_read_back_as_written(found: Margins) -> None:
     st.binary()
     | st.recursive(st.none() | st.text() | st.floats(), st.lists).map(lambda one: repr(one).encode())
 )
-def test_other_files_are_refused_with_one_sentence(content: bytes) -> None:
+def test_files_without_margins_are_refused_with_one_sentence(content: bytes) -> None:
     with pytest.raises(FixtureError, match=r"a\.json: not a file of margins"):
         read(content, "a.json")
 

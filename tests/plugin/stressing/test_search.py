@@ -86,7 +86,7 @@ def test_options_are_examined_separately() -> None:
     ]
 
 
-def test_harmless_directions_are_reported_as_such() -> None:
+def test_harmless_directions_are_reported_as_harmless() -> None:
     found = stressed(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD, slope=SLOPE))
     assert found.failures == ()
     told = "\n".join(words.lines(found))
@@ -95,7 +95,7 @@ def test_harmless_directions_are_reported_as_such() -> None:
 
 
 @pytest.mark.parametrize("spread", [0.1, 1.5])
-def test_noise_rarely_gives_a_boundary(spread: float) -> None:
+def test_noise_alone_rarely_gives_a_boundary(spread: float) -> None:
     def world(_: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(draws.random() < 0.96), float(draws.normal(10.0, spread))
 

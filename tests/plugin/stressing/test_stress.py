@@ -221,7 +221,7 @@ def test_a_clear_failure_is_confirmed_although_four_episodes_misled_the_search_n
         ({"camera": "up"}, "options of its choice"),
     ],
 )
-def test_other_values_of_must_hold_are_refused(value: Any, told: str) -> None:
+def test_invalid_values_of_must_hold_are_refused(value: Any, told: str) -> None:
     with pytest.raises(SettingsError, match=told):
         must_hold("t", value, DRIFTS)
 
