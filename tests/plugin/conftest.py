@@ -25,8 +25,8 @@ for package in (tarl_lint, pytest_tarl):
 def tank(pytester: pytest.Pytester) -> pytest.Pytester:
     """A temporary project with a node and its simulation test."""
     pytester.makefile(".py", keeper=NODE, test_tank=TEST)
-    # What shuffles tests, warns that it is not set up, or leaves a thread with each run is asked for where it is the
-    # subject.
+    # These plugins shuffle tests, warn that they are not set up, or leave a thread after each run. The tests of these
+    # plugins enable them.
     quiet = "-p no:randomly -p no:asyncio -p no:rerunfailures"
     pytester.makeini(f"[pytest]\nfilterwarnings = error\naddopts = {quiet}\n")
     return pytester

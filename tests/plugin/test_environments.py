@@ -15,7 +15,7 @@ from tests.plugin.tank import RECORD, fixture_file
 from tests.slow import SLOW
 
 TIMES = 40 if SLOW else 2
-PYTESTS_OWN = "assertions not in test modules:pytest.PytestConfigWarning"  # with -O
+PYTESTS_OWN = "assertions not in test modules:pytest.PytestConfigWarning"  # with -O, pytest warns about this
 PYTHON = (
     [],
     ["-O"],

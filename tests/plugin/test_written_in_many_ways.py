@@ -1,4 +1,4 @@
-"""Statements of the guide on classes, fixtures, debuggers, skips and interrupts."""
+"""Tests of what the guide says about classes, fixtures, debuggers, skips and interrupts."""
 
 from __future__ import annotations
 

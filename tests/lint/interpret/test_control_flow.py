@@ -1,4 +1,4 @@
-"""Loops, exceptions, context managers and calls of several functions lead data and decisions as Python does."""
+"""Data and decisions pass through loops, exceptions, context managers and calls of functions as in Python."""
 
 from __future__ import annotations
 

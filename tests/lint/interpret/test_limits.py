@@ -1,4 +1,4 @@
-"""A limit makes an analysis coarser, never blind: the flows of data stay, and a cut program is named."""
+"""Beyond a limit, an analysis is less precise but finds all flows of data, and an incomplete program is named."""
 
 from __future__ import annotations
 

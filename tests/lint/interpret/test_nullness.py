@@ -1,4 +1,4 @@
-"""Whether a message has arrived is not data of the message, but whether it contains a value is."""
+"""A check for None depends on data if it tells what a message contains, not if it tells whether one has arrived."""
 
 from __future__ import annotations
 

@@ -342,9 +342,9 @@ def test_a_run_begins_with_the_stores_of_all_roots(shared, obj):
     shared.leave(shared.ends, mine, key, ONE)
     shared.leave(shared.pauses, other, key, TWO)
     assert shared.entry(key, mine) == BOTH
-    assert shared.entry(key, other) == ONE  # its own pause is no store at its end
+    assert shared.entry(key, other) == ONE  # `other` stored TWO at a wait, but not at its end
     shared.leave(shared.ends, once, key, Value(frozenset([3])))
-    assert shared.entry(key, once) == BOTH  # never concurrent with itself
+    assert shared.entry(key, once) == BOTH  # `once` never runs concurrently with itself
     assert shared.entry(key, mine) == Value(frozenset([1, 2, 3]))
 
 

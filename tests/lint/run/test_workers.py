@@ -1,4 +1,4 @@
-"""Work is done in processes, in the order of its size, and answered in its own order."""
+"""Tasks run in processes, the largest first; their results come in the order of the tasks."""
 
 from __future__ import annotations
 

@@ -60,7 +60,8 @@ class Guardian:
         self.closed = True
 
     def output(self) -> str:
-        said, self.said = self.said, ""  # as the client: what the simulator said since the last call
+        # like the client, return what the simulator printed since the last call
+        said, self.said = self.said, ""
         return said
 
     def last_words(self) -> str:

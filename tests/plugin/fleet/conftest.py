@@ -5,8 +5,8 @@ from __future__ import annotations
 from contextlib import suppress
 from importlib import import_module
 
-# Imported before the first test: pytester forgets the modules that a test with it imports, and if they were imported
-# again, their classes would be others than those in use.
+# These libraries are imported before the first test. Otherwise, pytester would remove them after the first test that
+# imports them, and the next import would create other classes than those in use.
 for library in ("distributed", "fsspec.implementations.local", "importlib.metadata", "pandas", "tlz.curried"):
     with suppress(ModuleNotFoundError):  # an extra that is not installed
         import_module(library)

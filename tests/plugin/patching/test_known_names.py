@@ -1,4 +1,4 @@
-"""What a condition may read at a place: bound names and attributes, their first values, and values that are no None."""
+"""What a condition may read at a place: bound names and attributes, their first values, and values other than None."""
 
 from __future__ import annotations
 

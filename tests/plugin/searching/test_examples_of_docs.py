@@ -41,7 +41,7 @@ def found(name: str, folder: Path) -> tuple[list[float], list[str]]:
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_each_example_search_finds_the_gain_and_depends_on_the_seed(name: str, tmp_path: Path) -> None:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # theirs
+        warnings.simplefilter("ignore")  # warnings of the libraries that the examples use
         pytest.importorskip(name.partition("_")[0])
         (tmp_path / f"{name}.py").write_text(EXAMPLES[name])
         assert found(name, tmp_path) == found(name, tmp_path)

@@ -42,7 +42,7 @@ REACTION = named(8, "REACTION", 0.15)
 def searched(
     operands: Sequence[Operand], windows: Mapping[Operand, Range], steps: Mapping[Operand, int] | None = None
 ) -> Sweep:
-    """A world that each operand restores by a factor in its window; `steps` are the lengths of the missions then."""
+    """Search a world that any operand restores by a factor in its window; `steps` are the mission lengths then."""
     lengths = steps or {}
 
     def run(candidate: Candidate, seed: int) -> Outcome:

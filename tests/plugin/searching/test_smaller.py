@@ -42,7 +42,7 @@ def searched(
     rewards: Mapping[Operand, tuple[float, ...]] | None = None,
     budget: int = 300,
 ) -> Sweep:
-    """A world that any of some operands restores, by a factor in its window; `rewards` are the missions' then."""
+    """Search a world that any operand restores by a factor in its window; `rewards` are those of restored missions."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
         (change,) = candidate.mutations

@@ -132,7 +132,7 @@ def test_the_risks_of_all_chains_and_of_all_looks_of_a_test_add_up() -> None:
 
 
 def test_chains_rarely_confirm_a_drift_at_which_the_guarantee_just_holds() -> None:
-    """Each chain goes from failing drifts to ones that lose just what is tolerated; the risk is high to see errors."""
+    """Each chain goes from failing drifts to drifts that lose just what is tolerated; at a high risk, errors occur."""
     wrong = 0
     points = [{"a": a, "b": b} for a, b in ((0.9, 0.4), (0.625, 0.0), (0.5, 1.0 / 6.0), (0.35, 0.55 / 1.5))]
     assert [0.8 * point["a"] + 0.6 * point["b"] for point in points[1:]] == pytest.approx([0.5, 0.5, 0.5])

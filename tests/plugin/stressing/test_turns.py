@@ -1,4 +1,4 @@
-"""Seeds that drifts of the search take turns in, and drifts chosen by the model."""
+"""Drifts of the search use different seeds in turn, and the model chooses some of the drifts."""
 
 from __future__ import annotations
 

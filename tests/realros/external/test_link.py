@@ -12,7 +12,8 @@ pytestmark = [
     pytest.mark.skipif(
         PathFinder.find_spec("rclpy") is None, reason="rclpy is not installed here: make test-ros2"
     ),
-    pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # by a library of rclpy
+    # a library of rclpy causes this warning
+    pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),
 ]
 LIMIT = 300.0  # s; long enough for a busy machine
 
