@@ -274,7 +274,7 @@ class Repair:
     mean: float | None = None
     episodes: int = 0
     history: tuple[Attempt, ...] = ()
-    partial: Partial | None = None  # set only if no repair was accepted
+    partial: Partial | None = None  # None if a repair was accepted
 
 
 @dataclass(frozen=True, slots=True)

@@ -256,7 +256,7 @@ class NodeImports:
         own = [name for name in self._imported if name in sys.modules and self._belongs(sys.modules[name])]
         new = sys.modules.keys() - self._before - set(own) if own else set()
         others = holders((sys.modules[name] for name in own), sorted(new))
-        for name in sorted((*own, *others), reverse=True):  # submodules before their packages
+        for name in sorted((*own, *others), reverse=True):  # removes submodules before their packages
             module = sys.modules.pop(name)
             package, _, tail = name.rpartition(".")
             outer = sys.modules.get(package)

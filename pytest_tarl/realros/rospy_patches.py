@@ -218,7 +218,7 @@ def _patch_receiving(copy: RospyCopy, network: RospyNetwork) -> None:
 
     def init(self: Any, name: str, data_class: Any) -> None:
         make(self, name, data_class)
-        self.tcp_nodelay = True  # without it, Nagle's algorithm delays the second of two small messages
+        self.tcp_nodelay = True  # without this option, TCP delays the second of two small messages
 
     subscriber.receive_callback, subscriber.add_callback, subscriber.__init__ = receive_callback, add, init
 

@@ -53,7 +53,7 @@ class ServiceDirectory:
     def find(self, name: str) -> Endpoint | None:
         """Return the endpoint of a service, or None if there is none."""
         if name not in self._endpoints and name in self._offers:
-            self._offers[name]()  # the offer's function adds the endpoint
+            self._offers[name]()  # this call adds the endpoint
         return self._endpoints.get(name)
 
     def find_as(self, name: str, service_class: Any, caller: str) -> Endpoint | None:

@@ -24,7 +24,7 @@ class Root:
     name: str = ""
     once: bool = False
     function: ir.Function | None = None  # the function that the root runs; None if unknown
-    maker: Root | None = None  # the root that added this one
+    maker: Root | None = None  # the root whose run added this root
     program: str = ""  # the file whose budget the root uses
     number: int = 0  # position of the root in the order of addition
     # keys to which the root stores and which it reads again after a wait

@@ -19,7 +19,7 @@ OfStep = Callable[[Step], object]
 
 def report(result: Result, _view: View) -> Iterator[Line]:
     """Yield the document, indented and in ASCII, which no terminal or pipe can alter."""
-    known: dict[Step, Written] = {}  # flows share most of their steps
+    known: dict[Step, Written] = {}  # a cache, because flows share most of their steps
 
     def written(step: Step) -> Written:
         text = known.get(step)

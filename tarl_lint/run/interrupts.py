@@ -9,7 +9,7 @@ from contextlib import contextmanager
 @contextmanager
 def uninterrupted() -> Iterator[None]:
     """Block Ctrl-C in this process; processes started meanwhile block it until they call `end_silently`."""
-    import signal  # needed only with several processes
+    import signal  # imported here because only runs with several processes need this module
 
     mask = getattr(signal, "pthread_sigmask", None)
     if mask is None:  # Windows

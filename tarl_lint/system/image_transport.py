@@ -12,7 +12,8 @@ from tarl_lint.workspace.launch_model import LaunchedNode
 from tarl_lint.workspace.ros_arguments import plain
 from tarl_lint.workspace.ros_names import resolved
 
-IMAGE: Final = "Image by image_transport"  # type of an endpoint that a C++ program makes by image_transport
+# type of an endpoint that a C++ program creates with image_transport
+IMAGE: Final = "Image by image_transport"
 CAMERA: Final = "Image and CameraInfo by image_transport"
 RAW: Final = "raw"
 COMPRESSED: Final = "compressed"  # transport of the plugin that is installed nearly everywhere

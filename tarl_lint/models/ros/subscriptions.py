@@ -28,7 +28,8 @@ from tarl_lint.models.smach import LATER
 
 KINDS: Final[Mapping[str, Kind]] = {"service": "service", "action": "action", "transform": "transform"}
 NOTHING: Final[Mapping[str, Value]] = {}
-Fresh = Sequence[tuple[Obj, str, Value]]  # (object made by each call, field, value)
+# (object that each call creates, name of its field, value of the field)
+Fresh = Sequence[tuple[Obj, str, Value]]
 
 
 def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
