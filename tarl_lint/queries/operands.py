@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Final, Protocol
 
 from tarl_lint.ir import nodes as ir
@@ -40,11 +40,20 @@ LOGGING: Final = frozenset(
 )
 
 
+class Constant(Protocol):
+    """A constant: its value, or None if it is not a number or only known at run time."""
+
+    @property
+    def value(self) -> bool | int | float | None:
+        """Return the value."""
+        ...
+
+
 class Constants(Protocol):
     """Interface of a query for the constants of an expression."""
 
-    def of(self, expr: ir.Expr, value: Value | None) -> object:
-        """Return the origins of an expression's constants; a falsy value if it is not constant."""
+    def of(self, expr: ir.Expr, value: Value | None) -> Collection[Constant]:
+        """Return the origins of an expression's constants; empty if it is not constant."""
         ...
 
     def entries(self, value: Value | None, index: Value | None) -> object:
@@ -159,7 +168,8 @@ def _call(expr: ir.Call, values: Mapping[ir.Pos, Value], constants: Constants) -
         return
     if name in NOT_BEHAVIOUR or name in LOGGING:
         return
-    if (name in READING or not _literals(expr)) and constants.of(expr, values.get(expr.pos)):
+    passed = name in READING or not (_literals(expr) or _takes_constant(expr, values, constants))
+    if passed and constants.of(expr, values.get(expr.pos)):
         yield expr
         return
     if isinstance(function, ir.Attribute) and not isinstance(function.base, ir.Name):
@@ -175,6 +185,14 @@ def _literals(expr: ir.Call) -> bool:
     """Return whether a call has a literal number as argument."""
     given = [*expr.arguments, *(value for _, value in expr.keywords)]
     return any(isinstance(each, ir.Const) and isinstance(each.value, (int, float)) for each in given)
+
+
+def _takes_constant(expr: ir.Call, values: Mapping[ir.Pos, Value], constants: Constants) -> bool:
+    """Return whether a call has a named constant as argument; in `math.cos(YAW)`, a repair changes YAW."""
+    given = [*expr.arguments, *(value for _, value in expr.keywords)]
+    named = (one for one in given if isinstance(one, (ir.Name, ir.Attribute, ir.Item, ir.Call)))
+    origins = (origin for one in named for origin in constants.of(one, values.get(one.pos)))
+    return any(origin.value is not None for origin in origins)
 
 
 def _parts(expr: ir.Expr) -> Sequence[ir.Expr]:

@@ -53,6 +53,8 @@ NODE = """
         ("msg.data * self.pitch", [("self.pitch", 0.5)]),
         ("msg.data * self.b", [("self.b", 2.5)]),
         ("min(msg.data, self.limit)", [("self.limit", 9.0)]),
+        ("msg.data * np.cos(self.arm.k)", [("self.arm.k", 0.75)]),
+        ("msg.data * float(abs(GAIN))", [("GAIN", 2.5)]),
         ("msg.data * self.free", [("self.free", None)]),
         ("(lambda x, g=0.125: g * x)(msg.data)", []),
         ("msg.data if msg.data > 0.1 else True", [("0.1", 0.1), ("True", True)]),
