@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from pytest_tarl.instrumentation.importhook import NodeImports
     from pytest_tarl.instrumentation.recorder import Recorder
     from pytest_tarl.instrumentation.trace import Trace
+    from pytest_tarl.outputs import Outputs
     from pytest_tarl.ros import Bus, Ros
     from pytest_tarl.starting import Replacement
 
@@ -54,6 +55,7 @@ class Tarl:
         alone: bool = False,
         faults: Faults = NO_FAULTS,
         drifted: bool = False,
+        outputs: Outputs | None = None,
     ) -> None:
         self.seed = seed
         self.drives_ros = False
@@ -65,6 +67,7 @@ class Tarl:
         self._faults = NO_FAULTS if replay is not None else faults
         # whether a drift is active; then a node that publishes nothing is not an error
         self._drifted = drifted or bool(self._faults.active)
+        self._outputs = outputs
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0
@@ -98,6 +101,7 @@ class Tarl:
             self._open.enter_context(self._ros.installed())
             self._open.callback(self._ros.close)
             self._ros.on_delivery(self._situation.hear)
+            self._ros.bus.emitted = self._outputs
             if self._replay is not None:
                 self._replay.begin(self._ros)
             self._origin = self._ros.scheduler.time

@@ -74,6 +74,7 @@ class Episode:
     judged: tuple[Judged, ...] = ()
     older: tuple[Path, ...] = ()  # files of the overlay for which the episode ran the old text
     simulator: bool = False  # whether an external simulator was the episode's world
+    outputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
 
 EPISODE = pytest.StashKey[Episode]()
@@ -104,6 +105,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
     from pytest_tarl.instrumentation.datafiles import is_data, reading
     from pytest_tarl.instrumentation.importhook import NodeImports
     from pytest_tarl.instrumentation.recorder import Recorder
+    from pytest_tarl.outputs import Outputs
     from pytest_tarl.realros.choice import check_kind
 
     episode = _episode(item)
@@ -116,7 +118,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         publishes=episode.instruments.publishes,
         bind=recorder.bind,
     )
-    replay = _replay(episode)
+    replay, outputs = _replay(episode), Outputs()
     kind = check_kind(ini.value_of(item.config, "ros"))
     tarl = Tarl(
         episode.plan.seed,
@@ -131,6 +133,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         alone=EPISODE not in item.stash,
         faults=_faults(episode),
         drifted=episode.plan.drift is not None and not ini.value_of(item.config, "record"),
+        outputs=outputs if episode.plan.outputs else None,
     )
     data = {path: text for path, text in episode.plan.overlay.items() if is_data(path)}
     try:
@@ -141,6 +144,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
             episode.trace = tarl.rewarded(recorder.finish())
             episode.judged = tarl.judged
             episode.topics, episode.values = dict(tarl.topics), tarl.values
+            episode.outputs = outputs.sums
             episode.problem = tarl.problem()
             episode.replayed = replay is not None and replay.done
             episode.simulator = tarl.simulator is not None
@@ -378,6 +382,7 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         judged=episode.judged,
         older=episode.older,
         simulator=episode.simulator,
+        outputs=episode.outputs,
     )
 
 

@@ -19,6 +19,8 @@ KEPT = 6  # number of started episodes that a worker keeps while other episodes 
 class EpisodePlan:
     """One planned run of a test. `overlay` maps files to replacement texts; with `record`, nodes are instrumented.
 
+    With `outputs`, the messages that the nodes publish are summed up.
+
     With a `bag`, the mission in the bag replaces the test's world. If `drift` is a space, `point` is a point of it;
     without `point`, the seed determines a random one.
     """
@@ -29,6 +31,7 @@ class EpisodePlan:
     record: bool = False
     bag: Path | None = None
     point: Mapping[str, float] | None = None
+    outputs: bool = False
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,9 @@ class EpisodeRun:
 
     `older` lists files of the overlay for which the episode ran the old text. If there are any, the result says nothing
     about the overlay.
+
+    `outputs` holds, for each topic, sums over the messages that the nodes published, if the plan asks for them and the
+    nodes run in this process.
 
     `simulator` is true if an external simulator was the world; then the same plan may give another result.
 
@@ -59,6 +65,7 @@ class EpisodeRun:
     judged: tuple[Judged, ...] = ()
     older: tuple[Path, ...] = ()
     simulator: bool = False
+    outputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
 
 class Pending(Protocol):

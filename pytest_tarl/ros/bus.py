@@ -75,6 +75,8 @@ class Bus:
         self._observers: list[Callable[[str, Any], None]] = []
         self.muted = False  # whether messages of the world are discarded
         self.published: Counter[str] = Counter()
+        # called with topic and message whenever a node publishes
+        self.emitted: Callable[[str, Any], None] | None = None
         self.subscribed: set[str] = set()
 
     def publish(self, topic: str, message: Any, *, latch: bool = False) -> None:
@@ -170,6 +172,8 @@ class Bus:
         """Publish a copy of a node's message. The world receives it immediately, other nodes when this node waits."""
         message = snapshot(message)
         self.published[place.name] += 1
+        if self.emitted is not None:
+            self.emitted(place.name, message)
         place.carried = True
         if place.channels:
             self._pass(place, message, lambda one: self._emit(publication, place, one, keep))

@@ -17,7 +17,7 @@ from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 
 COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
-TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values", "simulator")
+TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values", "simulator", "outputs")
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
 ALIVE = b""  # heartbeat: shows that the worker's Python threads can run
@@ -45,7 +45,7 @@ def plan_message(plan: EpisodePlan) -> bytes:
     overlay = {str(path): text for path, text in plan.overlay.items()}
     head = {"seed": str(plan.seed), "drift": plan.drift, "overlay": overlay, "record": plan.record}
     point = None if plan.point is None else dict(plan.point)
-    return _joined({**head, "bag": str(plan.bag or ""), "point": point}, {})
+    return _joined({**head, "bag": str(plan.bag or ""), "point": point, "outputs": plan.outputs}, {})
 
 
 def planned(message: bytes) -> EpisodePlan:
@@ -53,7 +53,8 @@ def planned(message: bytes) -> EpisodePlan:
     head, _ = _parted(message)
     overlay = {Path(path): text for path, text in head["overlay"].items()}
     bag = Path(head["bag"]) if head["bag"] else None
-    return EpisodePlan(int(head["seed"]), head["drift"], overlay, head["record"], bag, head["point"])
+    given = (int(head["seed"]), head["drift"], overlay, head["record"], bag, head["point"])
+    return EpisodePlan(*given, outputs=head["outputs"])
 
 
 def run_message(run: EpisodeRun) -> bytes:
@@ -72,6 +73,7 @@ def run_message(run: EpisodeRun) -> bytes:
         "crashed": run.crashed,
         "stuck": run.stuck,
         "simulator": run.simulator,
+        "outputs": {topic: tuple(sums) for topic, sums in run.outputs.items()},
         "notes": run.notes,
         "older": [str(path) for path in run.older],
         "values": dict(run.values),

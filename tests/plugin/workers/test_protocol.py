@@ -24,6 +24,7 @@ PLAN = EpisodePlan(
     record=True,
     bag=Path("/bags/one"),
     point={"friction": 0.25},
+    outputs=True,
 )
 
 
@@ -50,6 +51,7 @@ RUN = EpisodeRun(
     judged=(Judged("level < 1", 0.5, 1.5), Judged("x > 0", -1.0, 2.0)),
     older=(Path("/a/node.py"), Path("gains.py")),
     simulator=True,
+    outputs={"/cmd": [2.0, 5.0]},
 )
 
 

@@ -1,0 +1,25 @@
+"""Sums over the messages that nodes publish, which show whether a change alters what a node does.
+
+A change may leave the reward and the length of a failing mission as they are, and still alter every command. Equal
+sums mean that a node most likely behaved the same.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pytest_tarl.instrumentation.magnitude import magnitude
+
+
+class Outputs:
+    """Sum the sizes of all messages by topic: plainly, and weighted by their number, which tells their order."""
+
+    def __init__(self) -> None:
+        self.sums: dict[str, tuple[float, float]] = {}
+        self._count = 0
+
+    def __call__(self, topic: str, message: Any) -> None:
+        """Add a message."""
+        self._count += 1
+        size, (plain, weighted) = magnitude(message), self.sums.get(topic, (0.0, 0.0))
+        self.sums[topic] = (plain + size, weighted + size * self._count)
