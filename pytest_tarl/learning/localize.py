@@ -72,7 +72,8 @@ def culprits(
     """Rank sites by the effects that simulation found, or by their slices if it found none.
 
     `effects` maps site ids to effects in reward per episode. An effect equal to `loss` has the score 1. The sites of
-    the confirmed repair get the highest score; sites that were not tried in simulation get 0.
+    the confirmed repair get the highest score, those with the largest effect of their own first; sites that were not
+    tried in simulation get 0.
     """
     found = [_simulated(site, effects[site.id], loss, method) for site, _ in ranked if effects.get(site.id)]
     guessed = [Culprit(site, 0.0, "slices") for site, _ in ranked if not effects.get(site.id)]
@@ -81,8 +82,12 @@ def culprits(
         return tuple(Culprit(site, score, "slices") for site, score in scored if score > 0)
     highest = max(one.score for one in found)
     found = [replace(one, score=highest) if one.site.id in repaired else one for one in found]
-    found.sort(key=lambda culprit: (-culprit.score, culprit.site.id not in repaired))
+    found.sort(key=lambda one: (-one.score, one.site.id not in repaired, -_own(one)))
     return (*found, *guessed)
+
+
+def _own(culprit: Culprit) -> float:
+    return max((effect.effect for effect in culprit.operands), default=0.0)
 
 
 def _simulated(site: SitePlace, effects: Sequence[OperandEffect], loss: float, method: str) -> Culprit:

@@ -35,8 +35,8 @@ class Between:
 
     def beyond(self, known: Candidate) -> None:
         """Start from a candidate of the same operands that is known to gain too little."""
-        if len(self._factors) == 1 and further(self.candidate, known):
-            strong, weak = self._factors[0], factor(known.mutations[0])
+        if further(self.candidate, known):
+            strong, weak = common_factor(self.candidate), common_factor(known)
             if strong is not None and weak is not None:
                 self.weak = max(self.weak, log(weak) / log(strong))
 
@@ -110,6 +110,14 @@ def on_grid(mutation: Mutation) -> bool:
     return form is not None and any(
         one.name == form.parameter and one.grid for one in form.template.parameters
     )
+
+
+def common_factor(candidate: Candidate) -> float | None:
+    """Return the factor (or step on a chart) of a candidate that changes one constant at all of its uses, or None."""
+    found = {factor(mutation) for mutation in candidate.mutations}
+    constants = {mutation.operand.definition for mutation in candidate.mutations}
+    several = len(candidate.mutations) > 1 and (len(constants) > 1 or None in constants)
+    return found.pop() if len(found) == 1 and not several else None
 
 
 def factor(mutation: Mutation) -> float | None:

@@ -19,7 +19,7 @@ from pytest_tarl.searching.accept import Reference
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 
 THIN = 0.35  # candidates that lose less than this share of the margin are not improved
-STEPS = (1.3, 1.12, 1.04)  # ratios between neighbouring values, tried in this order
+STEPS = (1.3, 1.12, 1.04, 1.015)  # ratios between neighbouring values, tried in this order
 SEEDS = 5  # maximum number of seeds on which to compare values
 BEHIND = 2  # number of seeds after which a value that earned less than the best one is dropped
 MOVES = 3  # maximum number of moves in one direction with one ratio
@@ -45,7 +45,7 @@ def centred(
 
 
 def neighbours(candidate: Candidate, mutate: Mutate) -> Iterator[Candidate]:
-    """Yield the candidate with slightly smaller and larger values; nothing if it has several sites or no factor."""
+    """Yield the candidate with slightly smaller and larger values; nothing if it has several constants or no factor."""
     for ratio in ASIDE:
         other = moved(candidate, ratio, mutate)
         if other is not None:
@@ -73,7 +73,7 @@ def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, e
 def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | None:
     """Return a candidate with its value scaled by `ratio`; parameters on a grid, such as powers, are unchanged.
 
-    Return None if the candidate has several sites or no factor.
+    Return None if the candidate changes several constants in several statements, or has no factor.
     """
     made: list[Mutation] = []
     if all(map(on_grid, candidate.mutations)):
@@ -83,7 +83,9 @@ def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | Non
             made.append(one)
             continue
         by = searched_step(one)
-        if by is None or one.operand.site != candidate.mutations[0].operand.site:
+        first = candidate.mutations[0].operand
+        alike = one.operand.site == first.site or one.operand.definition == first.definition is not None
+        if by is None or not alike:
             return None
         further = to_step(one, by * ratio, mutate)
         if further is None:

@@ -10,7 +10,7 @@ from math import sqrt
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
-from pytest_tarl.repairing.between import STRONG, WEAK, Between, factor, stronger
+from pytest_tarl.repairing.between import STRONG, WEAK, Between, common_factor, stronger
 from pytest_tarl.repairing.centring import in_place, moved, neighbours
 from pytest_tarl.repairing.ledger import Ledger, Tried, operands
 from pytest_tarl.repairing.missed import Lost, Missed
@@ -21,7 +21,7 @@ from tarl_lint.model import Operand
 
 POWERS = (1.5, 2.0)  # exponents of the factors of a candidate at the edge of the range of good values
 MILDER = (0.75, 0.5)  # exponents of the factors of a candidate whose missions succeed but earn too little
-RATIOS = (1.1, 1.03)  # ratios between neighbouring values, around a value that loses too much in its test
+RATIOS = (1.1, 1.03, 1.01)  # ratios between neighbours of a value that loses too much in its test
 MOVES = 3  # maximum number of moves in one direction with one ratio
 BETTER = 0.1  # a neighbour must earn at least this share of the margin more
 CLOSE = 1.3  # maximum ratio of two rejected values between which good values may lie
@@ -188,8 +188,8 @@ class Others:
 
 
 def ratio_of(one: Candidate, other: Candidate) -> float | None:
-    """Return the ratio of two candidates' factors on their only operand, or None if they differ in anything else."""
-    if one.guard != other.guard or operands(one) != operands(other) or len(one.mutations) != 1:
+    """Return the ratio of two candidates' factors on their only constant, or None if they differ in anything else."""
+    if one.guard != other.guard or operands(one) != operands(other):
         return None
-    mine, its = factor(one.mutations[0]), factor(other.mutations[0])
+    mine, its = common_factor(one), common_factor(other)
     return mine / its if mine is not None and its is not None else None

@@ -289,7 +289,8 @@ def _ranked(order: Order, effects: Mapping[str, Sequence[OperandEffect]]) -> lis
     """Return the sites in the order of the slices, then the sites that are not in the recording or not in any flow."""
     ranked = [(culprit.site, culprit.score) for culprit in order.comparison.culprits]
     known = {site.id for site, _ in ranked}
-    configuring = [step for step, _ in order.analysis.configuring.values()]
+    analysis = order.analysis
+    configuring = [step for step, _ in (*analysis.configuring.values(), *analysis.making.values())]
     aside = (*order.analysis.deciding, *order.analysis.timing, *configuring)
     late = [step for step in aside if str(step.site) in effects]
     for step in (*order.analysis.sites, *late):

@@ -9,6 +9,7 @@ from pytest_tarl import seeds
 from pytest_tarl.model import Guard
 from pytest_tarl.repairing.labels import quantities
 from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.name_scopes import name_scope
 from pytest_tarl.repairing.products import one_of_each
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.scales import charts
@@ -43,6 +44,7 @@ def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Tri
             aside=aside_operands(order),
             structure_follows=order.options.structure,
             charts=charts(order, moved),
+            scope=name_scope(order.analysis),
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

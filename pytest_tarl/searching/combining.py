@@ -14,7 +14,7 @@ from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
 from pytest_tarl.searching.refining import ALMOST
 from pytest_tarl.searching.search import Candidate, Goal, Trials
-from pytest_tarl.searching.units import Unit, whole_constants
+from pytest_tarl.searching.units import Scope, Unit, whole_constants
 from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ class Search(Protocol):
 
     units: tuple[Unit, ...]
     late: tuple[Unit, ...]
+    scope: Scope
     trials: Trials
     goal: Goal
     generator: np.random.Generator | None
@@ -72,7 +73,7 @@ class Combining:
         if search.generator is None or search.proposed:
             return
         guard = max(guards, key=lambda one: max((gain for gain, _ in search.gains.leaders(one)), default=0.0))
-        united = whole_constants((*search.units, *search.late))
+        united = whole_constants((*search.units, *search.late), search.scope)
         chosen, hidden = sensitive(united, search.gains, guard)
         if len(chosen) < LEAST:
             return

@@ -25,7 +25,16 @@ from pytest_tarl.searching.preferring import Preferences
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
-from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units
+from pytest_tarl.searching.units import (
+    NEAR,
+    Scope,
+    Unit,
+    best_effects,
+    charted,
+    everywhere,
+    units,
+    uses_apart,
+)
 from tarl_lint.model import Operand
 
 if TYPE_CHECKING:
@@ -44,6 +53,8 @@ LAST = (10.0, 0.05)
 FLIPPED = 3
 REFINEMENTS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
 REFINED = 8  # maximum number of runs that refine one operand
+HALF = 0.5  # gain of a change, as a share of the wanted gain, from which on others get no `FINER` steps
+MOST_USES = 3  # maximum number of uses of a constant that are changed alone once it is confirmed
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
 
 
@@ -75,12 +86,17 @@ class Sweep:
         charts: Mapping[Operand, Chart] = MappingProxyType({}),
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
         responding: Collection[str] = (),
+        scope: Scope = everywhere,
     ) -> None:
         self.responding = responding
         self.structure_follows = structure_follows
-        self.units = charted(units(operands), charts)
         self.late = units(late)
         self.aside = units(aside)
+        self.scope = scope
+        self.units = charted(units(operands), charts)
+        self._uses: Mapping[Unit, tuple[Unit, ...]] = {}
+        if not proposed:
+            self.units, self._uses = uses_apart(self.units, (*self.late, *self.aside), scope)
         self.weaker = weaker
         self.given = given
         self.mutate = mutate
@@ -189,9 +205,17 @@ class Sweep:
         for factor, before in () if self.gains.anything() else FURTHER:
             leading = self._leading(before, guard, self.goal.wanted * HINT)
             yield from self._all(factor, guard, leading[:LEADING])
+        yield from self._uses_apart(guard, block)
         yield from self._inward(guard)
         yield from self.combining.leaders(guard)
         yield from self.combining.unmasked(guard)
+
+    def _uses_apart(self, guard: Guard, block: Sequence[Unit]) -> Iterator[Candidate]:
+        """Change a constant at one of its uses only, because its effects at several uses may cancel each other."""
+        uses = [use for whole in self.gains.moving(block) for use in self._uses.get(whole, ())]
+        self.units = (*self.units, *(use for use in uses if use not in self.units))
+        for factor in NEAR if uses else ():
+            yield from self._all(factor, guard, self.gains.moving(uses))
 
     def _strengthened(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Strengthen proposals too weak to have an effect; use the largest factors only at statements that respond."""
@@ -274,6 +298,7 @@ class Sweep:
         self._learn(unit, candidate, factor)
         yield from self.preferences.before(candidate, unit, factor, pair, holds, near)
         if holds:
+            self._try_uses(unit, guard, factor, pair)
             yield candidate
             yield from self.preferences.after()
         if holds or (near and self.trials.loses(candidate)):
@@ -295,7 +320,21 @@ class Sweep:
             return None
         holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
         self._learn(unit, candidate, factor)
+        if holds:
+            self._try_uses(unit, guard, factor, pair)
         return candidate if holds else None
+
+    def _try_uses(self, unit: Unit, guard: Guard, factor: float, pair: int) -> None:
+        """Change each use of a confirmed constant alone, on one seed, to learn which of the statements matter."""
+        uses = self._uses.get(unit, ())
+        if len(uses) > MOST_USES or self.trials.budget - self.trials.spent <= len(uses):
+            return
+        for use in uses:
+            candidate = Candidate(use.mutations(self.mutate, factor), guard)
+            if candidate.mutations and candidate not in self._tried:
+                self._tried.add(candidate)
+                if self._near(candidate, pair) is not None:
+                    self._learn(use, candidate, factor)
 
     def _expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
         """Announce the tries that come next unless a result changes the order."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, log
 
@@ -13,6 +13,14 @@ from pytest_tarl.searching.search import Mutate, operand_effect
 from tarl_lint.model import Operand
 
 NEAR = (2.2, 0.4)  # the first factors to try on every unit
+ENOUGH = 0.9  # minimum gain of a use that brings the gain of all uses, as a share of the latter
+
+Scope = Callable[[Operand], str]
+
+
+def everywhere(_: Operand) -> str:
+    """Return "": a name means the same constant in the whole file."""
+    return ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +72,14 @@ def change_size(unit: Unit, factor: float) -> float:
     return abs(log(by)) if by is not None and by > 0.0 and value != 0 else inf
 
 
-def whole_constants(apart: Sequence[Unit]) -> tuple[Unit, ...]:
-    """Unite the uses of a named constant in all statements of a file; keep the order."""
+def whole_constants(apart: Sequence[Unit], scope: Scope = everywhere) -> tuple[Unit, ...]:
+    """Unite the uses of a named constant in all statements of a file; keep the order.
+
+    `scope` returns the part of the file in which the name of an operand means the same constant.
+    """
     groups: list[list[Unit]] = []
     for unit in apart:
-        alike = next((group for group in groups if _same_constant(group[0], unit)), None)
+        alike = next((group for group in groups if _same_constant(group[0], unit, scope)), None)
         if alike is None:
             groups.append([unit])
         else:
@@ -79,29 +90,74 @@ def whole_constants(apart: Sequence[Unit]) -> tuple[Unit, ...]:
     )
 
 
-def _same_constant(unit: Unit, other: Unit) -> bool:
+def uses_apart(
+    plain: Sequence[Unit], others: Sequence[Unit], scope: Scope = everywhere
+) -> tuple[tuple[Unit, ...], dict[Unit, tuple[Unit, ...]]]:
+    """Return `plain` with all uses of a constant as one unit, and for each such unit its uses in `plain`.
+
+    A constant that several statements use is one thing to a maintainer, who changes it everywhere. Uses among
+    `others`, which are not searched by themselves, change as well. The unit takes the place of its first use.
+    """
+    united: list[Unit] = []
+    parts: dict[Unit, tuple[Unit, ...]] = {}
+    for whole in whole_constants((*plain, *others), scope):
+        mine = {*whole.operands}
+        uses = [unit for unit in plain if unit.chart == whole.chart and mine.issuperset(unit.operands)]
+        if uses:
+            united.append(whole if whole.operands != uses[0].operands else uses[0])
+        if uses and whole.operands != uses[0].operands:
+            parts[whole] = tuple(uses)
+    return tuple(united), parts
+
+
+def _same_constant(unit: Unit, other: Unit, scope: Scope) -> bool:
     one, two = unit.operands[0], other.operands[0]
     if one.literal or two.literal or one.definition is None or isinstance(one.value, bool):
         return False
     here = one.span.path == two.span.path and unit.chart == other.chart
-    return here and one.code == two.code and one.definition == two.definition
+    return here and one.code == two.code and one.definition == two.definition and scope(one) == scope(two)
 
 
 def best_effects(
     gained: Iterable[tuple[Unit, Mapping[float, float]]], mutate: Mutate
 ) -> dict[str, list[OperandEffect]]:
-    """Return for each site id the gain of each operand at its best factor; on ties, the factor tried first wins."""
+    """Return for each site id the gain of each operand at its best factor; on ties, the factor tried first wins.
+
+    If all uses of a constant together gain more than some of them alone, and others may bring the gain, the former get
+    only their own gain.
+    """
+    gained = list(gained)
     best: dict[Operand, OperandEffect] = {}
     for unit, gains in gained:
         tried = [factor for factor in gains if unit.mutations(mutate, factor)]
         factor = max(tried, key=lambda one: (gains[one], -one), default=1.0)
         for mutation in unit.mutations(mutate, factor):
-            if mutation.operand not in best or gains[factor] > best[mutation.operand].effect:
-                best[mutation.operand] = operand_effect(mutation, gains[factor])
+            alone = _alone(mutation.operand, unit, factor, gained)
+            gain = gains[factor] if alone is None else alone
+            if mutation.operand not in best or gain > best[mutation.operand].effect:
+                best[mutation.operand] = operand_effect(mutation, gain)
     found: dict[str, list[OperandEffect]] = {}
     for operand, effect in best.items():
         found.setdefault(str(operand.site), []).append(effect)
     return found
+
+
+def _alone(
+    operand: Operand, unit: Unit, factor: float, gained: Sequence[tuple[Unit, Mapping[float, float]]]
+) -> float | None:
+    """Return an operand's own gain with a factor if it is small and another operand may bring the unit's gain."""
+    if len(unit.operands) < 2:
+        return None
+    alone: dict[Operand, float] = {}
+    whole = 0.0
+    for one, gains in gained:
+        if one.chart == unit.chart and factor in gains:
+            if one == unit:
+                whole = max(whole, gains[factor])
+            elif {*one.operands} < {*unit.operands}:
+                alone |= dict.fromkeys(one.operands, gains[factor])
+    small = {one for one, gain in alone.items() if gain < ENOUGH * whole}
+    return alone[operand] if operand in small and len(small) < len({*unit.operands}) else None
 
 
 def _alike(one: Operand, other: Operand) -> bool:
