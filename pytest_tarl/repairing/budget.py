@@ -49,6 +49,7 @@ class Purse:
             budget,
             foresee=lambda wanted: mutants.foresee(wanted, order.drift),
             design=lambda seed: mutants.run(ORIGINAL, seed, None),
+            unchanged=lambda seed: mutants.run(ORIGINAL, seed, order.drift),
         )
         return trials
 

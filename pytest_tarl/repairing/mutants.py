@@ -57,7 +57,7 @@ class Mutants:
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
         """Run one episode of a candidate. Raise RepairError if the candidate cannot be written into the source."""
-        plan = EpisodePlan(seed, drift, self.source(candidate))
+        plan = EpisodePlan(seed, drift, self.source(candidate), outputs=True)
         return _outcome(lambda: self._ahead((candidate, seed, drift), plan), self.order.worst)
 
     def run_at(
@@ -78,7 +78,7 @@ class Mutants:
                 source = self.source(candidate)
             except RepairError:
                 continue  # `run` raises the error again
-            yield (candidate, seed, drift), EpisodePlan(seed, drift, source)
+            yield (candidate, seed, drift), EpisodePlan(seed, drift, source, outputs=True)
 
 
 def _check_text(ended: EpisodeRun) -> None:
@@ -110,4 +110,5 @@ def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     total = float(ended.trace.reward.sum())
     earned = min(total, worst) if ended.crashed else total
     rewards = tuple(ended.trace.reward.tolist())
-    return Outcome(earned, ended.passed, ended.judged, ended.trace.steps, rewards)
+    outputs = tuple((topic, tuple(sums)) for topic, sums in sorted(ended.outputs.items()))
+    return Outcome(earned, ended.passed, ended.judged, ended.trace.steps, rewards, outputs)

@@ -37,13 +37,17 @@ SHARE = 2 / 3
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """The outcome of an episode: total reward, whether the test passed, formula verdicts, steps, rewards by step."""
+    """The outcome of an episode: total reward, whether the test passed, formula verdicts, steps, rewards by step.
+
+    `outputs` holds sums over the messages that the nodes published, by topic; empty if unknown.
+    """
 
     total: float
     passed: bool
     judged: tuple[Judged, ...] = ()
     steps: int | None = None
     rewards: tuple[float, ...] = field(default=(), compare=False, repr=False)
+    outputs: tuple[tuple[str, tuple[float, ...]], ...] = field(default=(), compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,8 +33,8 @@ def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guar
     others = []
     for unit in named(units) if factor > 0 else ():
         site = unit.operands[0].site
-        same = (site.module, site.qualname) == (at.module, at.qualname)
-        if unit != found and unit.chart == found.chart and same and (unit not in tried or gains.moves(unit)):
+        beside = (site.module, site.qualname) == (at.module, at.qualname) and unit.chart == found.chart
+        if unit != found and beside and (unit not in tried or gains.matters(unit)):
             others.append(unit)
     for power in POWERS:
         yield from ((unit, round(factor**to, 3)) for unit in others for to in (-power, power))

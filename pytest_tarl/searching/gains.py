@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from pytest_tarl.model import Guard
+from pytest_tarl.searching.plainness import Oddness, kind
 from pytest_tarl.searching.units import NEAR, Unit
 from tarl_lint.model import SiteId
 
@@ -15,10 +16,14 @@ Part = tuple[Unit, float]  # a unit with a factor
 class Gains:
     """Gains in total reward over the unmutated runs of the same seeds.
 
-    Gains of at most `slack` are treated as noise. If `proposed` is true, a factor of 1 counts as a change.
+    Gains of at most `slack` are treated as noise. If `proposed` is true, a factor of 1 counts as a change. `acting`
+    returns whether a unit changed what the nodes publish; calling it may cost an episode.
     """
 
-    def __init__(self, slack: float, proposed: bool = False) -> None:
+    def __init__(
+        self, slack: float, proposed: bool = False, acting: Callable[[Unit], bool] | None = None
+    ) -> None:
+        self._acting = acting
         self.slack = slack
         self.proposed = proposed
         self._by_key: dict[Key, dict[float, float]] = {}
@@ -46,9 +51,10 @@ class Gains:
         """Return the gains of all units that were tried under a guard."""
         return {unit: gains for (unit, held), gains in self._by_key.items() if held == guard}
 
-    def anything(self) -> bool:
-        """Return whether any gain exceeds `slack`."""
-        return any(max(gains.values()) > self.slack for gains in self._by_key.values())
+    def anything(self, least: float | None = None) -> bool:
+        """Return whether any gain exceeds `least`, by default `slack`."""
+        bound = self.slack if least is None else least
+        return any(max(gains.values()) > bound for gains in self._by_key.values())
 
     def idle(self, unit: Unit) -> bool:
         """Return whether a proposed change had no effect at factor 1, its proposed value."""
@@ -59,13 +65,27 @@ class Gains:
         """Return whether a unit changed any episode."""
         return any(moved == unit for moved, _ in self._moved)
 
+    def matters(self, unit: Unit) -> bool:
+        """Return whether a unit changed any episode, or at least what the nodes publish."""
+        return self.moves(unit) or self._acts(unit)
+
+    def _acts(self, unit: Unit) -> bool:
+        return self._acting is not None and self._acting(unit)
+
     def moving(self, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units, except those for which neither an increase nor a decrease had any effect."""
+        """Return the units, except those for which neither an increase nor a decrease had any effect.
+
+        While no unit gains, a changed command counts as an effect, because all missions that fail may earn the same.
+        """
         tries: dict[Unit, int] = {}
         for (unit, _), by_factor in self._by_key.items():
             tries[unit] = tries.get(unit, 0) + sum(factor != 1.0 for factor in by_factor)
-        moved = {unit for unit, _ in self._moved}
-        return [unit for unit in among if tries.get(unit, 0) < len(NEAR) or unit in moved]
+        moved, flat = {unit for unit, _ in self._moved}, not self.anything()
+        return [
+            unit
+            for unit in among
+            if tries.get(unit, 0) < len(NEAR) or unit in moved or (flat and self._acts(unit))
+        ]
 
     def distinct(self, among: Sequence[Unit]) -> list[Unit]:
         """Return the units, except those that use the same constant as an earlier unit and have the same effect.
@@ -98,17 +118,21 @@ class Gains:
         """Return the units that lost more than `slack` with each of these factors.
 
         A mission that already earns the least possible reward cannot lose more. Therefore an episode that changed but
-        earned the same also counts as a loss.
+        earned the same also counts as a loss. For a named constant, it suffices that what the nodes publish changed.
         """
         tried = {unit: self.of(unit, guard) for unit in among}
 
         def lost(unit: Unit, gains: Mapping[float, float], factor: float) -> bool:
             gain = gains.get(factor)
             return gain is not None and (
-                gain < -self.slack or (gain == 0.0 and (unit, factor) in self._moved)
+                gain < -self.slack
+                or (gain == 0.0 and ((unit, factor) in self._moved or self._acts_by_name(unit)))
             )
 
         return [unit for unit, gains in tried.items() if all(lost(unit, gains, one) for one in factors)]
+
+    def _acts_by_name(self, unit: Unit) -> bool:
+        return kind(unit) is Oddness.NAMED and self._acts(unit)
 
     def leading(
         self, before: float, guard: Guard, among: Sequence[Unit], least: float, inert: bool = False

@@ -46,7 +46,7 @@ def gentler(
     for unit, by_factor in tried.items():
         site = unit.operands[0].site
         at_site[site] = max(at_site.get(site, 0.0), *by_factor.values())
-    moved = {unit for unit in tried if gains.moves(unit) or not set(NEAR) <= tried[unit].keys()}
+    moved = {unit for unit in tried if gains.matters(unit) or not set(NEAR) <= tried[unit].keys()}
     others = [unit for unit in named(units) if unit != found and (unit in moved or unit not in tried)]
     worth = {unit: at_site.get(unit.operands[0].site, 0.0) for unit in others}
     others.sort(key=lambda unit: -worth[unit])

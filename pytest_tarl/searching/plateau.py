@@ -52,7 +52,7 @@ def inward(units: Sequence[Unit], gains: Gains) -> tuple[list[Unit], list[float]
     If named constants matter, the others are left out.
     """
     matter = [
-        unit for unit in units if unit.chart is None and gains.moves(unit) and kind(unit) < Oddness.OFFSET
+        unit for unit in units if unit.chart is None and gains.matters(unit) and kind(unit) < Oddness.OFFSET
     ]
     matter = named(matter) or matter
     steps = [step for step, before in STEPS if before is INWARD]
@@ -62,6 +62,6 @@ def inward(units: Sequence[Unit], gains: Gains) -> tuple[list[Unit], list[float]
 def among(before: float | None, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Unit]:
     """Return the units to try with a step; `before` is the smaller step that must not have reduced the reward."""
     if before is INWARD:
-        return [unit for unit in named(units) if unit.chart is None and gains.moves(unit)]
+        return [unit for unit in named(units) if unit.chart is None and gains.matters(unit)]
     leading = gains.leading(before, guard, units, -gains.slack)
     return [unit for unit in leading if kind(unit) < Oddness.OFFSET]

@@ -130,6 +130,7 @@ class Trials:
     # returns whether a candidate loses missions that were lost by rejected candidates
     loses: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world
+    unchanged: Callable[[int], Outcome] | None = None  # runs the unchanged program in the drifted world
     # seed → number of candidates that earned too little on it
     misses: Counter[int] = field(default_factory=Counter)
     totals: list[float] = field(default_factory=list)

@@ -38,7 +38,7 @@ def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, gua
         if unit.operands != found.operands
         and unit.chart is None
         and not isinstance(unit.operands[0].value, bool)
-        and (unit not in tried or gains.moves(unit))
+        and (unit not in tried or gains.matters(unit))
     ]
     others.sort(key=lambda unit: (unit not in tried, -max(tried.get(unit, {1.0: 0.0}).values())))
     return [

@@ -16,6 +16,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.charts import Chart
 from pytest_tarl.searching import plateau
+from pytest_tarl.searching.acting import Acting
 from pytest_tarl.searching.combining import Combining
 from pytest_tarl.searching.families import families
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
@@ -106,7 +107,8 @@ class Sweep:
         self.generator = generator
         self.slack = SLACK * goal.wanted
         self.proposed = proposed
-        self.gains = Gains(self.slack, proposed)
+        self._acting = Acting(trials, goal)
+        self.gains = Gains(self.slack, proposed, None if proposed else self._acting)
         self._tried: set[Candidate] = set()
         self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
@@ -254,12 +256,13 @@ class Sweep:
     def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try smaller steps on operands for which both near factors lost: their best values must be close.
 
-        If the smaller steps lose as well and nothing else gained, try the `FINER` steps.
+        If the smaller steps lose as well and nothing else is promising, try the `FINER` steps.
         """
         lost = self.gains.lost_both_ways(guard, among, NEAR)
         for factor in BETWEEN if lost else ():
             yield from self._all(factor, guard, lost)
-        still = [] if self.gains.anything() else self.gains.lost_both_ways(guard, lost, BETWEEN)
+        promising = self.gains.anything(HALF * self.goal.wanted)
+        still = [] if promising else self.gains.lost_both_ways(guard, lost, BETWEEN)
         for factor in FINER if still else ():
             yield from self._all(factor, guard, still)
 
@@ -273,7 +276,7 @@ class Sweep:
                 return
             among = self.units if factor in FINE else named(self.units)
             for guard in guards:
-                moved = [unit for unit in self.gains.moving(among) if self.gains.moves(unit)]
+                moved = [unit for unit in self.gains.moving(among) if self.gains.matters(unit)]
                 yield from self._all(
                     factor, guard, [unit for unit in moved if not self._refined[unit, guard]]
                 )
@@ -308,6 +311,7 @@ class Sweep:
         pairs = self.goal.pairs
         gain, moved = self.trials.gain(candidate, pairs), self.trials.moved(candidate, pairs)
         self.gains.enter((unit, candidate.guard), factor, gain, moved)
+        self._acting.ran(unit, candidate)
 
     def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
         """Try a factor; return the candidate if it is new and confirmed, else None."""
