@@ -14,7 +14,7 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
-EXACT = 0.01  # maximum deviation (see `course`) of a candidate that is not compared with rivals
+EXACT = 0.002  # maximum deviation (see `course`) of a candidate that is not compared with rivals
 CLOSER = 0.6  # a rival is preferred if its deviation is at most this share of the candidate's deviation
 COMPARED = 3  # number of missions on which two candidates that pass are compared
 # exponents of the factor found: the first factor that passes is often larger than needed

@@ -7,6 +7,7 @@ them takes only a few episodes.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import inf
 from statistics import fmean
 from typing import Protocol
 
@@ -18,14 +19,16 @@ from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, riv
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.gentler import another_way, gentler
+from pytest_tarl.searching.nearest import nearest
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING
-from pytest_tarl.searching.search import Candidate, Goal, Trials
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.smaller import BESIDE, EARLY, EPISODES, WORSE, onward, smaller
 from pytest_tarl.searching.units import NEAR, Unit
 
 # number of refinements of each constant whose change a maintainer would prefer to the candidate found
 PLAINER_ROUNDS = 2
+FUNCTIONS = 2  # maximum number of functions whose constants are compared by the course of their missions
 PLAINER = 12  # maximum number of episodes for all such constants
 
 
@@ -37,6 +40,7 @@ class Search(Protocol):
     trials: Trials
     goal: Goal
     proposed: bool
+    mutate: Mutate
     gains: Gains
     refused: set[tuple[Unit, Guard]]
 
@@ -58,8 +62,8 @@ class Preferences:
 
     def __init__(self, search: Search) -> None:
         self.search = search
-        # whether rival constants were already compared by the course of their missions
-        self._compared = False
+        # functions whose constants were already compared by the course of their missions
+        self._compared: set[tuple[str, str]] = set()
         self._reduced = False  # whether smaller changes of other constants were already tried
         self._replaced: set[Unit] = set()  # units that were already compared with milder changes
         # confirmed changes that are not preferred to the candidate found; they follow if it is refused
@@ -143,10 +147,18 @@ class Preferences:
 
         Such a constant is more likely to be the cause.
         """
-        seeds = self._compared_on(pair)
-        if self._compared or self._deviation(found, seeds[:1]) <= EXACT:
+        seeds, site = self._compared_on(pair), unit.operands[0].site
+        function = (site.module, site.qualname)
+        if function in self._compared or len(self._compared) >= FUNCTIONS:
             return
-        self._compared = True
+        if self._deviation(found, seeds[:1]) <= EXACT:
+            return
+        self._compared.add(function)
+        step, least = self._nearest(unit, factor, found.guard, seeds[0])
+        exact = self.search.holding(unit, step, found.guard, pair) if least <= EXACT else None
+        if exact is not None:
+            yield exact
+            return
         begun = self.search.trials.spent
         for other, step in rivals(unit, factor, self.search.units, self.search.gains, found.guard):
             if self.search.trials.spent - begun >= RIVALS:
@@ -154,11 +166,32 @@ class Preferences:
             candidate = self.search.holding(other, step, found.guard, pair)
             if candidate is None:
                 continue
+            candidate = self._nearer(candidate, other, step, pair)
             if self._deviation(candidate, seeds) <= CLOSER * self._deviation(found, seeds):
                 yield candidate
                 self.search.refused.add((other, found.guard))
                 return
             self._aside.append((other, candidate))
+
+    def _nearer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Candidate:
+        """Return the confirmed candidate with the factor whose missions are closest to the designed ones."""
+        step, _ = self._nearest(unit, factor, found.guard, self._compared_on(pair)[0])
+        candidate = self.search.holding(unit, step, found.guard, pair) if step != factor else None
+        return candidate or found
+
+    def _nearest(self, unit: Unit, factor: float, guard: Guard, seed: int) -> tuple[float, float]:
+        """Return the factor whose missions are closest to the designed ones on a seed, and their deviation."""
+
+        def deviation(step: float) -> float:
+            mutations = unit.mutations(self.search.mutate, step)
+            try:
+                return self.search.trials.deviation(Candidate(mutations, guard), [seed])
+            except RepairError:
+                return inf
+
+        if factor <= 0.0 or isinstance(unit.operands[0].value, bool):
+            return factor, deviation(factor)
+        return nearest(factor, deviation)
 
     def _smaller(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
         """Yield a much smaller change of another constant first, unless missions then deviate more from the design."""
@@ -176,6 +209,7 @@ class Preferences:
             if candidate is None:
                 continue
             if self._deviation(candidate, seeds) <= self._deviation(found, seeds) + WORSE:
+                yield from self._truer(candidate, other, step, pair)
                 yield candidate
                 self.search.refused.add((other, found.guard))
                 return
