@@ -7,7 +7,6 @@ reduce the reward, best gain first. If no single operand suffices, the search co
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -17,13 +16,14 @@ from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.charts import Chart
 from pytest_tarl.searching import plateau
 from pytest_tarl.searching.acting import Acting
+from pytest_tarl.searching.adjusting import Adjusting
 from pytest_tarl.searching.combining import Combining
 from pytest_tarl.searching.families import families
-from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
+from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
 from pytest_tarl.searching.gains import Gains
-from pytest_tarl.searching.plainness import Oddness, named, writing
+from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.preferring import Preferences
-from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING, between
+from pytest_tarl.searching.refining import FURTHER
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import (
@@ -52,8 +52,6 @@ BETWEEN_FINE = (1.16, 0.86, 1.05, 0.95, 1.35, 0.74)
 LAST = (10.0, 0.05)
 # maximum number of units to try with the other sign, among those that gained with a smaller value
 FLIPPED = 3
-REFINEMENTS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
-REFINED = 8  # maximum number of runs that refine one operand
 HALF = 0.5  # gain of a change, as a share of the wanted gain, from which on others get no `FINER` steps
 MOST_USES = 3  # maximum number of uses of a constant that are changed alone once it is confirmed
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
@@ -111,13 +109,11 @@ class Sweep:
         self.gains = Gains(self.slack, proposed, None if proposed else self._acting)
         self._tried: set[Candidate] = set()
         self._settled = Settled()
-        self._refined: Counter[tuple[Unit, Guard]] = Counter()
-        self.refused: set[tuple[Unit, Guard]] = (
-            set()
-        )  # units that were confirmed and yielded, but that the caller refused
+        # units that were confirmed and yielded, but that the caller refused
+        self.refused: set[tuple[Unit, Guard]] = set()
         self.preferences = Preferences(self)
         self.combining = Combining(self)
-        self._adjusted: set[tuple[Unit, Guard, float]] = set()
+        self.adjusting = Adjusting(self)
         self._inside: set[Guard] = set()
         self._families: tuple[Unit, ...] = ()
         self._turn = 0
@@ -239,12 +235,12 @@ class Sweep:
         self._turn += 1
         among = self.gains.distinct(among)
         for at, unit in enumerate(among):
-            self._expect([(each, guard, factor) for each in among[at:]], pair)
+            self.expect([(each, guard, factor) for each in among[at:]], pair)
             yield from self.attempt(unit, guard, factor, pair)
         if 0.0 < factor < 1.0:
             for unit in self._leading(factor, guard, self.slack)[:FLIPPED]:
                 yield from self.attempt(unit, guard, FLIP, pair)
-        yield from self._refine(pair)
+        yield from self.adjusting.refine(pair)
 
     def _late_ones(self, late: Sequence[Unit], guards: Sequence[Guard]) -> Iterator[Candidate]:
         """Try operands that are in no data flow, such as the period of a timer."""
@@ -278,7 +274,7 @@ class Sweep:
             for guard in guards:
                 moved = [unit for unit in self.gains.moving(among) if self.gains.matters(unit)]
                 yield from self._all(
-                    factor, guard, [unit for unit in moved if not self._refined[unit, guard]]
+                    factor, guard, [unit for unit in moved if not self.adjusting.refined[unit, guard]]
                 )
 
     def _leading(self, before: float, guard: Guard, least: float) -> list[Unit]:
@@ -340,7 +336,7 @@ class Sweep:
                 if self._near(candidate, pair) is not None:
                     self._learn(use, candidate, factor)
 
-    def _expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
+    def expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
         """Announce the tries that come next unless a result changes the order."""
         seed = self.goal.pairs[pair].seed
         candidates = [Candidate(unit.mutations(self.mutate, factor), guard) for unit, guard, factor in tries]
@@ -354,48 +350,9 @@ class Sweep:
         except RepairError:
             return None
 
-    def _refine(self, pair: int) -> Iterator[Candidate]:
-        """Refine the best operand while its gain approaches the wanted gain.
-
-        Tiny gains are not refined, because a mission that fails slightly later does not indicate the right value.
-        """
-        for _ in range(REFINEMENTS):
-            open_to = [
-                tried
-                for tried, _ in self.gains.items()
-                if self._refined[tried] < _refinements(tried[0]) and tried not in self.refused
-            ]
-            best = max(open_to, key=self.gains.most, default=None)
-            before = self.gains.most(best) if best is not None else 0.0
-            if best is None or before <= self.slack:
-                return
-            yield from self._adjusting(*best)
-            yield from self.between(best, pair)
-            gained = self.gains.most(best)
-            if gained <= max(before, PROMISING * self.goal.wanted) and gained < ALMOST * self.goal.wanted:
-                return
-
     def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
-        """Try factors between the operand's best factor and the neighbouring factors, on a log scale."""
-        # A negative factor corrects the sign and needs no refinement, except for proposed values.
-        gains = {one: gain for one, gain in self.gains.of(*best).items() if one > 0 or self.proposed}
-        steps = between(gains, self.goal.wanted)
-        self._expect([(*best, one) for one in steps], pair)
-        for one in steps:
-            self._refined[best] += 1
-            yield from self.attempt(*best, one, pair)
-
-    def _adjusting(self, unit: Unit, guard: Guard) -> Iterator[Candidate]:
-        """Vary the fixed parameters of a proposal, such as a sensor's usual value, if the proposal gains much."""
-        gains = self.gains.of(unit, guard)
-        factor = max(gains, key=gains.__getitem__)
-        given = self.given(unit.operands[0]) if self.proposed else ()
-        if (unit, guard, factor) in self._adjusted or gains[factor] < PROMISING * self.goal.wanted:
-            return
-        self._adjusted.add((unit, guard, factor))
-        for other in given:
-            base = Joint(((unit, factor),), guard)
-            yield from self.joining({}).climbed(base, Unit((other,)))
+        """Try factors between the unit's best factor and its neighbours."""
+        yield from self.adjusting.between(best, pair)
 
     def joining(
         self, gains: Mapping[Unit, Mapping[float, float]], among: Sequence[Unit] | None = None
@@ -410,8 +367,3 @@ class Sweep:
             self.slack,
             self._settled,
         )
-
-
-def _refinements(unit: Unit) -> int:
-    """Return the number of refining runs allowed for a unit; half of `REFINED` for an offset of a literal zero."""
-    return REFINED // 2 if writing(unit.operands[0]) is Oddness.OFFSET else REFINED

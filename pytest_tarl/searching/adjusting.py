@@ -1,0 +1,99 @@
+"""Adjust the best constant of a sweep: try factors between its best one and the neighbours, round after round."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Protocol
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.plainness import Oddness, writing
+from pytest_tarl.searching.refining import ALMOST, PROMISING, between
+from pytest_tarl.searching.search import Candidate, Goal
+from pytest_tarl.searching.units import Unit
+from tarl_lint.model import Operand
+
+ROUNDS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
+REFINED = 8  # maximum number of runs that refine one operand
+
+
+class Search(Protocol):
+    """The parts of the sweep that `Adjusting` uses."""
+
+    goal: Goal
+    proposed: bool
+    gains: Gains
+    slack: float
+    refused: set[tuple[Unit, Guard]]
+    given: Callable[[Operand], Sequence[Operand]]
+
+    def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        """Try a factor; yield the candidates that are confirmed."""
+
+    def expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
+        """Announce the tries that come next unless a result changes the order."""
+
+    def joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
+        """Return a selection that combines units."""
+
+
+class Adjusting:
+    """Refine the units of one search; `refined` counts the runs that refined a unit under a guard."""
+
+    def __init__(self, search: Search) -> None:
+        self.search = search
+        self.refined: Counter[tuple[Unit, Guard]] = Counter()
+        self._varied: set[tuple[Unit, Guard, float]] = set()
+
+    def refine(self, pair: int) -> Iterator[Candidate]:
+        """Refine the best operand while its gain approaches the wanted gain.
+
+        Tiny gains are not refined, because a mission that fails slightly later does not indicate the right value.
+        """
+        search, wanted = self.search, self.search.goal.wanted
+        for _ in range(ROUNDS):
+            open_to = [
+                tried
+                for tried, _ in search.gains.items()
+                if self.refined[tried] < _most(tried[0]) and tried not in search.refused
+            ]
+            best = max(open_to, key=search.gains.most, default=None)
+            before = search.gains.most(best) if best is not None else 0.0
+            if best is None or before <= search.slack:
+                return
+            yield from self._vary(*best)
+            yield from self.between(best, pair)
+            gained = search.gains.most(best)
+            if gained <= max(before, PROMISING * wanted) and gained < ALMOST * wanted:
+                return
+
+    def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
+        """Try factors between the operand's best factor and the neighbouring factors, on a log scale."""
+        search = self.search
+        # A negative factor corrects the sign and needs no refinement, except for proposed values.
+        gains = {one: gain for one, gain in search.gains.of(*best).items() if one > 0 or search.proposed}
+        steps = between(gains, search.goal.wanted)
+        search.expect([(*best, one) for one in steps], pair)
+        for one in steps:
+            self.refined[best] += 1
+            yield from search.attempt(*best, one, pair)
+
+    def _vary(self, unit: Unit, guard: Guard) -> Iterator[Candidate]:
+        """Vary the fixed parameters of a proposal, such as a sensor's usual value, if the proposal gains much."""
+        search = self.search
+        gains = search.gains.of(unit, guard)
+        factor = max(gains, key=gains.__getitem__)
+        given = search.given(unit.operands[0]) if search.proposed else ()
+        if (unit, guard, factor) in self._varied or gains[factor] < PROMISING * search.goal.wanted:
+            return
+        self._varied.add((unit, guard, factor))
+        for other in given:
+            base = Joint(((unit, factor),), guard)
+            yield from search.joining({}).climbed(base, Unit((other,)))
+
+
+def _most(unit: Unit) -> int:
+    """Return the number of refining runs allowed for a unit; half of `REFINED` for an offset of a literal zero."""
+    return REFINED // 2 if writing(unit.operands[0]) is Oddness.OFFSET else REFINED
