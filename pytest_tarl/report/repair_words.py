@@ -115,7 +115,7 @@ def ways_out(comparison: Comparison) -> str:
     against = [one.what for one in repair.history if one.reason == "nominal gets worse"]
     if repair.reason != "nominal gets worse" and not against:
         return ""
-    what = against[-1] if against else repair_words(repair)
+    what = repair_words(repair) if repair.reason == "nominal gets worse" else against[-1]
     name = comparison.drift or "worn"
     return (
         f"{what} restores the reward in {world_name(comparison)} but makes the designed world worse. Declare a "

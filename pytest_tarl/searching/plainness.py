@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from enum import IntEnum
-from math import isclose, isfinite, pi
+from math import inf, isclose, isfinite, pi
 
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import Mutation
@@ -48,13 +48,13 @@ def plainer(
 
     Units that gain at least `promising` come first. Untried units follow, the least unusual first. Of equally unusual
     ones, those in the statement of `beside` come first: in a product, a named constant has the same effect as the
-    literal next to it. If the candidate changes a literal, only `UNTRIED` untried units follow.
+    literal next to it. Those in the next lines follow: a lower threshold has the same effect as a larger value that is
+    compared with it. If the candidate changes a literal, only `UNTRIED` untried units follow.
     """
     read = [unit for unit in units if kind(unit) < odd]
     gaining = [unit for unit in read if unit in gains and max(gains[unit].values()) >= promising]
-    site = beside.operands[0].site if beside is not None else None
     untried = [unit for unit in read if unit not in gains]
-    others = sorted(untried, key=lambda unit: (kind(unit), unit.operands[0].site != site))
+    others = sorted(untried, key=lambda unit: (kind(unit), _lines_after(unit, beside)))
     if odd < Oddness.VARIABLE:
         others = others[:UNTRIED]
     return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *others]
@@ -102,6 +102,17 @@ def kind(unit: Unit) -> Oddness:
     if operand.value == 0 and not isinstance(operand.value, bool):
         return Oddness.OFFSET
     return _scaled(operand)
+
+
+def _lines_after(unit: Unit, beside: Unit | None) -> float:
+    """Return the number of lines from `beside` down to the unit: -1 in the same statement, infinite above it."""
+    if beside is None:
+        return inf
+    one, other = unit.operands[0], beside.operands[0]
+    if one.site == other.site:
+        return -1
+    down = one.span.line - other.span.line
+    return down if one.span.path == other.span.path and down >= 0 else inf
 
 
 def _scaled(operand: Operand) -> Oddness:

@@ -23,7 +23,7 @@ from pytest_tarl.searching.nearest import nearest
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
-from pytest_tarl.searching.smaller import BESIDE, EARLY, EPISODES, WORSE, onward, smaller
+from pytest_tarl.searching.smaller import BESIDE, EARLY, EPISODES, LOST, WORSE, milder, onward, smaller
 from pytest_tarl.searching.units import NEAR, Unit
 
 # number of refinements of each constant whose change a maintainer would prefer to the candidate found
@@ -81,6 +81,7 @@ class Preferences:
         if holds:
             yield from self._truer(found, unit, factor, pair)
             yield from self._smaller(found, unit, factor, pair)
+            yield from self._milder(found, unit, factor, pair)
 
     def after(self) -> Iterator[Candidate]:
         """Yield the confirmed changes that were set aside, those with the largest mean reward first."""
@@ -214,6 +215,22 @@ class Preferences:
                 self.search.refused.add((other, found.guard))
                 return
             self._aside.append((other, candidate))
+
+    def _milder(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
+        """Yield the value halfway to the old one first if it earns as much and nothing between them was tried."""
+        gains = self.search.gains.of(unit, found.guard)
+        halfway = milder(unit, factor, gains)
+        if self.search.proposed or halfway is None:
+            return
+        candidate = self.search.holding(unit, halfway, found.guard, pair)
+        if candidate is None:
+            return
+        one, other = (
+            self.search.trials.totals_of(each, self.search.goal.pairs) for each in (candidate, found)
+        )
+        both = one.keys() & other.keys()
+        if fmean(one[at] - other[at] for at in both) >= -LOST * self.search.goal.wanted:
+            yield candidate
 
     def _small_steps(
         self, parts: Sequence[Part], found: Candidate, unit: Unit, factor: float, begun: int

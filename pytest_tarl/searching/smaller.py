@@ -8,7 +8,8 @@ the test does not contain.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from math import sqrt
 
 from pytest_tarl.model import Guard
 from pytest_tarl.searching.gains import Gains, Part
@@ -23,6 +24,7 @@ LEADING = 3  # maximum number of constants that are tried with the steps ONWARD
 TRACE = 0.005  # minimum gain of a small step that is followed by steps ONWARD, as a share of the wanted gain
 EPISODES = 20  # number of episodes after which no further constant is tried
 EARLY = 0.5  # share of the budget after which a repair is no longer compared
+LOST = 0.01  # maximum reward that a milder value of the same constant may lose, as a share of the wanted gain
 WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
 
 
@@ -66,3 +68,16 @@ def onward(
     most = LESS * change_size(found, factor)
     steps = [(unit, up if step > 1.0 else down) for down, up in ONWARD for unit, step in best.items()]
     return [(unit, step) for unit, step in steps if change_size(unit, step) <= most]
+
+
+def milder(unit: Unit, factor: float, gains: Mapping[float, float]) -> float | None:
+    """Return the factor halfway to 1 on a log scale, or None if a factor between 1 and `factor` was tried.
+
+    `gains` maps the factors tried on the unit to their gains. Booleans, constants of 0, and changes of sign have no
+    such factor.
+    """
+    value = unit.operands[0].value
+    if isinstance(value, bool) or value == 0 or unit.chart is not None or factor <= 0.0:
+        return None
+    low, high = sorted((1.0, factor))
+    return None if any(low < one < high for one in gains) else round(sqrt(factor), 3)

@@ -25,7 +25,7 @@ from pytest_tarl.repairing.incumbent import Watch
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, of_fresh_seeds
 from pytest_tarl.repairing.missed import Missed, _spread
 from pytest_tarl.repairing.other_values import Others, ratio_of
-from pytest_tarl.repairing.partial import Gained, _harmless, _mild, _promising
+from pytest_tarl.repairing.partial import Gained, _affordable, _lost_as_designed, _promising
 from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, over_the_range, repaired_sizes
 from pytest_tarl.repairing.request import goal
 from pytest_tarl.searching.accept import Acceptance, Outcome, Reference
@@ -328,28 +328,73 @@ def test_promising_candidates_are_the_best_refused_one_and_those_that_gained_mos
     assert [*_promising(examined(furthest=best), found)] == [best, harmful, more]
 
 
-def test_a_mild_candidate_loses_at_most_the_tolerance_in_recorded_missions() -> None:
-    def mutants(lost: float, permanent: bool = False) -> Any:
+def test_the_loss_as_designed_is_the_mean_of_three_recorded_missions() -> None:
+    def mutants(permanent: bool = False) -> Any:
         sample = SimpleNamespace(seeds=(4, 5, 6, 7), total=np.array([10.0, 11.0, 12.0, 13.0]))
-        order = SimpleNamespace(permanent=permanent, reference=MARGIN, fixture=SimpleNamespace(sample=sample))
-        totals = {4: 10.0 - 3 * lost, 5: 11.0, 6: 12.0, 7: -99.0}
+        order = SimpleNamespace(permanent=permanent, fixture=SimpleNamespace(sample=sample))
+        totals = {4: 4.0, 5: 11.0, 6: 12.0, 7: -99.0}
         return SimpleNamespace(
             order=order, foresee=lambda *_: None, run=lambda _, seed, __: Outcome(totals[seed], True)
         )
 
-    assert _mild(mutants(1.0), scaled(2.0))
-    assert not _mild(mutants(1.01), scaled(2.0))
-    assert _mild(mutants(9.0, permanent=True), scaled(2.0))
+    assert _lost_as_designed(mutants(), scaled(2.0)) == pytest.approx(2.0)
+    assert _lost_as_designed(mutants(permanent=True), scaled(2.0)) == 0.0
 
 
 @pytest.mark.parametrize(
-    ("low", "failures", "expected"), [(-1.0, 2, True), (-1.01, 0, False), (0.0, 3, False)]
+    ("gained", "low", "failures", "expected"),
+    [
+        (0.5, -1.0, 2, True),
+        (0.5, -1.01, 0, False),
+        (0.5, 0.0, 3, False),
+        (10.0, -2.0, 2, True),
+        (10.0, -2.01, 0, False),
+    ],
 )
-def test_a_partial_repair_is_harmless_within_the_margin_and_five_percent(
-    low: float, failures: int, expected: bool
+def test_a_partial_repair_costs_at_most_the_margin_or_a_fifth_of_its_gain(
+    gained: float, low: float, failures: int, expected: bool
 ) -> None:
     mutants: Any = SimpleNamespace(order=SimpleNamespace(reference=MARGIN))
-    assert _harmless(mutants, Gained(0.0, low, failures)) is expected
+    assert _affordable(mutants, Gained(gained, gained, 0), Gained(0.0, low, failures)) is expected
+
+
+def of_partial(effects: dict[Candidate, tuple[float, float]]) -> tuple[Any, Any, Watch]:
+    """Return mutants, an examiner and a watch; `effects` are the candidates' gains under the drift and as designed."""
+    sample = SimpleNamespace(seeds=(4, 5, 6), total=np.zeros(3))
+    options = SimpleNamespace(seed=0, alpha=0.05)
+    order: Any = SimpleNamespace(
+        permanent=False,
+        drift="mud",
+        reference=MARGIN,
+        options=options,
+        fixture=SimpleNamespace(sample=sample),
+        goal=GOAL,
+    )
+
+    def run(candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        under, designed = effects.get(candidate, (0.0, 0.0))
+        return Outcome(under if drift else designed, True)
+
+    placing = lambda candidate, trials: candidate  # noqa: E731
+    judge = SimpleNamespace(tried=[], refused=Refused(None, "budget"), placing=placing)
+    found = watch(*((one, 0, under) for one, (under, _) in effects.items()))
+    return SimpleNamespace(order=order, foresee=lambda *_: None, run=run), judge, found
+
+
+def test_a_change_that_costs_little_of_its_gain_is_a_partial_repair_if_nothing_harmless_helps() -> None:
+    costly, ruinous, harmless = scaled(2.0), scaled(3.0), scaled(4.0)
+    effects = {costly: (10.0, -1.9), ruinous: (12.0, -9.0)}
+    found, spent = partial.best(*of_partial(effects))
+    assert found is not None
+    assert (found.candidate, found.designed.mean, spent) == (
+        costly,
+        -1.9,
+        2 * partial.KNOWN + 4 * partial.EPISODES,
+    )
+    found, _ = partial.best(*of_partial({**effects, harmless: (5.0, -0.5)}))
+    assert found is not None
+    assert found.candidate == harmless
+    assert partial.best(*of_partial({ruinous: (12.0, -9.0)}))[0] is None
 
 
 def ranged(part: str = "") -> Any:

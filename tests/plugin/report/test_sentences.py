@@ -116,6 +116,8 @@ def test_a_repair_refused_only_by_the_designed_world_comes_with_two_remedies(var
     history = tuple(Attempt(what, "nominal gets worse", 0.0, 1, True) for what in ("first", "last"))
     other = replace(refused, reason="budget", history=(*history, Attempt("x", "budget", 0.0, 1, True)))
     assert repair_words.ways_out(varied(repair=other)).startswith("last restores the reward")
+    best = replace(refused, history=history)
+    assert repair_words.ways_out(varied(repair=best)).startswith("5 → 12 at a.py:3 everywhere restores")
     for nothing in (None, replace(refused, accepted=True), replace(refused, reason="budget")):
         assert repair_words.ways_out(varied(repair=nothing)) == ""
     assert repair_words.ways_out(varied(repair=refused, permanent=True)) == ""

@@ -209,6 +209,13 @@ def test_a_named_constant_in_the_same_statement_is_tried_before_the_others() -> 
     assert plainer(Oddness.OFFSET, {}, [*others, beside], 5.0, beside) == [others[3], *others[:3], beside]
 
 
+def test_a_named_constant_in_the_next_lines_is_tried_before_one_above() -> None:
+    """A value that reads too low is scaled, or the threshold with which it is compared below is lowered."""
+    above, beside, threshold, further = (Unit((constant(n, f"N{n}"),)) for n in (50, 51, 52, 60))
+    ranked = plainer(Oddness.INNER, {}, [above, further, threshold], 5.0, beside)
+    assert ranked == [threshold, further]
+
+
 GOAL = Goal(tuple(Pair(seed, 0.0, 10) for seed in range(3)), 9.0, 9.0, 0.0, steps=10.0)
 
 

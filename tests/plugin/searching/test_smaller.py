@@ -16,7 +16,7 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Goal, Pair, Trials
-from pytest_tarl.searching.smaller import EPISODES, ONWARD, onward, smaller
+from pytest_tarl.searching.smaller import EPISODES, ONWARD, milder, onward, smaller
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import Unit, change_size
 from tarl_lint.model import Operand
@@ -84,8 +84,37 @@ def test_the_search_for_smaller_changes_takes_few_episodes_if_there_is_none() ->
     many = tuple(named(at, f"LIMIT_{at}") for at in range(10, 30))
     search = searched((HOTTEST, *many), {HOTTEST: (2.0, 2.4)})
     assert order(search, 1) == [HOTTEST]
-    confirming = 6
-    assert search.trials.spent == confirming + EPISODES + search.trials.beside
+    confirming, halfway = 6, 1
+    assert search.trials.spent == confirming + EPISODES + halfway + search.trials.beside
+
+
+def test_the_value_halfway_to_the_old_one_comes_first_if_it_restores_as_much() -> None:
+    found = searched((HOTTEST,), {HOTTEST: (1.4, 2.4)}).candidates()
+    assert [next(found).mutations[0].value for _ in range(2)] == [1.483, 2.2]
+    only = searched((HOTTEST,), {HOTTEST: (1.6, 2.4)}).candidates()
+    assert next(only).mutations[0].value == 2.2
+
+
+def test_the_value_halfway_to_the_old_one_does_not_come_first_if_it_earns_less() -> None:
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        (change,) = candidate.mutations
+        value = change.value
+        return Outcome(10.0 if value == 2.2 else 9.7 if 1.4 < value < 2.4 else 0.0, 1.4 < value < 2.4)
+
+    goal = Goal(tuple(Pair(seed, 0.0) for seed in range(8)), near=9.0, enough=9.5, online=0.0, passing=True)
+    found = Sweep((HOTTEST,), mutations, (ALWAYS,), Trials(run, 300), goal).candidates()
+    assert next(found).mutations[0].value == 2.2
+
+
+def test_no_value_is_halfway_if_one_between_was_tried_or_the_constant_has_no_scale() -> None:
+    unit = Unit((HOTTEST,))
+    assert milder(unit, 0.4, {1.0: 0.0, 0.4: 9.0, 2.2: 1.0}) == 0.632
+    assert milder(unit, 0.15, {1.0: 0.0, 0.15: 9.0, 0.4: 1.0}) is None
+    assert milder(unit, 5.0, {1.0: 0.0, 5.0: 9.0, 2.2: 1.0}) is None
+    assert milder(unit, -1.0, {}) is None
+    assert milder(Unit((named(3, "START", 0.0),)), 2.2, {}) is None
+    assert milder(Unit((named(3, "ON", True),)), 2.2, {}) is None
+    assert milder(Unit((named(3, "SHARE", 0.9),), SHARE), 2.2, {}) is None
 
 
 def test_only_named_constants_that_matter_are_changed_and_by_much_less() -> None:
