@@ -6,7 +6,9 @@ Each drift is tested at the whole risk of the chain (fixed-sequence procedure; M
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
@@ -14,11 +16,18 @@ from pytest_tarl import seeds
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.coordinates import Vector
 from pytest_tarl.stressing.evaluating import NEAREST, SIZES
+from pytest_tarl.stressing.guarantee import Part
 from pytest_tarl.stressing.nearest import Nearest
 
 NEARER = 0.98  # maximum distance of the next confirmed drift, as a share of the distance of the last one
+# probabilities that a test shows too many failures: at least LIKELY at the farther drifts of a chain whose tests are
+# about these alone, less than UNLIKELY for tests of the loss alone
+LIKELY, UNLIKELY = 0.5, 0.05
 VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
 POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a drift beyond the near end
+# multiples of the near end of a chain that are tested as well if drifts fail too often: before it, and after it
+OUTWARD = (1.12, 1.08, 1.04)
+INWARD = tuple(0.96**step for step in range(1, 17))
 # multiples of the drift at the near end of a chain that may become drifts of the chain
 STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
 
@@ -58,6 +67,36 @@ def chain(nearest: Nearest, plan: Plan, limit: float) -> list[Point]:
     if nearest.distance(near) >= limit:
         return []
     return [*_beyond(nearest, plan, near, limit), near]
+
+
+def part_of(nearest: Nearest, chain: Sequence[Point]) -> Part:
+    """Return the part of the guarantee that the tests of a chain are about, according to the model.
+
+    The nearest drift of the chain decides, which is the last one. If the model is not clear, both parts are tested.
+    """
+    coordinates = nearest.nominal
+    if not chain or not all(map(coordinates.covers, chain)):
+        return "both"
+    by_loss, by_rate = nearest.model().shown_by(np.array([coordinates.vector(point) for point in chain]))
+    if by_rate[-1] >= by_loss[-1] and (by_rate[:-1] >= LIKELY).all():
+        return "rate"
+    return "loss" if by_rate.max() < UNLIKELY else "both"
+
+
+def finer(nearest: Nearest, chain: list[Point]) -> list[Point]:
+    """Return a chain whose drifts fail too often with further drifts on the ray through its near end.
+
+    Each takes few episodes if the same seeds fail under all drifts. If they do not, according to the model, the steps
+    are longer.
+    """
+    coordinates, near = nearest.nominal, nearest.nominal.vector(chain[-1])
+    before = nearest.distance(chain[-2]) if len(chain) > 1 else inf
+    length = nearest.distance(chain[-1])
+    alike = nearest.model().luck > 0.0
+    outward = [share for share in OUTWARD if share * length < before] if alike else []
+    inward = INWARD if alike else INWARD[1::2]
+    found = [coordinates.point(np.clip(share * near, coordinates.low, coordinates.high)) for share in outward]
+    return [*chain[:-1], *found, chain[-1], *(coordinates.point(share * near) for share in inward)]
 
 
 def clear(nearest: Nearest) -> list[Point]:
@@ -109,7 +148,7 @@ def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Poi
     coordinates = nearest.nominal
     vectors = _sorted([*_multiples(nearest, near), *nearest.vectors()])
     lengths = np.linalg.norm(vectors, axis=1)
-    chances = nearest.model().failing(vectors)
+    chances = _chances(nearest, near, vectors)
     found: list[Point] = []
     last = nearest.distance(near)
     for least, apart in plan.steps:
@@ -121,6 +160,17 @@ def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Poi
         found.insert(0, coordinates.point(vectors[place]))
         last = float(lengths[place])
     return found
+
+
+def _chances(nearest: Nearest, near: Point, vectors: Vector) -> Vector:
+    """Return the probabilities that fresh episodes show a failure at vectors.
+
+    If the near end fails too often, only such failures count, because the whole chain is then tested for them.
+    """
+    model = nearest.model()
+    if part_of(nearest, [near]) == "rate":
+        return model.shown_by(vectors)[1]
+    return model.failing(vectors)
 
 
 def _multiples(nearest: Nearest, near: Point) -> list[Vector]:

@@ -15,7 +15,9 @@ from pytest_tarl.stressing import chains
 from pytest_tarl.stressing.boundary import COARSE, bisect
 from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, Evaluator
 from pytest_tarl.stressing.findings import Curve, Failure, MarginMap, confirmed, failure
+from pytest_tarl.stressing.guarantee import Part
 from pytest_tarl.stressing.nearest import EXPECTED, Nearest
+from pytest_tarl.stressing.rate_tests import RateTests
 from pytest_tarl.stressing.rays import Ray, distance, joined
 
 # share of the distance to each boundary at which pairs are tested; each direction alone holds there
@@ -27,6 +29,7 @@ REFINED = 0.08  # share of the budget for the search between the first chains of
 ATTEMPTS = 2  # number of chains to test until a drift is confirmed
 # shares of the whole risk that the first chains get; each further chain gets half of the rest
 SHARES = (0.2, 0.3, 0.2, 0.1)
+APART = 1.08  # minimum distance of a reported failure that contains another, as a multiple of the other's distance
 QUICK = SIZES[0]  # number of episodes that the search runs at a confirmed failure
 
 
@@ -49,13 +52,15 @@ class Together:
         """Return the confirmed failing drifts along single directions and in combination."""
         return [*confirmed(self.curves), *self.found]
 
-    def confirm(self, chain: Sequence[Point], evaluator: Evaluator) -> bool:
+    def confirm(self, chain: Sequence[Point], evaluator: Evaluator, part: Part = "both") -> bool:
         """Test drifts on fresh seeds, farthest first, until one is not confirmed; return whether one was confirmed.
 
-        Each test has the whole risk of the chain, because every false alarm requires that the first drift at which the
-        guarantee holds is confirmed. The seeds are new for each chain, so its drifts may depend on the outcomes of
-        earlier chains, and the model learns from them afterwards. Skip drifts that contain a confirmed failure: those
-        that change the same values at least as much. Raise BudgetSpentError.
+        The tests are about this part of the guarantee, which must not depend on the fresh seeds.
+
+        Each test has the whole risk of the chain: if the guarantee holds at some of the drifts, an error needs the
+        confirmation of the first of these. The seeds are new for each chain, so its drifts may depend on the outcomes
+        of earlier chains, and the model learns from them afterwards. Skip drifts that contain a confirmed failure:
+        those that change the same values at least as much. Raise BudgetSpentError.
         """
         usual, known = evaluator.space.nominal, self.confirmed
         chain = [
@@ -68,15 +73,21 @@ class Together:
         pool, risk = f"chain {self.chains}", self.risk * _share(self.chains)
         self.chains += 1
         found = False
+        rates = RateTests(evaluator, pool, risk)
         try:
             for point in chain:
                 self.tested.append(point)
-                if not evaluator.confirm(point, pool, risk, NEAREST, SPENT):
+                if not (
+                    rates.confirm(point)
+                    if part == "rate"
+                    else evaluator.confirm(point, pool, risk, NEAREST, SPENT, part)
+                ):
                     break
                 found = True
                 self._add(failure(evaluator.space, point), evaluator)
         finally:
             evaluator.release(pool)
+            self.found = _apart(self.found, evaluator)
         return found
 
     def _add(self, found: Failure, evaluator: Evaluator) -> None:
@@ -100,6 +111,21 @@ def _share(number: int) -> float:
     if number < len(SHARES):
         return SHARES[number]
     return (1.0 - sum(SHARES)) * 0.5 ** (number - len(SHARES) + 1)
+
+
+def _apart(found: Sequence[Failure], evaluator: Evaluator) -> list[Failure]:
+    """Return failures in the same order without those that hardly differ from a nearer one.
+
+    Such a failure contains the nearer one, and its distance is less than APART times that of the nearer one.
+    """
+    kept: list[Failure] = []
+    for one in sorted(found, key=lambda one: (one.distance, one.names)):
+        if not any(
+            one.distance < APART * near.distance and _at_most(near.point, one.point, evaluator)
+            for near in kept
+        ):
+            kept.append(one)
+    return [one for one in found if one in kept]
 
 
 def _at_most(one: Point, other: Point, evaluator: Evaluator) -> bool:
@@ -158,7 +184,10 @@ class Combined:
     def _test(self, chain: Sequence[Point]) -> bool:
         self.together.tried = len(self.nearest.tried)
         try:
-            return self.together.confirm(chain, self.evaluator)
+            part = chains.part_of(self.nearest, chain)
+            if part == "rate":
+                chain = chains.finer(self.nearest, [*chain])
+            return self.together.confirm(chain, self.evaluator, part)
         finally:
             self.nearest.tested = self.together.tested
 

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import chain
 from time import monotonic
+from typing import NamedTuple
 
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
@@ -16,6 +17,7 @@ from pytest_tarl.stressing.guarantee import (
     Evidence,
     Guarantee,
     Outcome,
+    Part,
     examined,
     hopeless,
     margin_of,
@@ -37,6 +39,14 @@ SEARCH = "search"  # name of the seeds of the search
 RAYS = "rays"  # name of the fresh seeds that all rays share; chains of combinations have seeds of their own
 
 Progress = Callable[[int, int, str], None]
+
+
+class Count(NamedTuple):
+    """The estimated number of failed episodes of a drift, of a number of episodes."""
+
+    point: Point
+    failed: float
+    episodes: int
 
 
 class BudgetSpentError(Exception):
@@ -65,6 +75,8 @@ class Evaluator:
     _first: dict[tuple[float, ...], int] = field(default_factory=dict)
     _measured: dict[tuple[float, ...], tuple[float, float]] = field(default_factory=dict)
     _released: list[str] = field(default_factory=list)
+    _orders: dict[tuple[str | float, ...], list[int]] = field(default_factory=dict)
+    _counts: dict[str, list[Count]] = field(default_factory=dict)
 
     @contextmanager
     def limited(self, share: float) -> Iterator[None]:
@@ -123,21 +135,23 @@ class Evaluator:
         risk: float,
         sizes: Sequence[int] = FRESH,
         shares: Sequence[float] | None = None,
+        part: Part = "both",
     ) -> bool:
         """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails at a point.
 
         Episodes are paired by seed with nominal ones. Several points may share a pool if none of them was chosen by its
         outcomes. The test checks for a decision after each of `sizes` episodes, at its share of `risk`; without
-        `shares`, `risk` is divided evenly. The test also stops once a failure can hardly be shown any more. Raise
-        BudgetSpentError.
+        `shares`, `risk` is divided evenly. With `part`, only this part of the guarantee is tested, at the whole risk;
+        the choice of the part must not depend on the pool. The test also stops once a failure can hardly be shown any
+        more. Raise BudgetSpentError.
         """
         risks = [risk * share for share in shares or [1.0 / len(sizes)] * len(sizes)]
         for size, share in zip(sizes, risks, strict=True):
             outcomes = self._of(pool, point, size)
             nominal = self._of(pool, self.space.nominal, size)
-            if refuted(self.guarantee, outcomes, nominal, share):
+            if refuted(self.guarantee, outcomes, nominal, share, part):
                 return True
-            if hopeless(self.guarantee, outcomes, nominal, sizes[-1], risks[-1]):
+            if hopeless(self.guarantee, outcomes, nominal, sizes[-1], risks[-1], part):
                 return False
         return False
 
@@ -218,7 +232,31 @@ class Evaluator:
         return outcomes[: len(rows)], [nominal[row] for row in rows]
 
     def _rows(self, pool: str, point: Point, count: int) -> Sequence[int]:
-        return self.rows(point, count) if pool == SEARCH else range(count)
+        """Return the numbers of the first `count` seeds of a pool at a point, in the order in which they run."""
+        if pool == SEARCH:
+            return self.rows(point, count)
+        return self._orders.get((pool, *point.values()), range(count))[:count]
+
+    def ordered(self, pool: str, point: Point, rows: Sequence[int]) -> dict[int, Outcome]:
+        """Run the seeds with these numbers of a fresh pool at a point, and return all of its outcomes by number.
+
+        Raise BudgetSpentError if the budget does not cover the missing ones.
+        """
+        key: tuple[str | float, ...] = (pool, *point.values())
+        known, order = self._known.setdefault(key, []), self._orders.setdefault(key, [])
+        missing = [row for row in rows if row not in order]
+        known += self.singly(pool, [point] * len(missing), missing)
+        order += missing
+        return dict(zip(order, known, strict=True))
+
+    def count(self, pool: str, count: Count) -> None:
+        """Keep an estimate of how many episodes of a pool fail; the model learns from it once the pool is released."""
+        self._counts.setdefault(pool, []).append(count)
+
+    @property
+    def counts(self) -> list[Count]:
+        """Return the counts of the released pools."""
+        return [one for pool in self._released for one in self._counts.get(pool, [])]
 
     def common(self, point: Point, count: int) -> Sequence[Outcome]:
         """Return the outcomes of the first `count` seeds of the search at a point.
@@ -251,7 +289,7 @@ class Evaluator:
 
     def _seeds(self, pool: str, point: Point, count: int) -> list[int]:
         """Return the first `count` seeds of a pool at a point, in the order in which they run."""
-        rows = self.rows(point, count) if pool == SEARCH else range(count)
+        rows = self._rows(pool, point, count)
         seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", max(rows, default=-1) + 1)
         return [seeds[row] for row in rows]
 
@@ -262,7 +300,7 @@ class Evaluator:
         seed by more than the tolerated loss.
         """
         known = self._known.get((pool, *point.values()), [])
-        rows = self.rows(point, len(known)) if pool == SEARCH else range(len(known))
+        rows = self._rows(pool, point, len(known))
         usual = self._known.get((pool, *self.space.nominal.values()), [])
         seeds = self._seeds(pool, point, len(known))
         return [
@@ -279,7 +317,7 @@ class Evaluator:
 
         Raise BudgetSpentError.
         """
-        seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", max(rows) + 1)
+        seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", max(rows, default=-1) + 1)
         return self._run(points, [seeds[row] for row in rows])
 
     def _run(self, points: Sequence[Point], seeds: Sequence[int]) -> list[Outcome]:

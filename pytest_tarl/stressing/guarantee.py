@@ -26,6 +26,7 @@ HOPEFUL = 0.84  # one-sided confidence of a bound that lies one standard error a
 SEARCH_RISK = 0.05
 
 Answer = Literal["fails", "holds", "open"]
+Part = Literal["rate", "loss", "both"]  # the part of the guarantee that a test is about
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,41 +149,61 @@ def margin_of(
     return margin, sqrt(variance / count) / given.tolerance if given.tolerance > 0.0 else 1.0
 
 
-def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], risk: float) -> bool:
+def refuted(
+    given: Guarantee,
+    outcomes: Sequence[Outcome],
+    nominal: Sequence[Outcome],
+    risk: float,
+    part: Part = "both",
+) -> bool:
     """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails.
 
-    The guarantee fails if too few episodes pass or too much reward is lost. Losses are paired by seed with
-    nominal episodes. The bound of the loss is exact if the marker declares total_range; otherwise it is
-    Student's approximation.
+    The guarantee fails if too few episodes pass or too much reward is lost; `part` limits the test to one of them.
+    Losses are paired by seed with nominal episodes. The bound of the loss is exact if the marker declares total_range;
+    otherwise it is Student's approximation.
     """
-    if _too_few_pass(given, outcomes, risk / 2):
+    share = risk / 2 if part == "both" else risk
+    if part != "loss" and _too_few_pass(given, outcomes, share):
         return True
-    return mean_of(_losses(outcomes, nominal), 1.0 - risk / 2, _differences(given)).low > given.tolerance
+    if part == "rate":
+        return False
+    return mean_of(_losses(outcomes, nominal), 1.0 - share, _differences(given)).low > given.tolerance
 
 
-def most_passed(given: Guarantee, count: int, risk: float) -> int:
+def most_passed(given: Guarantee, count: int, risk: float, part: Part = "both") -> int:
     """Return the largest number of passed episodes that refutes the guarantee, or -1 if no number does."""
-    return _most_passed(given.rate, count, risk)
+    return _most_passed(given.rate, count, risk / 2 if part == "both" else risk)
 
 
 @cache
 def _most_passed(least: float, count: int, risk: float) -> int:
-    refuting = takewhile(lambda n: rate(n, count, 1.0 - risk / 2).high < least, range(count + 1))
+    refuting = takewhile(lambda n: rate(n, count, 1.0 - risk).high < least, range(count + 1))
     return max(refuting, default=-1)
 
 
 def hopeless(
-    given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], most: int, risk: float
+    given: Guarantee,
+    outcomes: Sequence[Outcome],
+    nominal: Sequence[Outcome],
+    most: int,
+    risk: float,
+    part: Part = "both",
 ) -> bool:
     """Return whether the first episodes make it unlikely that `most` episodes will refute the guarantee.
 
     A refutation is unlikely if the guarantee would still hold after adding about one standard error to both
-    the loss and the number of failures.
+    the loss and the number of failures; `part` is that of `refuted`.
     """
-    count, failed = len(outcomes), sum(not one.passed for one in outcomes)
-    if (failed + sqrt(failed + 1.0)) / count * most >= most - most_passed(given, most, risk):
-        return False
-    return mean_of(_losses(outcomes, nominal), HOPEFUL).high <= given.tolerance
+    if part != "loss":
+        count, failed = len(outcomes), sum(not one.passed for one in outcomes)
+        if hopeful(failed, count) * most >= most - most_passed(given, most, risk, part):
+            return False
+    return part == "rate" or mean_of(_losses(outcomes, nominal), HOPEFUL).high <= given.tolerance
+
+
+def hopeful(failed: float, count: int) -> float:
+    """Return the failure rate of `count` episodes, increased by about one standard error."""
+    return (failed + sqrt(failed + 1.0)) / count
 
 
 def enough_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:

@@ -211,7 +211,12 @@ class Nearest:
             ]
             shown = self._shown(sqrt(variance_near(1.0, within, typical)))
             paired = nominal_variance(evaluator.guarantee, typical)
-            model = Prediction(coordinates, evaluator.guarantee, samples, shown, typical, paired)
+            counts = [
+                (coordinates.vector(point), failed, episodes)
+                for point, failed, episodes in evaluator.counts
+                if coordinates.covers(point)
+            ]
+            model = Prediction(coordinates, evaluator.guarantee, samples, shown, typical, paired, counts)
             self._fitted = evaluator.spent, model
         return self._fitted[1]
 

@@ -28,6 +28,8 @@ STRETCHED = (0.9, 1.0, 1.1)  # multiples of the vectors of tried drifts that are
 RAREST = 0.007  # minimum failure rate that the model assumes at nominal
 # possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
 SCALES = (9.0, 36.0, 144.0)
+# possible variances of the effect that a seed has on the logit under all drifts, besides none
+LUCK = (1.0, 4.0)
 IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
 LOGIT = 4.0  # this difference of logits counts as much as the whole tolerated loss
 
@@ -77,8 +79,12 @@ class Prediction:
         shown: Shown,
         typical: float,
         paired: float,
+        counted: Sequence[tuple[Vector, float, int]] = (),
     ) -> None:
-        """Fit the model; `typical` is the variance of a loss, `paired` the part of it that the nominal episode adds."""
+        """Fit the model; `typical` is the variance of a loss, `paired` the part of it that the nominal episode adds.
+
+        `counted` are further drifts with fresh seeds of their own: vector, number of failures, number of episodes.
+        """
         self.coordinates, self.given, self.shown = coordinates, given, shown
         self._vectors = np.array([one.vector for one in samples]).reshape(
             len(samples), len(coordinates.spans)
@@ -101,19 +107,29 @@ class Prediction:
         self._losses, self._units[0] = _relevant(
             lambda prior: LossField(prior, losses, common + np.diag(own)), self._vectors
         )
-        failed = np.array([float(one.failed) for one in samples])
+        failed = np.array([*(float(one.failed) for one in samples), *(one for _, one, _ in counted)])
+        episodes = np.array([*counts, *(float(one) for _, _, one in counted)])
+        self._counted = np.array([*self._vectors, *(one for one, _, _ in counted)])
         usual = max(1.0 - given.share, RAREST)
         self._rates = None
+        self.luck = 0.0  # variance of the effect of a seed on the logit under all drifts
         if failed.any():
             logit = log(usual / (1.0 - usual))
-
-            whole = covariance(self._vectors, self._vectors)
+            luck = np.diag(1.0 / episodes)
+            luck[: len(used), : len(used)] = used @ used.T
+            whole = covariance(self._counted, self._counted)
             rates = max(
-                (RateField(whole, scale, failed, counts, logit) for scale in SCALES),
+                (RateField(whole, scale, failed, episodes, logit) for scale in SCALES),
                 key=lambda one: one.evidence,
             )
+            best = rates
+            for size in LUCK:
+                other = RateField(whole, rates.scale, failed, episodes, logit, rates, size * luck)
+                if other.evidence > best.evidence:
+                    best, self.luck = other, size
             self._rates, self._units[1] = _relevant(
-                lambda prior: RateField(prior, rates.scale, failed, counts, logit, rates), self._vectors
+                lambda prior: RateField(prior, best.scale, failed, episodes, logit, best, best.luck),
+                self._counted,
             )
 
     def deeper(self, times: float) -> Prediction:
@@ -154,16 +170,21 @@ class Prediction:
         vector, score = self._largest(scores, limit, draws)
         return vector if score > 5.0 else None
 
-    @one_thread
     def failing(self, vectors: Vector) -> Vector:
         """Return for each vector the probability that fresh episodes show a failure; shape (drifts,)."""
-        mean, deviation = self._losses.moments(*self._prior(vectors, 0))
-        holds = 1.0 - _normal((mean - 1.0 - self.shown.depth) / deviation)
-        if self._rates is not None:
-            logits, spreads = self._rates.moments(*self._prior(vectors, 1))
-            holds *= 1.0 - _normal((logits - self.shown.logit) / spreads)
-        found: Vector = 1.0 - holds
+        by_loss, by_rate = self.shown_by(vectors)
+        found: Vector = 1.0 - (1.0 - by_loss) * (1.0 - by_rate)
         return found
+
+    @one_thread
+    def shown_by(self, vectors: Vector) -> tuple[Vector, Vector]:
+        """Return the probabilities that fresh episodes show too large a loss, and too many failures, at vectors."""
+        mean, deviation = self._losses.moments(*self._prior(vectors, 0))
+        by_loss = _normal((mean - 1.0 - self.shown.depth) / deviation)
+        if self._rates is None:
+            return by_loss, np.zeros_like(by_loss)
+        logits, spreads = self._rates.moments(*self._prior(vectors, 1))
+        return by_loss, _normal((logits - self.shown.logit) / spreads)
 
     @one_thread
     def excess(self, vectors: Vector, errors: float = 0.0) -> Vector:
@@ -201,8 +222,8 @@ class Prediction:
 
         `field` is 0 for the loss and 1 for the failure rate.
         """
-        units = self._units[field]
-        return covariance(vectors * units, self._vectors * units), variance(vectors * units)
+        units, known = self._units[field], (self._vectors, self._counted)[field]
+        return covariance(vectors * units, known * units), variance(vectors * units)
 
     def _rate_margins(self, logits: Vector) -> Vector:
         shares = 1.0 / (1.0 + np.exp(-np.clip(logits, -30.0, 30.0)))

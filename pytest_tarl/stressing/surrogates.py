@@ -89,10 +89,16 @@ class RateField:
         episodes: Vector,
         usual: float,
         start: RateField | None = None,
+        luck: Matrix | None = None,
     ) -> None:
-        """Find the most probable logits by Newton's method, starting from those of the similar field `start`."""
-        self._usual, self.scale = usual, scale
+        """Find the most probable logits by Newton's method, starting from those of the similar field `start`.
+
+        `luck` are covariances that drifts have only because they ran on the same seeds.
+        """
+        self._usual, self.scale, self.luck = usual, scale, luck
         matrix, identity = scale * prior, np.eye(len(failed))
+        if luck is not None:
+            matrix = matrix + luck
         weights: Vector = np.zeros(len(failed))
         logits: Vector = np.full(len(failed), usual) if start is None else start.logits
         for number in range(STEPS):
