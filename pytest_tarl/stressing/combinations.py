@@ -87,7 +87,8 @@ class Together:
                 self._add(failure(evaluator.space, point), evaluator)
         finally:
             evaluator.release(pool)
-            self.found = _apart(self.found, evaluator)
+            if part == "rate":
+                self.found = _apart(self.found, evaluator)
         return found
 
     def _add(self, found: Failure, evaluator: Evaluator) -> None:
