@@ -1,0 +1,124 @@
+"""Which part of the guarantee the tests of a chain are about, and the drifts that chains of failures add."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl import Drift
+from pytest_tarl.spaces import Point
+from pytest_tarl.stressing import chains
+from pytest_tarl.stressing.combinations import APART, _apart
+from pytest_tarl.stressing.coordinates import Coordinates, Vector
+from pytest_tarl.stressing.findings import failure
+from pytest_tarl.stressing.guarantee import Guarantee, Outcome, hopeless, most_passed, refuted
+from pytest_tarl.stressing.surrogates import RateField, covariance
+from tests.plugin.stressing.worlds import evaluator_of, space_of
+
+SQUARE = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
+GIVEN = Guarantee(0.95, 0.5, (1.0,) * 100, 1.0)
+
+
+@dataclass
+class Told:
+    """A search whose model tells probabilities by the first coordinate of a drift."""
+
+    by_loss: dict[float, float]
+    by_rate: dict[float, float]
+    luck: float = 0.0
+
+    nominal = Coordinates(SQUARE, SQUARE.nominal)
+
+    def model(self) -> Told:
+        return self
+
+    def shown_by(self, vectors: Vector) -> tuple[Vector, Vector]:
+        return np.array([self.by_loss[one] for one in vectors[:, 0]]), np.array(
+            [self.by_rate[one] for one in vectors[:, 0]]
+        )
+
+    def distance(self, point: Point) -> float:
+        return float(np.hypot(*point.values()))
+
+
+def at(a: float, b: float = 0.0) -> Point:
+    return {"a": a, "b": b}
+
+
+@pytest.mark.parametrize(
+    ("by_loss", "by_rate", "part"),
+    [
+        ((0.0, 0.0), (0.9, 0.6), "rate"),
+        ((1.0, 0.3), (0.9, 0.4), "rate"),
+        ((1.0, 0.6), (0.9, 0.4), "both"),
+        ((0.0, 0.0), (0.4, 0.6), "both"),  # the first test would hardly show the failure
+        ((1.0, 0.6), (0.04, 0.01), "loss"),
+    ],
+)
+def test_the_model_tells_which_part_of_the_guarantee_a_chain_tests(
+    by_loss: tuple[float, float], by_rate: tuple[float, float], part: str
+) -> None:
+    nearest: Any = Told(
+        dict(zip((1.0, 0.5), by_loss, strict=True)), dict(zip((1.0, 0.5), by_rate, strict=True))
+    )
+    assert chains.part_of(nearest, [at(1.0), at(0.5)]) == part
+    assert chains.part_of(nearest, []) == "both"
+
+
+def test_a_chain_of_failures_goes_on_towards_nominal_in_short_steps_if_seeds_share_their_luck() -> None:
+    alike: Any = Told({}, {}, luck=1.0)
+    found = [point["a"] for point in chains.finer(alike, [at(0.8), at(0.5)])]
+    assert found[:5] == [0.8, *(pytest.approx(0.5 * share) for share in chains.OUTWARD), 0.5]
+    assert found[5:] == [pytest.approx(0.5 * share) for share in chains.INWARD]
+    assert found == sorted(found, reverse=True)
+    assert [point["a"] for point in chains.finer(alike, [at(0.53), at(0.5)])][:3] == [
+        0.53,
+        pytest.approx(0.52),
+        0.5,
+    ]
+    independent: Any = Told({}, {})
+    assert [point["a"] for point in chains.finer(independent, [at(0.8), at(0.5)])][:3] == [
+        0.8,
+        0.5,
+        pytest.approx(0.5 * chains.INWARD[1]),
+    ]
+
+
+def test_failures_that_contain_a_nearer_one_and_hardly_differ_from_it_are_not_reported() -> None:
+    evaluator = evaluator_of(lambda point, _: (point["a"] < 0.9, 1.0), SQUARE)
+    every = [failure(SQUARE, point) for point in (at(0.6), at(0.53), at(0.51), at(0.5), at(0.4, 0.31))]
+    assert 0.51 < 0.53 < APART * 0.5 < 0.6
+    assert _apart(every, evaluator) == [every[0], every[3], every[4]]
+    assert _apart([], evaluator) == []
+
+
+def test_a_test_of_one_part_has_the_whole_risk_and_ignores_the_other_part() -> None:
+    fine, failed, poor = Outcome(True, 1.0), Outcome(False, 1.0), Outcome(True, -9.0)
+    nominal = [fine] * 16
+    failing, losing = [failed] * 8 + [fine] * 8, [poor] * 16
+    assert refuted(GIVEN, failing, nominal, 0.01, "rate")
+    assert not refuted(GIVEN, failing, nominal, 0.01, "loss")
+    assert refuted(GIVEN, losing, nominal, 0.01, "loss")
+    assert not refuted(GIVEN, losing, nominal, 0.01, "rate")
+    assert hopeless(GIVEN, losing, nominal, 64, 0.01, "rate")
+    assert not hopeless(GIVEN, losing, nominal, 64, 0.01, "loss")
+    assert not hopeless(GIVEN, failing, nominal, 64, 0.01, "rate")
+    assert hopeless(GIVEN, failing, nominal, 64, 0.01, "loss")
+    assert most_passed(GIVEN, 64, 0.01, "rate") == most_passed(GIVEN, 64, 0.02)
+
+
+def test_unlucky_seeds_explain_failures_that_all_drifts_on_them_have() -> None:
+    """Of eight drifts with two pairs of seeds in turn, those on the second pair fail, wherever they are."""
+    vectors = np.array([[0.1 * number, 0.0] for number in range(1, 9)])
+    failed, episodes = np.array([0.0, 2.0] * 4), np.full(8, 2.0)
+    used = np.kron(np.ones((4, 1)), np.eye(2))
+    prior = covariance(vectors, vectors)
+    plain = RateField(prior, 9.0, failed, episodes, -5.0)
+    lucky = RateField(prior, 9.0, failed, episodes, -5.0, plain, 4.0 * used @ used.T)
+    assert lucky.evidence > plain.evidence
+    even = np.array([0.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 2.0])
+    steep = RateField(prior, 9.0, even, episodes, -5.0)
+    assert RateField(prior, 9.0, even, episodes, -5.0, steep, 4.0 * used @ used.T).evidence < steep.evidence
