@@ -29,6 +29,7 @@ JUDGING = (
     "drift_judging_12",
     "drift_judging_13",
     "drift_judging_14",
+    "drift_judging_15",
     "drift_structure",
 )
 TASKS = sorted(
@@ -230,6 +231,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "rare failures",
         "structure",
     ],
+    "drift_judging_15": [
+        "narrow window",
+        "one constant",
+        "permanent",
+        "permanent",
+        "range",
+        "rare failures",
+        "structure",
+        "two constants",
+    ],
 }
 
 
@@ -282,6 +293,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_12",
         "drift_judging_13",
         "drift_judging_14",
+        "drift_judging_15",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
