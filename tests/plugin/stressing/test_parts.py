@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import hypot
 from typing import Any
 
 import numpy as np
@@ -41,7 +42,7 @@ class Told:
         )
 
     def distance(self, point: Point) -> float:
-        return float(np.hypot(*point.values()))
+        return hypot(*point.values())
 
 
 def at(a: float, b: float = 0.0) -> Point:

@@ -1,0 +1,83 @@
+"""Measure how often chains of tests on shared seeds confirm a drift with just the guaranteed success rate.
+
+    python benchmarks/chain_coverage.py [--chains 4000]
+
+A chain goes from drifts that fail often to three that fail in 5 of 100 episodes, which is just what the guarantee
+allows. A share of the seeds has the same luck under all drifts; the others are independent. A confirmation of one of
+the last three drifts is wrong, and each chain may be wrong with the probability RISK. The table also gives the mean
+number of episodes of a chain and the mean number of the five failing drifts that it confirms, and the same for a chain
+whose tests do not know which seeds failed before.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pytest_tarl.spaces import Point
+from pytest_tarl.stressing.evaluating import Count
+from pytest_tarl.stressing.guarantee import Guarantee, Outcome
+from pytest_tarl.stressing.rate_tests import LOOKS, RateTests
+
+RATES = (0.6, 0.4, 0.3, 0.25, 0.2, 0.05, 0.05, 0.05)
+WRONG = 5  # number of the first drift at which the guarantee holds
+RISK = 0.05
+SHARES = (0.0, 0.5, 1.0)
+GIVEN = Guarantee(0.95, 0.5, (1.0,) * 100, 1.0)
+
+
+@dataclass
+class Episodes:
+    """An evaluator of drifts whose episodes fail as `failed` says, of shape (drifts, seeds)."""
+
+    failed: Any
+    guarantee: Guarantee = GIVEN
+    spent: int = 0
+
+    def ordered(self, _: str, point: Point, rows: Sequence[int]) -> dict[int, Outcome]:
+        """Return the outcomes of seeds."""
+        self.spent += len(rows)
+        return {row: Outcome(not self.failed[round(point["drift"]), row], 1.0) for row in rows}
+
+    def count(self, _: str, count: Count) -> None:
+        """Learn nothing."""
+
+
+def chain(draws: np.random.Generator, alike: float, *, shared: bool = True) -> tuple[bool, int, int]:
+    """Return whether a chain confirms a drift at which the guarantee holds, its episodes, and its right results."""
+    size = LOOKS[-1]
+    own, common = draws.random((len(RATES), size)), draws.random(size)
+    luck = np.where(draws.random(size) < alike, common, own)
+    episodes: Any = Episodes(luck < np.array(RATES)[:, None])
+    tests = RateTests(episodes, "fresh", RISK)
+    for drift in range(len(RATES)):
+        if not shared:
+            tests.ran, tests.failed = set(), set()
+        if not tests.confirm({"drift": float(drift)}):
+            return drift > WRONG, episodes.spent, min(drift, WRONG)
+    return True, episodes.spent, WRONG
+
+
+def main() -> None:
+    """Print a line for each share of seeds with the same luck under all drifts."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("--chains", type=int, default=4000)
+    number = parser.parse_args().chains
+    print(
+        "| same luck | wrong | allowed | episodes, confirmed | without shared seeds |\n|---|---|---|---|---|"
+    )
+    for alike in SHARES:
+        cells = []
+        for shared in (True, False):
+            found = [chain(np.random.default_rng([1, seed]), alike, shared=shared) for seed in range(number)]
+            wrong, spent, right = np.mean(np.array(found, float), axis=0)
+            cells += [f"{wrong:.2%} | {RISK:.0%}"] * shared + [f"{spent:.0f}, {right:.2f} of {WRONG}"]
+        print(f"| {alike:.0%} | {' | '.join(cells)} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
