@@ -15,6 +15,9 @@ from tarl_lint.memory.store import Inside
 from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value, in_order
 from tarl_lint.message_fields import FIELDS
 
+# maximum number of visited objects of a result that is not cached, since finding it again is as fast as checking it
+FEW = 4
+
 
 @dataclass(slots=True, eq=False)
 class Visit:
@@ -25,13 +28,23 @@ class Visit:
 
 
 def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
-    """Return all nodes whose data is inside objects; the result is cached until something is stored."""
+    """Return all nodes whose data is inside objects; the result is cached until something is stored.
+
+    Results for at most FEW objects are not cached until the same objects have led to more.
+    """
     if len(objects) == 1:
         (obj,) = objects
         if not obj.laden:
             ctx.store.doubt(obj)
             return NONE
     store = ctx.store
+    if len(objects) <= FEW and objects not in store.wide:
+        visit = Visit()
+        nodes = _all(ctx, objects, visit)
+        if len(visit.known) > FEW:
+            ctx.count(len(visit.known))
+            store.wide.add(objects)
+        return nodes
     outer = store.reads
     key = (objects, ctx.stack[-1] if ctx.stack else None)
     last = store.insides.get(key)
@@ -41,14 +54,21 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
             outer.add(last.reads)
             return last.nodes
     reads = store.reads = ctx.graph.reads = Reads()
+    grown, tick = ctx.graph.grown, store.tick
     visit = Visit()
-    nodes, grown, tick = NONE, ctx.graph.grown, store.tick
-    for obj in in_order(objects):
-        nodes |= _deep(ctx, obj, visit, 0)
+    nodes = _all(ctx, objects, visit)
     ctx.count(len(visit.known))
     store.reads = ctx.graph.reads = outer
     outer.add(reads)
     store.insides[key] = Inside(nodes, reads, *store.found_by(reads), tick, grown)
+    return nodes
+
+
+def _all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit) -> Nodes:
+    """Return the nodes inside several objects."""
+    nodes = NONE
+    for obj in in_order(objects):
+        nodes |= _deep(ctx, obj, visit, 0)
     return nodes
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import pytest
@@ -505,6 +506,19 @@ def test_a_reachable_part_keeps_its_enclosing_object_and_definition_alive():
     bound = Obj("bound", "m")
     bound.info = (receiver, [pointer(default)], {"k": named.sub("x")})
     assert abstract_gc.together([whole.sub("x"), bound]) == {whole, bound, receiver, named, default}
+
+
+@pytest.mark.parametrize("length", [2, 2 * reachable_data.FEW])
+def test_only_data_inside_many_objects_is_cached_and_never_outdated(ctx, length):
+    chain = [made(ctx, "lib", number) for number in range(length)]
+    for outer, inner in itertools.pairwise(chain):
+        ctx.store.put((outer, "x"), pointer(inner))
+    ctx.store.put((chain[-1], "x"), ONE)
+    first = frozenset(chain[:1])
+    assert [reachable_data.deep(ctx, first) for _ in range(3)] == [{1}] * 3
+    assert bool(ctx.store.insides) is (length > reachable_data.FEW)
+    ctx.store.put((chain[-1], "x"), TWO)
+    assert reachable_data.deep(ctx, first) == {2}
 
 
 def test_the_definition_of_a_message_gives_the_definitions_of_its_parts(ctx):
