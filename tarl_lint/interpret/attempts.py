@@ -11,7 +11,7 @@ from tarl_lint.ir.exception_types import handled_by
 from tarl_lint.memory import joins
 from tarl_lint.memory.frames import Attempt, Escape, Frame, Leaving
 from tarl_lint.memory.store import Delta
-from tarl_lint.memory.values import UNKNOWN, Value
+from tarl_lint.memory.values import UNKNOWN, Value, join_all
 
 
 def try_statement(ctx: Interpreter, s: ir.Try, frame: Frame) -> bool:
@@ -110,13 +110,17 @@ def _handled(ctx: Interpreter, s: ir.Try, frame: Frame) -> bool:
 def _handlers(ctx: Interpreter, s: ir.Try, attempt: Attempt, frame: Frame) -> list[Delta]:
     """Execute the handlers; return the states after them."""
     depth = len(ctx.store.layers)
-    start, raised = joins.joined(ctx, attempt.states), attempt.raised
+    start = joins.joined(ctx, attempt.states)
     ends: list[Delta] = []
-    for _, name, body in s.handlers:
+    for handled, (_, name, body) in zip(attempt.handlers, s.handlers, strict=True):
         ctx.store.push(start)
+        caught = attempt.caught(handled, ctx.exception_types)
         if name is not None:
+            raised = join_all(caught.values())
             ctx.ops.assign(ctx, name, raised if raised.deps or raised.pts else UNKNOWN, frame)
+        frame.handling.append(caught)
         if ctx.ops.block(ctx, body, frame):
             ends.append(ctx.store.since(depth))
+        frame.handling.pop()
         ctx.store.cut(depth)
     return ends

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.exception_types import UNKNOWN
 from tarl_lint.memory.frames import Attempt, Escape, Frame, Leaving
-from tarl_lint.memory.values import BOTTOM, Nodes, join
+from tarl_lint.memory.values import BOTTOM, Nodes, Value, join
 from tarl_lint.models.ros import publications
 
 
@@ -20,7 +21,7 @@ def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:
             return
         caught = attempt.catches(escape.name, ctx.exception_types)
         if caught is not False:
-            attempt.raised = join(attempt.raised, escape.value)
+            attempt.raised[escape.name] = join(attempt.raised.get(escape.name, BOTTOM), escape.value)
             attempt.states.append(ctx.store.since(attempt.depth))
         if caught:
             return
@@ -39,6 +40,7 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
     here = [t for t in frame.tries if _takes(ctx, t, raises, named)]
     if not here and not any(_takes(ctx, t, raises, named) for f in ctx.stack for t in f.tries):
         return
+    raises = raises or _expected(ctx, frame)
     known = frame.function.raising.setdefault(statement.id, {})
     if raises not in known:
         known[raises] = None
@@ -46,7 +48,23 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
     decision = ctx.condition(frame, statement)
     ctx.graph.depend(decision, deps)
     if not any(e.decision == decision and e.name == raises for e in frame.escapes):
-        leave(ctx, Escape(frame, statement, raises, BOTTOM, decision), frame)
+        leave(
+            ctx, Escape(frame, statement, raises, Value(deps), decision), frame
+        )  # its text quotes the arguments
+
+
+def _expected(ctx: Interpreter, frame: Frame) -> str:
+    """Return the exception that the innermost `try` expects of a failing library call, such as a class of tf2.
+
+    Return UNKNOWN if its handlers name no class of a library.
+    """
+    for attempt in (t for f in (frame, *reversed(ctx.stack)) for t in reversed(f.tries)):
+        if _takes(ctx, attempt, UNKNOWN, named=False):
+            named = [
+                name for handled in attempt.handlers for name in ctx.exception_types.of_libraries(handled)
+            ]
+            return named[0] if named else UNKNOWN
+    return UNKNOWN
 
 
 def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:

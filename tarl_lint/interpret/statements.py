@@ -197,10 +197,10 @@ def _raised(ctx: Interpreter, s: ir.Raise, frame: Frame) -> bool:
         frame.statement = s
         if any(o.kind == "class" for o in value.pts):
             value = calls.call_value(ctx, value, ([], {}), frame, ir.Call(s.value, (), (), s.pos, -1))
-        # the exception carries all data inside the value, because the function's state is discarded, and with it the
-        # contents of its objects
-        whole = Value(ctx.use(value), value.pts)
-        value = ctx.carry(whole, ctx.node(frame, ("raise",), "call"))
+        value = ctx.carry(value, ctx.node(frame, ("raise", s.pos), "call"))
+    elif frame.handling:
+        for name, one in frame.handling[-1].items():
+            exceptions.leave(ctx, Escape(frame, s, name, one), frame)
     exceptions.leave(ctx, Escape(frame, s, raised(s.value), value), frame)
     return False
 

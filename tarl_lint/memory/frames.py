@@ -21,7 +21,7 @@ class Attempt:
     depth: int
     states: list[dict[Key, Value]]
     handlers: tuple[Handled, ...] = ()
-    raised: Value = field(default_factory=lambda: BOTTOM)
+    raised: dict[str, Value] = field(default_factory=dict)  # value of each exception, by its name
     final: bool = False
     leaving: list[Leaving] = field(default_factory=list)
 
@@ -29,6 +29,10 @@ class Attempt:
         """Return whether one of the handlers catches an exception: True, False, or None for maybe."""
         answers = [types.catches(handled, name) for handled in self.handlers]
         return True if True in answers else None if None in answers else False
+
+    def caught(self, handled: Handled, types: ExceptionTypes) -> dict[str, Value]:
+        """Return the exceptions that one of the handlers may catch, by their names."""
+        return {n: v for n, v in self.raised.items() if types.catches(handled, n) is not False}
 
 
 @dataclass(slots=True, eq=False)
@@ -73,6 +77,7 @@ class Frame(Obj):
         "escapes",
         "function",
         "guards",
+        "handling",
         "heads",
         "id",
         "jumps",
@@ -133,6 +138,7 @@ class Frame(Obj):
         self.captured = False
         self.returns: list[tuple[dict[Key, Value], Value]] = []
         self.jumps: list[tuple[int, dict[str, list[dict[Key, Value]]]]] = []
+        self.handling: list[dict[str, Value]] = []  # exceptions of the handlers that are running, by name
         self.depth_of_layers = 0
         # whether callbacks run concurrently, so that values can change in every loop iteration
         self.root_waits = False

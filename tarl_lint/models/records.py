@@ -68,7 +68,8 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
             ctx.store.put((obj, item_field(number)), value)
     for name, value in given.items():
         ctx.store.put((obj, name), value)
-    if plain and isinstance(cls.info, ClassInfo) and cls.info.external and not numbered:
+    external = any(o.info.external for o in lineage(cls) if isinstance(o.info, ClassInfo))
+    if plain and external and not numbered:
         updates.add_element(ctx, pointer(obj), Value(call_contexts.all_used(ctx, (plain, {}))))
     senders.inherit(ctx, obj, arguments, frame, call)
     _after(ctx, obj, cls, frame, call)

@@ -206,3 +206,60 @@ def test_a_condition_later_in_a_loop_decides_about_the_next_iteration():
             return
     """
     assert flows(body, tick="self.x = event") == ["implicit"]
+
+
+@pytest.mark.parametrize(
+    ("raised", "published"),
+    [
+        ("Worse(f'no {msg.data}')", "str(error)"),
+        ("Worse(msg.data)", "error.args[0]"),
+        ("ValueError(msg.data)", "error.args[0]"),
+    ],
+)
+def test_an_exception_carries_its_arguments_through_handlers(raised, published):
+    body = """\
+    try:
+        try:
+            if msg.data > 1:
+                raise {raised}
+        except {inner}
+            raise
+    except Exception as error:
+        self.pub.publish({published})
+    """
+    for inner in ("Fault:", "Exception:", "(Fault, ValueError) as first:"):
+        assert flows(body.format(raised=raised, inner=inner, published=published)) == ["explicit"]
+
+
+def test_the_text_of_a_failing_library_call_quotes_its_arguments():
+    body = "try:\n    float({})\nexcept ValueError as error:\n    self.pub.publish(str(error))"
+    assert flows(body.format("msg.data")) == ["explicit"]
+    assert flows(body.format("1.0")) == []
+
+
+def test_a_handler_gets_no_data_of_exceptions_that_it_cannot_catch():
+    body = """\
+    try:
+        if self.x:
+            raise Worse("fixed")
+        raise KeyError(msg.data)
+    except Fault as error:
+        self.pub.publish(str(error))
+    except KeyError:
+        pass
+    """
+    assert flows(body) == []
+
+
+def test_a_handler_of_a_class_of_a_library_catches_what_a_failing_call_raises():
+    body = """\
+    for _ in range(2):
+        try:
+            self.pub.transform(msg.data)
+        except {handled}:
+            continue
+    self.pub.publish(1)
+    """
+    assert flows(body.format(handled="tf2.TransformException")) == []
+    assert flows(body.format(handled="(tf.LookupException, tf.ExtrapolationException)")) == []
+    assert flows(body.format(handled="KeyError")) == ["implicit"]

@@ -654,3 +654,10 @@ def test_a_try_catches_what_one_of_its_handlers_catches():
     assert attempt.catches("OSError", NO_CLASSES) is True
     assert attempt.catches("ValueError", NO_CLASSES) is False
     assert attempt.catches("", NO_CLASSES) is None
+
+
+def test_a_handler_gets_only_the_exceptions_that_it_may_catch():
+    attempt = Attempt(0, [], (frozenset(["KeyError"]), frozenset(["OSError"])))
+    attempt.raised = {"KeyError": const(1), "OSError": const(2), "": const(3)}
+    caught = attempt.caught(frozenset(["KeyError"]), NO_CLASSES)
+    assert caught == {"KeyError": const(1), "": const(3)}
