@@ -103,8 +103,20 @@ def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
     body.depth_of_layers = frame.depth_of_layers
     ctx.ops.block(ctx, statement.body, body)
     frame.statement = statement
+    _subclassed(ctx, cls, statement, frame)
     made = decorated(ctx, pointer(cls), statement.decorators, statement, frame)
     ctx.ops.assign(ctx, statement.target, made if made.pts else pointer(cls), frame)
+
+
+def _subclassed(ctx: Interpreter, cls: Obj, statement: ir.Class, frame: Frame) -> None:
+    """Call the `__init_subclass__` of the first base class that has one, which may register the class."""
+    for base in lineage(cls)[1:]:
+        hook = ctx.store.get((base, "__init_subclass__"))
+        if hook is not None:
+            call = ir.Call(ir.Const(None, statement.pos), (), (), statement.pos, -1)
+            named = {n: expressions.evaluate(ctx, value, frame) for n, value in statement.keywords}
+            calls.call_value(ctx, hook, ([pointer(cls)], named), frame, call)
+            return
 
 
 def _inherits(info: ClassInfo) -> tuple[list[Obj], list[str]]:

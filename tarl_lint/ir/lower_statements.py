@@ -156,6 +156,11 @@ class Lowering(Expressions):
                 body,
                 decorators,
                 tuple(_annotated(node)),
+                [
+                    (k.arg, self.expr(k.value, scope))
+                    for k in node.keywords
+                    if k.arg is not None and k.arg != "metaclass"
+                ],
             )
         ]
 

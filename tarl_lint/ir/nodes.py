@@ -310,6 +310,7 @@ class Class(Stmt):
     body: Sequence[Stmt]
     decorators: Sequence[Expr] = ()
     fields: tuple[str, ...] = ()  # names that the body annotates
+    keywords: Sequence[tuple[str, Expr]] = ()  # except the metaclass
     control: object = None
 
 
