@@ -25,6 +25,7 @@ from tarl_lint.memory.values import (
     Value,
     in_order,
     join,
+    lineage,
 )
 from tarl_lint.models import arrays, sizes
 from tarl_lint.models.sizes import COMBINING
@@ -61,6 +62,7 @@ OURS = frozenset(
 )  # kinds of objects whose type is known from the code and does not depend on data
 MESSAGES = frozenset(["message", "goal"])
 THERE = frozenset([*MESSAGES, *OURS])  # kinds of objects that are never None
+SCALARS = frozenset(["str", "int", "float", "bool", "bytes"])
 MAX_TEXT = 300
 
 
@@ -69,6 +71,8 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
     if expr.operator in ("or", "and"):
         return boolean(ctx, expr, frame)
     values = [ctx.ops.evaluate(ctx, p, frame) for p in expr.parts]
+    if expr.operator == "as":
+        return narrowed(*values)
     said = dunder_methods.operated(ctx, expr, values, frame)
     if said is not None:
         return said
@@ -89,6 +93,27 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
     if (array := arrays.computed(ctx, expr, values, deps, frame)) is not None:
         return array
     return Value(deps, consts=fold(ctx, expr.operator, values))
+
+
+def narrowed(value: Value, classes: Value) -> Value:
+    """Return a value without the objects that are certainly no instances of the classes that a pattern names."""
+    if not classes.pts or any(c.kind not in ("class", "ext") for c in classes.pts):
+        return value
+    scalar = all(c.name.removeprefix("builtins.") in SCALARS for c in classes.pts)
+    ours = frozenset(c for c in classes.pts if c.kind == "class")
+    exact = scalar or len(ours) == len(classes.pts)
+    kept = frozenset(o for o in value.pts if _may_be(o, ours, exact=exact))
+    return Value(value.deps, kept, value.consts)
+
+
+def _may_be(obj: Obj, classes: frozenset[Obj], *, exact: bool) -> bool:
+    """Return whether an object may be an instance of one of the classes.
+
+    `exact` says that there is no other class except for those of numbers and strings.
+    """
+    if obj.kind == "instance" and isinstance(obj.info, Obj):
+        return not exact or not classes.isdisjoint(lineage(obj.info))
+    return not exact or obj.kind not in OURS
 
 
 def tested(ctx: Interpreter, name: str, value: Value, frame: Frame, slot: tuple[ir.Pos, int]) -> Nodes:

@@ -16,7 +16,7 @@ def captures(
     """Yield each captured name with the expression of its part, outermost first."""
     if isinstance(pattern, ast.MatchAs):
         if pattern.name:
-            yield pattern.name, subject
+            yield pattern.name, _narrowed(pattern.pattern, subject, where, lower)
         if pattern.pattern is not None:
             yield from captures(pattern.pattern, subject, where, lower)
     elif isinstance(pattern, ast.MatchStar):
@@ -30,6 +30,13 @@ def captures(
             yield from captures(inner, part, where, lower)
         if isinstance(pattern, ast.MatchMapping) and pattern.rest:
             yield pattern.rest, subject
+
+
+def _narrowed(pattern: ast.pattern | None, subject: ir.Expr, where: ir.Pos, lower: Lower) -> ir.Expr:
+    """Return the subject; as an object of a class, if the pattern names one."""
+    if not isinstance(pattern, ast.MatchClass):
+        return subject
+    return ir.Operation("as", [subject, lower(pattern.cls)], where)
 
 
 def conditions(pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Lower) -> Iterator[ir.Expr]:
