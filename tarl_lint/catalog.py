@@ -138,6 +138,10 @@ METHODS: Final[Mapping[str, Fact]] = {
     **{name: Fact("transform", f"tf2.{name}") for name in sorted(LOOKUPS)},
     "registerCallback": Fact("register", "message_filters", callback=(0, "cb")),
 }
+# methods of `message_filters.Cache` that return messages
+CACHE_READERS: Final = frozenset(
+    ["getElemBeforeTime", "getElemAfterTime", "getInterval", "getSurroundingInterval", "getLast"]
+)
 
 OTHER_KINDS: Final = (
     "rospy.Service",

@@ -52,6 +52,18 @@ def drawn_into(
     return _changed(ctx, whole, Value(base.deps, frozenset([whole])), arguments, frame, call)
 
 
+def pass_to_function(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
+    """Draw data into a drawing that a library's function gets with the data, such as `show(image, ax=axes)`."""
+    given = [*arguments[0], *arguments[1].values()]
+    whole = next((o.whole for v in given for o in v.pts if is_drawing(o)), None)
+    if whole is None:
+        return
+    others = [v for v in given if not any(map(is_drawing, v.pts))]
+    learnt = Value(call_contexts.all_used(ctx, (others, {})))
+    if learnt.deps:
+        containers.insert_elements(ctx, pointer(whole), [learnt], frame, call)
+
+
 def _changed(
     ctx: Interpreter, obj: Obj, base: Value, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Value:

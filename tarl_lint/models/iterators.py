@@ -112,6 +112,24 @@ def mapped_elements(ctx: Interpreter, it: Invocation) -> Value:
     return listed(ctx, Value(kept.deps | decided, kept.pts, kept.consts), length | decided, it)
 
 
+def reduced(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the result of `functools.reduce`: the function is applied to known elements one by one."""
+    plain = it.arguments[0]
+    if len(plain) < 2 or it.arguments[1]:
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    function, iterable, *start = plain
+    known = sizes.unpacked(ctx, iterable)
+    if known is None or len(known) > sizes.MAX_KNOWN:
+        element = heap.elements(ctx, iterable)
+        known = [element, element, element] if start else [element] * 4
+    result, *rest = [*start, *known] or [UNKNOWN]
+    for number, part in enumerate(rest):
+        slot = -1000 * (abs(it.call.slot) + 1) - number
+        call = replace(it.call, arguments=(), keywords=(), slot=slot)
+        result = calls.call_value(ctx, function, ([result, part], {}), it.frame, call)
+    return result
+
+
 def gate(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
     """Return the node that decides which elements a new container gets; empty if no data decides it."""
     if not decides:

@@ -133,6 +133,7 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
             containers.change(ctx, arguments[1][keyword], news, [expr], frame)
     if written is None and dropped(frame, call):
         filling.fill(ctx, name, BOTTOM, arguments, frame, call)
+    drawings.pass_to_function(ctx, arguments, frame, call)
     if catalog.scalar(qualified):
         same = qualified == "builtins.float" and len(arguments[0]) == 1
         return Value(deps, arguments[0][0].pts if same else frozenset())
@@ -239,7 +240,7 @@ def _call_method(
         return ctx.ops.send(ctx, Invocation(name, base, arguments, frame, call), sender)
     if target is not None and kind in ("server", "goal"):
         return ctx.ops.serve(ctx, target, Invocation(name, base, arguments, frame, call))
-    if name == "registerCallback" and kind in ("filter", "synchronizer"):
+    if kind in ("filter", "synchronizer") and (name == "registerCallback" or name in catalog.CACHE_READERS):
         return ctx.ops.register_filter(ctx, target, Invocation(name, base, arguments, frame, call))
     if kind == "parameter":
         return base if name == "get_parameter_value" else UNKNOWN
@@ -398,6 +399,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "zip": iterators.zipped_elements,
     "map": iterators.mapped_elements,
     "filter": iterators.mapped_elements,
+    "functools.reduce": iterators.reduced,
     "min": containers.chosen_element,
     "max": containers.chosen_element,
     "next": containers.chosen_element,

@@ -21,6 +21,10 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
     """Return an attribute of which at least the beginning of the name is known."""
     plain = it.arguments[0]
     names = plain[1].texts() if len(plain) > 1 else ()
+    if not names and plain and not it.call.arguments:
+        return plain[
+            0
+        ]  # `reduce(getattr, parts, message)` returns a part of the message; storing there fills it
     if not names and len(it.call.arguments) > 1:
         return _method_by_beginning(ctx, it) or ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
     return join_all([heap.read(ctx, plain[0], n) for n in names] + plain[2:])

@@ -8,13 +8,13 @@ from itertools import zip_longest
 from typing import Final
 
 from tarl_lint import catalog
-from tarl_lint.interpret import calls
+from tarl_lint.interpret import call_contexts, calls
 from tarl_lint.interpret.budget import MAX_ALIKE, MAX_GENERATIONS
 from tarl_lint.interpret.call_contexts import CALLABLE, ROOT_CALL
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, recency
+from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.abstract_gc import together
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.shared import Root
@@ -207,10 +207,12 @@ def synchronizer(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def register_filter(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
-    """Register a callback that gets one message of each subscriber."""
+    """Register a callback that gets one message of each subscriber, or read messages from a cache."""
     if target is None:
         return UNKNOWN
     ctx.store.reads.look(target)
+    if it.name in catalog.CACHE_READERS:
+        return _cached(ctx, target, it)
     places = {(it.frame.program.path, it.call.pos)}
     parts: Sequence[Value] = [pointer(target)]
     several = False
@@ -228,6 +230,19 @@ def register_filter(ctx: Interpreter, target: Obj | None, it: Invocation) -> Val
             values = [] if several else [*messages, *extra]
             call_when(ctx, key, function, values, "callback", named=named)
     return UNKNOWN
+
+
+def _cached(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
+    """Return a message, or a list of messages, from a `message_filters.Cache`; the arguments choose which."""
+    parts = target.info[0] if isinstance(target.info, tuple) else ()
+    records = [o.info for part in parts for o in part.objects if isinstance(o.info, SourceRecord)]
+    kept = [_received(ctx, record, it.frame, ("cached", it.call.slot)) for record in records]
+    message_of = Value(call_contexts.all_used(ctx, it.arguments), frozenset(kept))
+    if "Interval" not in it.name:
+        return message_of
+    listed = recency.allocate(ctx, "sequence", it.frame, ("cached", it.call.slot))
+    updates.add_element(ctx, pointer(listed), message_of)
+    return pointer(listed)
 
 
 def _filtered(ctx: Interpreter, part: Value, function: Obj, places: set[tuple[str, ir.Pos]]) -> Value:

@@ -296,6 +296,13 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(list(NAME(lambda v: 1.0, msg.items))[0])  # clean
         out.publish(len(list(NAME(lambda v: 1.0, msg.items))))  # data
     """,
+    ("functools.reduce",): """
+        out.publish(NAME(lambda total, x: total + x, [1.0, msg.data]))  # data
+        out.publish(NAME(lambda total, x: total + 1.0, [1.0, msg.data], 0.0))  # clean
+        out.publish(NAME(lambda total, x: total + x, msg.items, 0.0))  # data
+        out.publish(NAME(lambda total, x: x, [msg.data, 1.0]))  # clean
+        out.publish(NAME(getattr, ["part", "x"], msg))  # data
+    """,
     ("filter",): """
         for value in NAME(lambda v: v > msg.data, [0.0, 1.0]):
             out.publish(value)  # control

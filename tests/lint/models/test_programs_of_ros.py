@@ -245,7 +245,8 @@ def on(msg):
 cache = message_filters.Cache(message_filters.Subscriber("in", Float64), 10)
 cache.registerCallback(on)
 def tick(event):
-    out.publish(cache.getElemBeforeTime(rospy.Time.now()).data)  # clean
+    out.publish(cache.getElemBeforeTime(rospy.Time.now()).data)  # data
+    out.publish(cache.getInterval(rospy.Time(0), rospy.Time.now())[0].data)  # data
 rospy.Timer(rospy.Duration(1.0), tick)
 ### a node of rclpy as a class
 class N(rclpy.node.Node):
