@@ -20,6 +20,7 @@ from tarl_lint.system.binding import (
 )
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.image_transport import is_republisher, republished, transported
+from tarl_lint.system.known_programs import stated
 from tarl_lint.system.model import Endpoint, Hop, Instance, Interface, Role, System, full_name
 from tarl_lint.system.service_calls import PARTS, part
 from tarl_lint.system.topic_tools import passed_on
@@ -126,7 +127,7 @@ def _seen(instance: Instance, launch: Launch, workspace: Workspace) -> tuple[End
         return republished(instance, ros2=launch.ros2)
     package = workspace.package(node.package) if node.kind == "node" else None
     if package is None:
-        return passed_on(instance, ros2=launch.ros2)
+        return passed_on(instance, ros2=launch.ros2) or stated(instance, ros2=launch.ros2)
     return tuple(transported(instance, named_topics(package, node.executable)))
 
 
@@ -173,8 +174,22 @@ def hops(instances: Sequence[Instance]) -> list[Hop]:
         inputs = [one for one in instance.touched if one in published]
         outputs = [one for one in instance.touched if one in subscribed and one not in published]
         made += [_unread(instance, one, other) for one in inputs for other in outputs]
+    made += _chosen_by_requests(instances, made)
     made += _through_servers(instances, made)
     return sorted(made, key=lambda hop: (hop.node, hop.source, hop.sink, hop.kind))
+
+
+def _chosen_by_requests(instances: Sequence[Instance], found: Sequence[Hop]) -> Iterator[Hop]:
+    """Yield the possible flows of unread nodes from the requests of their services to what they publish and answer."""
+    sinks = {hop.sink for hop in found}
+    asked, answered = PARTS[0]
+    for instance in (one for one in instances if one.seen):
+        published = sorted({name for name, _ in instance.named("publishes")})
+        for service in sorted({name for name, _ in instance.named("serves")}):
+            if service + asked in sinks:
+                yield from (
+                    _unread(instance, service + asked, one) for one in (*published, service + answered)
+                )
 
 
 def _unread(instance: Instance, source: str, sink: str) -> Hop:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final
 
 from tarl_lint.files import shown
@@ -26,6 +26,10 @@ _PROGRAMS: Final[Mapping[str, Callable[[Sequence[str]], _Topics]]] = {
     "mux": lambda words: (words[1:], words[:1]),
     "demux": lambda words: (words[:1], words[1:]),
 }
+_CHOOSING: Final[Mapping[str, str]] = {
+    "mux": "Mux",
+    "demux": "Demux",
+}  # beginnings of the types of their services
 
 
 def passed_on(instance: Instance, *, ros2: bool) -> tuple[Endpoint, ...]:
@@ -45,4 +49,16 @@ def passed_on(instance: Instance, *, ros2: bool) -> tuple[Endpoint, ...]:
     return (
         *(Endpoint("subscribes", (one,), "", span) for one in inputs if "$(" not in one),
         *(Endpoint("publishes", (one,), "", span) for one in outputs if "$(" not in one),
+        *_choice(node.executable, span, ros2=ros2),
     )
+
+
+def _choice(program: str, span: Span, *, ros2: bool) -> Iterator[Endpoint]:
+    """Yield the services that choose the topic of `mux` and `demux`."""
+    kind = _CHOOSING.get(program)
+    if kind is None:
+        return
+    private = "~/" if ros2 else "~"
+    for service in ("select", "add", "delete"):
+        names = (f"{private}{service}",) if ros2 else (f"{private}{service}", f"{program}/{service}")
+        yield Endpoint("serves", names, f"{kind}{service.capitalize()}", span)

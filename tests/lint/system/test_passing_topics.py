@@ -52,7 +52,7 @@ def test_republish_converts_the_transports_of_an_image(
     [
         ("load image_transport/republish manager compressed raw", ["/in/compressed"]),
         ("standalone image_transport/republish raw raw", ["/in"]),
-        ("load image_proc/debayer manager", []),
+        ("load image_view/disparity manager", []),
     ],
 )
 def test_republish_may_be_a_nodelet(workspace, capsys, arguments, subscribed):
@@ -101,6 +101,77 @@ def test_programs_of_topic_tools_name_their_topics_in_arguments(
 ):
     node = f'<node pkg="topic_tools" type="{program}" name="t" args="{arguments}"/>'
     assert ends(capsys, launched(workspace, node)) == (subscribed, published)
+
+
+SELECTING = """#!/usr/bin/env python3
+import rospy
+from std_msgs.msg import String
+from topic_tools.srv import MuxSelect
+def on_mode(msg):
+    choose(msg.data)
+rospy.init_node("chooser")
+choose = rospy.ServiceProxy("{service}", MuxSelect)
+rospy.Subscriber("/mode", String, on_mode)
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize("service", ["/mux/select", "/drive/select"])
+def test_a_request_to_a_mux_chooses_what_it_passes_on(workspace, capsys, service):
+    write(workspace, {"arm/scripts/chooser.py": SELECTING.format(service=service)})
+    file = launched(
+        workspace,
+        '<node pkg="topic_tools" type="mux" name="drive" args="/cmd_vel /joy_vel /nav_vel"/>'
+        '<node pkg="arm" type="chooser.py" name="chooser"/>',
+    )
+    _, out, _ = run(capsys, "--launch", file, "--from", "/mode")
+    assert flows(out)[0].startswith(f"/mode → /chooser → {service} (request) → [/drive, not read] → /cmd_vel")
+
+
+@pytest.mark.parametrize(
+    ("node", "subscribed", "published"),
+    [
+        (
+            '<node pkg="nodelet" type="nodelet" name="d" args="load image_proc/debayer manager"/>',
+            ["/image_raw"],
+            ["/image_mono", "/image_mono/compressed", "/image_color", "/image_color/compressed"],
+        ),
+        (
+            (
+                '<node pkg="nodelet" type="nodelet" name="v" args="load pcl/VoxelGrid manager">'
+                '<remap from="~input" to="/points"/></node>'
+            ),
+            ["/points"],
+            ["/v/output"],
+        ),
+        (
+            (
+                '<node pkg="nodelet" type="nodelet" name="l"'
+                ' args="standalone depthimage_to_laserscan/DepthImageToLaserScanNodelet">'
+                '<remap from="image" to="/depth/image_raw"/></node>'
+            ),
+            ["/depth/image_raw", "/camera_info"],
+            ["/scan"],
+        ),
+        (
+            '<node pkg="pointcloud_to_laserscan" type="pointcloud_to_laserscan_node" name="p"/>',
+            ["/cloud_in"],
+            ["/scan"],
+        ),
+        (
+            (
+                '<node pkg="nodelet" type="nodelet" name="v" args="load pcl/VoxelGrid manager">'
+                '<remap from="~extra" to="/points"/></node>'
+            ),
+            [],
+            [],
+        ),
+        ('<node pkg="nodelet" type="nodelet" name="m" args="manager"/>', [], []),
+    ],
+)
+def test_topics_of_installed_programs_and_nodelets_are_known(workspace, capsys, node, subscribed, published):
+    found = ends(capsys, launched(workspace, node))
+    assert [sorted(one) for one in found] == [sorted(subscribed), sorted(published)]
 
 
 CAMERA = """
