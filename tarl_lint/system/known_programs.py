@@ -5,45 +5,45 @@ The names are those of each package's documentation. Where a launch file renames
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from tarl_lint.files import shown
 from tarl_lint.model import Span
-from tarl_lint.system.image_transport import IMAGE, transported
-from tarl_lint.system.model import Endpoint, Instance
+from tarl_lint.system.image_transport import CAMERA, IMAGE, transported
+from tarl_lint.system.model import Endpoint, Instance, Role
 from tarl_lint.workspace.launch_model import LaunchedNode
 from tarl_lint.workspace.ros_arguments import plain
 
-_Names = tuple[
-    str, str
-]  # subscribed and published topics, separated by spaces; `:` marks images of image_transport
+# subscribed and published topics, separated by spaces; `:` marks images of image_transport, `@` those of cameras,
+# whose `camera_info` is beside the image
+_Names = tuple[str, str]
 
 _CLOUD: Final[_Names] = ("~input", "~output")
-_RECTIFY: Final[_Names] = (":image camera_info", ":image_rect")
-_POINTS: Final[_Names] = (":image_rect camera_info", "points")
+_RECTIFY: Final[_Names] = ("@image", ":image_rect")
+_POINTS: Final[_Names] = ("@image_rect", "points")
 _COLORED: Final[_Names] = (
     ":rgb/image_rect_color rgb/camera_info :depth_registered/image_rect",
     "depth_registered/points",
 )
 _REGISTER: Final[_Names] = (
     ":depth/image_rect depth/camera_info rgb/camera_info",
-    ":depth_registered/image_rect depth_registered/camera_info",
+    "@depth_registered/image_rect",
 )
-_SCAN_OF_DEPTH: Final[_Names] = (":image camera_info", "scan")
+_SCAN_OF_DEPTH: Final[_Names] = ("@image", "scan")
 _SCAN_OF_CLOUD: Final[_Names] = ("cloud_in", "scan")
 _ORIENTATION: Final[_Names] = ("imu/data_raw imu/mag", "imu/data")
 
 _PROGRAMS: Final[Mapping[str, _Names]] = {
     "image_proc/debayer": (":image_raw", ":image_mono :image_color"),
-    "image_proc/rectify": (":image_mono camera_info", ":image_rect"),
+    "image_proc/rectify": ("@image_mono", ":image_rect"),
     "image_proc/image_proc": (
-        ":image_raw camera_info",
+        "@image_raw",
         ":image_mono :image_rect :image_color :image_rect_color",
     ),
     "image_proc/crop_decimate": (
-        ":camera/image_raw camera/camera_info",
-        ":camera_out/image_raw camera_out/camera_info",
+        "@camera/image_raw",
+        "@camera_out/image_raw",
     ),
     "image_proc::RectifyNode": _RECTIFY,
     "image_proc::DebayerNode": (":image_raw", ":image_mono :image_color"),
@@ -65,6 +65,7 @@ _PROGRAMS: Final[Mapping[str, _Names]] = {
     ),
 }
 _LOADING: Final = ("load", "standalone")
+_TRANSPORTED: Final[Mapping[str, str]] = {":": IMAGE, "@": CAMERA}
 
 
 def stated(instance: Instance, *, ros2: bool) -> tuple[Endpoint, ...]:
@@ -73,17 +74,18 @@ def stated(instance: Instance, *, ros2: bool) -> tuple[Endpoint, ...]:
     if topics is None:
         return ()
     subscribed, published = (text.split() for text in topics)
-    names = {one.removeprefix(":") for one in (*subscribed, *published)}
+    names = {one.lstrip(":@") for one in (*subscribed, *published)}
     own = instance.node.remaps[instance.node.inherited :]
     if any(not _belongs(old, names) for old, _ in own):
         return ()
     span = Span(shown(instance.node.file), max(instance.node.line, 1), 1, max(instance.node.line, 1), 2)
-    ends = [
-        Endpoint(role, (one.removeprefix(":"),), IMAGE if one.startswith(":") else "", span)
-        for role, listed in (("subscribes", subscribed), ("publishes", published))
-        for one in listed
-    ]
+    ends = [*_ends("subscribes", subscribed, span), *_ends("publishes", published, span)]
     return tuple(_plain(transported(instance, ends)))
+
+
+def _ends(role: Role, names: Sequence[str], span: Span) -> Iterator[Endpoint]:
+    for name in names:
+        yield Endpoint(role, (name.lstrip(":@"),), _TRANSPORTED.get(name[0], ""), span)
 
 
 def _plain(ends: Iterator[Endpoint]) -> Iterator[Endpoint]:

@@ -150,7 +150,7 @@ def test_a_request_to_a_mux_chooses_what_it_passes_on(workspace, capsys, service
                 ' args="standalone depthimage_to_laserscan/DepthImageToLaserScanNodelet">'
                 '<remap from="image" to="/depth/image_raw"/></node>'
             ),
-            ["/depth/image_raw", "/camera_info"],
+            ["/depth/image_raw", "/depth/camera_info"],
             ["/scan"],
         ),
         (
