@@ -287,7 +287,9 @@ def _initialise(
     for owner in lineage(cls):
         init = ctx.store.get((owner, "__init__"))
         if init is not None:
+            ctx.building.append((obj, len(ctx.stack)))
             ctx.ops.call_value(ctx, heap.bind(ctx, init, obj, owner), arguments, frame, call)
+            ctx.building.pop()
             break
     else:
         ctx.ops.fill(ctx, obj, cls, arguments, frame, call)

@@ -6,6 +6,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.exception_types import UNKNOWN
 from tarl_lint.memory.frames import Attempt, Escape, Frame, Leaving
+from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import BOTTOM, Nodes, Value, join
 from tarl_lint.models.ros import publications
 
@@ -17,16 +18,28 @@ def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:
     """
     for attempt in reversed(frame.tries):
         if attempt.final:
-            attempt.leaving.append(Leaving(ctx.store.since(attempt.depth), escape))
+            attempt.leaving.append(Leaving(_state(ctx, attempt.depth), escape))
             return
         caught = attempt.catches(escape.name, ctx.exception_types)
         if caught is not False:
             attempt.raised[escape.name] = join(attempt.raised.get(escape.name, BOTTOM), escape.value)
-            attempt.states.append(ctx.store.since(attempt.depth))
+            attempt.states.append(_state(ctx, attempt.depth))
         if caught:
             return
-    escape.state = ctx.store.since(frame.depth_of_layers)
+    escape.state = _state(ctx, frame.depth_of_layers)
     frame.escapes.append(escape)
+
+
+def _state(ctx: Interpreter, depth: int) -> Delta:
+    """Return the state that an exception passes on, without the object whose `__init__` it has left.
+
+    Nothing refers to this object, unless its `__init__` has stored it elsewhere before.
+    """
+    state = ctx.store.since(depth)
+    for obj, height in ctx.building:
+        if len(ctx.stack) <= height and not any(obj in v.pts for k, v in state.items() if k[0] is not obj):
+            state = {k: v for k, v in state.items() if k[0] is not obj}
+    return state
 
 
 def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:

@@ -129,7 +129,7 @@ class Linker(Interpreter):
     def _run(self, root: Root, run: Callable[[Root], None]) -> None:
         self.store = Store(self.shared, root, gather=self.gathered)
         self.graph.reads = self.store.reads
-        self.stack = []
+        self.stack, self.building = [], []
         self.work.begin(LATE_RUN_LIMIT if self.hurried(root.program) else MAX_STATEMENTS)
         self.graph.edges = self.work.edges_of.get(root.program, 0)
         self.graph.made = self.work.nodes_of.get(root.program, 0)

@@ -61,6 +61,7 @@ class Interpreter:
         self.frames: dict[Hashable, Frame] = {}
         self.frame_numbers: dict[Hashable, int] = {}
         self.stack: list[Frame] = []
+        self.building: list[tuple[Obj, int]] = []  # objects in their `__init__`, with the height of the stack
         self.senders: dict[Obj, object] = {}  # library objects that publish → their description
         self.delivered: frozenset[Obj] = frozenset()  # messages delivered in this run
         self.nullness = NullnessFacts()
