@@ -14,6 +14,7 @@ class Patrol(Node):
         self.x = None
         self.blocked = False
         self.cmd = self.create_publisher(Twist, "cmd_vel", 10)
+        self.say = self.create_publisher(String, "say", 10)
         self.create_subscription(Odometry, "odom", self.on_odom, 10)  # source odom
         self.create_subscription(LaserScan, "scan", self.on_scan, 10)  # source scan
         self.behaviour = self.mission()
@@ -47,6 +48,7 @@ class Patrol(Node):
     def tick(self):
         twist = next(self.behaviour, None)
         if twist is None:
+            self.say.publish(String(data="mission over"))  # sink ~odom
             return
         self.cmd.publish(twist)  # sink odom ~scan
 

@@ -321,6 +321,14 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME(iter([msg.data])))  # data
         out.publish(NAME(iter([1.0])))  # clean
         out.publish(NAME(iter([1.0]), msg.data))  # data
+        out.publish(NAME(iter([(1.0, msg.data)]))[0])  # clean
+        out.publish(NAME(iter([(1.0, msg.data)]))[1])  # data
+        if NAME(iter([[msg.data]]), None) is None:
+            out.publish(1.0)  # clean
+        def some():
+            if msg.data > 0.0:
+                yield 1.0
+        out.publish(NAME(some(), 2.0))  # control
     """,
     ("asyncio.gather",): """
         async def near(): return msg.data
