@@ -358,16 +358,6 @@ def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
     return Value(result.deps | call_contexts.all_used(ctx, it.arguments), result.pts)
 
 
-def next_element(ctx: Interpreter, it: Invocation) -> Value:
-    """Return an element of an iterator; with a default, whether there is one decides."""
-    plain = it.arguments[0]
-    element = heap.elements(ctx, plain[0])
-    if len(plain) == 1:
-        return element
-    decides = iterators.gate(ctx, sizes.length(ctx, plain[0]), it.frame, ("next", it.call.slot))
-    return join_all([element, plain[1], Value(decides)])
-
-
 def is_device(obj: Obj) -> bool:
     """Return whether reading from a library object returns data other than what was written to it."""
     return obj.kind == "lib" and not obj.name.startswith("io.") and obj.name not in PROCESSES

@@ -139,6 +139,16 @@ def gate(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> Node
     return frozenset([node])
 
 
+def next_element(ctx: Interpreter, it: Invocation) -> Value:
+    """Return an element of an iterator; with a default, whether there is one decides."""
+    plain = it.arguments[0]
+    element = heap.elements(ctx, plain[0])
+    if len(plain) == 1:
+        return element
+    decides = gate(ctx, sizes.length(ctx, plain[0]), it.frame, ("next", it.call.slot))
+    return join_all([element, plain[1], Value(decides)])
+
+
 def ordered_by(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
     """Return elements chosen or ordered by `key=`; the results of the key function decide which and where."""
     key = it.arguments[1].get("key")

@@ -402,7 +402,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "functools.reduce": iterators.reduced,
     "min": containers.chosen_element,
     "max": containers.chosen_element,
-    "next": containers.next_element,
+    "next": iterators.next_element,
     "asyncio.gather": futures.gathered_results,
     **dict.fromkeys(catalog.ADDS_STATE, smach.add_state),
     **dict.fromkeys(catalog.STATE_BY_CALLBACKS, smach.state_by_callbacks),
