@@ -295,7 +295,7 @@ def main() -> None:
         help="run everything once, to test the script; the figures mean nothing",
     )
     if parser.parse_args().quick:
-        TURNS, RUNS, STARTS = 1, 1, 2  # the first start does not count
+        TURNS, RUNS, STARTS = 1, 1, 2  # two starts, because the first one is not counted
     names = ("recorded", "an empty hook", "coverage.py", "slipcover")
     print(f"| ns per event over the bare program | {' | '.join(names)} | goal | events |")
     print("|---|---|---|---|---|---|---|")

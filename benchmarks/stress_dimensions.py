@@ -68,7 +68,7 @@ from pytest_tarl.stressing.search import divided, explore  # noqa: E402
 
 FORMULAS = {**WORLDS, **FRESH_WORLDS, **NEW_WORLDS, **FOURTH_WORLDS}
 MACHINES = {**FIFTH_MACHINES, **SIXTH_MACHINES, **SEVENTH_MACHINES}
-HARMLESS: Mapping[str, World | Machine] = {  # nothing in the space breaks the guarantee
+HARMLESS: Mapping[str, World | Machine] = {  # worlds in which no point of the space breaks the guarantee
     "harmless": harmless,
     **QUIET_WORLDS,
     **QUIET_MACHINES,

@@ -55,7 +55,7 @@ def check_writable(path: Path) -> None:
         Path(name).unlink()
     finally:
         for folder in made:
-            with suppress(OSError):  # another run uses the folder, or it was not created
+            with suppress(OSError):  # the folder was not created, or another run uses it
                 folder.rmdir()
 
 

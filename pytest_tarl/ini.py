@@ -86,7 +86,7 @@ def _from_ini(config: pytest.Config, flag: Flag) -> Any:
     name = ini_name(flag)
     try:
         text = config.getini(name)
-    except (TypeError, ValueError) as error:  # a TOML value of another type
+    except (TypeError, ValueError) as error:  # the TOML value has another type
         raise SettingsError(f"{config.inipath}: {name}: {error}") from None
     if text is None or text == []:
         return None

@@ -70,7 +70,7 @@ def _content(path: Path, root: Path) -> bytes | None:
     """Return the content of a path in a header, or None if it is not a readable file below a folder."""
     try:
         return read_regular(path) if path.is_file() and path.resolve().is_relative_to(root) else None
-    except (OSError, ValueError):  # an unreadable file, or an invalid name
+    except (OSError, ValueError):  # the file is unreadable, or its name is invalid
         return None
 
 

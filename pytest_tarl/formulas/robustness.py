@@ -53,7 +53,7 @@ def course(formula: Formula, signals: Mapping[str, Samples]) -> Course:
     visitor = Atoms(signals)
     try:
         return Course(formula, {id(atom): visitor.visit(atom) for atom in atoms(formula.tree)})
-    except Exception as problem:  # rtamt raises bare Exception
+    except Exception as problem:  # rtamt raises instances of Exception itself
         raise SettingsError(
             f"The formula {formula.text!r} has no value: {str(problem).rstrip('.')}. Correct the formula, or the "
             "values of its signals."

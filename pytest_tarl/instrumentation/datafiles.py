@@ -32,7 +32,7 @@ def reading(overlay: Mapping[Path, str]) -> Iterator[None]:
     with ExitStack() as patches:
         patches.enter_context(patch.object(builtins, "open", stand_in))
         patches.enter_context(patch.object(io, "open", stand_in))
-        accessor = getattr(pathlib, "_NormalAccessor", None)  # Python 3.10 keeps io.open there
+        accessor = getattr(pathlib, "_NormalAccessor", None)  # pathlib of Python 3.10 stores io.open here
         if accessor is not None and hasattr(accessor, "open"):
             patches.enter_context(patch.object(accessor, "open", staticmethod(stand_in)))
         yield

@@ -52,7 +52,8 @@ class PinholeCameraModel:
         self.resolution = (msg.width, msg.height)
         self.binning_x, self.binning_y = max(1, msg.binning_x), max(1, msg.binning_y)
         roi = self.raw_roi = copy.copy(msg.roi)
-        if not any((roi.x_offset, roi.y_offset, roi.width, roi.height)):  # all zero: the whole image
+        # a region of zeros stands for the whole image
+        if not any((roi.x_offset, roi.y_offset, roi.width, roi.height)):
             roi.width, roi.height = msg.width, msg.height
         self.tf_frame, self.stamp = msg.header.frame_id, msg.header.stamp
         for row, offset, binning in ((0, roi.x_offset, self.binning_x), (1, roi.y_offset, self.binning_y)):

@@ -17,7 +17,7 @@ from pytest_tarl.ros.service_types import (
     service_type,
 )
 
-Answer = Callable[[Any], None]  # is called with the response, or a Refusal if the handler failed
+Answer = Callable[[Any], None]  # a function that gets the response, or a Refusal if the handler failed
 NO_RESPONSE = "service cannot process request: service handler returned None"
 
 

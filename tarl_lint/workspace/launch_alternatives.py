@@ -101,7 +101,8 @@ def _one_of_two(one: Any, other: Any, text: str, other_text: str, line: int) -> 
         }
     if _data(one) and _data(other):
         return Unknown(line, f"{_text(one)} if {text} else {_text(other)}")
-    return one if not isinstance(one, Unknown) else other  # functions, classes and modules
+    # of functions, classes and modules, the first known one is used
+    return one if not isinstance(one, Unknown) else other
 
 
 def _remaps(value: Any) -> bool:

@@ -173,7 +173,7 @@ def test_each_edit_is_compared_with_the_last_analysis(tmp_path, analysed):
     assert result == Workspace([tmp_path]).lint(second)
 
 
-def test_an_edit_can_be_compared_with_an_old_analysis(tmp_path, analysed):
+def test_an_edit_can_be_compared_with_an_analysis_of_several_runs_ago(tmp_path, analysed):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     for _ in range(3):

@@ -115,7 +115,8 @@ def _read(kind: str, data: bytes, at: int, find: Find) -> tuple[Any, int]:
     count = int(size.rstrip("]") or 0)
     if size == "]":
         (count,), at = _LENGTH.unpack_from(data, at), at + _LENGTH.size
-    if count > len(data):  # cannot be: each element takes at least one byte, unless it is an empty message
+    # impossible, because each element takes at least one byte unless it is an empty message
+    if count > len(data):
         raise WireError(f"an array of {count} elements does not fit {len(data)} bytes")
     if base in ("uint8", "char"):
         if at + count > len(data):

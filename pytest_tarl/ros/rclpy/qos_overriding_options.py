@@ -25,7 +25,7 @@ _ENUMS: dict[str, type[IntEnum]] = {
     "durability": DurabilityPolicy,
     "liveliness": LivelinessPolicy,
 }
-QosCallbackType = Callable[[QoSProfile], Any]  # rclpy's name, for annotations of nodes
+QosCallbackType = Callable[[QoSProfile], Any]  # nodes use this name of rclpy in annotations
 _DURATIONS = ("deadline", "lifespan", "liveliness_lease_duration")
 
 

@@ -185,7 +185,7 @@ class Timer:
         duration: float | None = None
         while not (self._stopped or process.ending):
             if due > clock.time and clock.wait(due):
-                continue  # woken early by a shutdown
+                continue  # a shutdown ended the wait early
             began = clock.time
             now_expected, now_real = Time(0, due), Time(0, began)
             self._callback(TimerEvent(expected, real, now_expected, now_real, duration))

@@ -147,7 +147,8 @@ def message(ctx: Interpreter, record: SourceRecord, target: Obj) -> Obj:
         record.nodes.add(node)
         ctx.graph.begin(node)
         record.callbacks.add(frame.function.qualname if frame is not None else target.name)
-    elif obj.defined and record.types != {obj.defined}:  # registered again with another type
+    # the same object is registered again with another type
+    elif obj.defined and record.types != {obj.defined}:
         obj.defined = ""
         obj.changed(None)
     return obj

@@ -41,7 +41,7 @@ def test_in_an_equal_text_all_lines_that_were_read_have_the_same_numbers():
     assert found == {line: line for line in (1, 3, 4, 5, 7, 10, 11, 12, 14, 15)}
 
 
-def test_lines_move_with_blank_lines_comments_and_longer_unread_bodies():
+def test_lines_move_after_added_blank_lines_comments_and_lines_of_unread_bodies():
     new = OLD.replace("import a\n", "# first\n\nimport a\n").replace("return 1", "z = 1\n        return z")
     found = moved(new)
     assert found is not None
@@ -105,7 +105,7 @@ def test_a_statement_over_several_lines_keeps_its_lines():
     assert moved(old.replace("[\n    1", "[\n    # one\n    1"), old, unread=()) is None
 
 
-def test_changed_functions_of_equal_names_need_another_run():
+def test_changed_functions_of_equal_names_require_a_new_analysis():
     old = "def f():\n    return 1\n\ndef f():\n    return 2\n"
     assert moved(old.replace("2", "3"), old, unread=[(1, 0), (4, 0)]) is None
     assert moved(f"\n{old}", old, unread=[(1, 0), (4, 0)]) == {1: 2, 4: 5}

@@ -206,7 +206,7 @@ PARAMETERS2 = [
 
 
 @pytest.mark.parametrize(("given", "found", "problems"), PARAMETERS2)
-def test_a_parameter_of_a_ros2_node_has_its_value(package, given, found, problems):
+def test_a_parameter_of_a_ros2_node_gets_the_value_in_the_launch_file(package, given, found, problems):
     launch = described(package, f"node(parameters={given})")
     assert settings(launch.nodes[0]) == found
     assert reasons(launch) == problems

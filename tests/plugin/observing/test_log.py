@@ -30,7 +30,7 @@ def test_appended_records_are_read_in_order(tmp_path: Path) -> None:
     assert list(records(tmp_path / "log")) == RECORDS
 
 
-def test_complete_records_of_a_torn_log_are_read_and_writing_continues(tmp_path: Path) -> None:
+def test_complete_records_of_a_truncated_log_are_read_and_writing_continues(tmp_path: Path) -> None:
     content = written(tmp_path / "log", RECORDS)
     ends = [len(MAGIC)]
     for record in RECORDS:

@@ -63,7 +63,7 @@ def test_a_file_cut_off_anywhere_keeps_its_whole_episodes_and_is_continued(
 
 
 @pytest.mark.parametrize("content", [b"", b"tarl epis", b"something else\n", b"tarl episodes 1\n"])
-def test_a_file_without_episodes_keeps_none(tmp_path: Path, content: bytes) -> None:
+def test_no_conditions_are_read_from_a_file_without_episodes(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "a.episodes"
     path.write_bytes(content)
     assert conditions_of(path) is None

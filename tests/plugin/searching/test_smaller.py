@@ -128,7 +128,7 @@ def test_only_named_constants_that_matter_are_changed_and_by_much_less() -> None
     assert smaller(units[0], 1.3, units, gains, ALWAYS) == []
 
 
-def test_the_size_of_a_change_is_that_of_the_value() -> None:
+def test_the_size_of_a_change_is_the_logarithm_of_the_ratio_of_its_values() -> None:
     share = named(3, "SHARE", 0.95)
     assert change_size(Unit((share,)), 0.5) == pytest.approx(math.log(2.0))
     assert change_size(Unit((share,), SHARE), 5.0) == pytest.approx(math.log(0.99 / 0.95))

@@ -177,7 +177,7 @@ def test_the_numbers_of_passed_episodes_that_prove_or_refute_the_guarantee_are_k
     assert most_passed(GIVEN, 32, 0.01) == 23  # 9 failures or more: 0.0038, 8 or more: 0.012
 
 
-def test_a_test_stops_early_if_failures_and_losses_are_far_from_refuting() -> None:
+def test_a_test_stops_early_if_the_guarantee_can_hardly_be_refuted_any_more() -> None:
     nominal = [Outcome(True, 10.0)] * 16
 
     def ends(failed: int, loss: float) -> bool:
