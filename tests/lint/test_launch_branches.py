@@ -302,7 +302,7 @@ class Writer:
 
 
 @given(block=blocks(2, loop=False))
-def test_the_nodes_of_all_branches_of_a_launch_file_are_found(
+def test_the_nodes_are_those_of_all_branches(
     tmp_path_factory: pytest.TempPathFactory, block: Statements
 ) -> None:
     folder, writer = tmp_path_factory.mktemp("w"), Writer()
