@@ -7,15 +7,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Protocol
 
 from pytest_tarl.model import Guard
+from pytest_tarl.searching.exact import exactest
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.plainness import Oddness, writing
 from pytest_tarl.searching.refining import ALMOST, PROMISING, between
-from pytest_tarl.searching.search import Candidate, Goal
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
 ROUNDS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
+LEAST = 0.5  # minimum gain of a unit that is moved to its most exact value, as a share of the wanted gain
 REFINED = 8  # maximum number of runs that refine one operand
 
 
@@ -23,6 +25,8 @@ class Search(Protocol):
     """The parts of the sweep that `Adjusting` uses."""
 
     goal: Goal
+    trials: Trials
+    mutate: Mutate
     proposed: bool
     gains: Gains
     slack: float
@@ -45,6 +49,7 @@ class Adjusting:
     def __init__(self, search: Search) -> None:
         self.search = search
         self.refined: Counter[tuple[Unit, Guard]] = Counter()
+        self._exact: set[tuple[Unit, Guard]] = set()
         self._varied: set[tuple[Unit, Guard, float]] = set()
 
     def refine(self, pair: int) -> Iterator[Candidate]:
@@ -68,6 +73,21 @@ class Adjusting:
             gained = search.gains.most(best)
             if gained <= max(before, PROMISING * wanted) and gained < ALMOST * wanted:
                 return
+
+    def exactly(self, guard: Guard) -> Iterator[Candidate]:
+        """Move the best unit under a guard once to where its missions follow the designed ones most closely.
+
+        Before a unit that gains much is combined with others, its value may only have to be more exact.
+        """
+        search = self.search
+        leaders = () if search.proposed else search.gains.leaders(guard)[:1]
+        for gain, (unit, factor) in leaders:
+            if gain < LEAST * search.goal.wanted or (unit, guard) in self._exact:
+                return
+            self._exact.add((unit, guard))
+            seed = search.goal.pairs[0].seed
+            step, _ = exactest(unit, factor, guard, seed, search.mutate, search.trials)
+            yield from search.attempt(unit, guard, step, 0)
 
     def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
         """Try factors between the operand's best factor and the neighbouring factors, on a log scale."""

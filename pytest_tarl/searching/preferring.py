@@ -7,7 +7,6 @@ them takes only a few episodes.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import inf
 from statistics import fmean
 from typing import Protocol
 
@@ -16,10 +15,10 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, rivals
+from pytest_tarl.searching.exact import exactest
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.gentler import another_way, gentler
-from pytest_tarl.searching.nearest import nearest
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
@@ -155,7 +154,7 @@ class Preferences:
         if self._deviation(found, seeds[:1]) <= EXACT:
             return
         self._compared.add(function)
-        step, least = self._nearest(unit, factor, found.guard, seeds[0])
+        step, least = exactest(unit, factor, found.guard, seeds[0], self.search.mutate, self.search.trials)
         exact = self.search.holding(unit, step, found.guard, pair) if least <= EXACT else None
         if exact is not None:
             yield exact
@@ -176,23 +175,10 @@ class Preferences:
 
     def _nearer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Candidate:
         """Return the confirmed candidate with the factor whose missions are closest to the designed ones."""
-        step, _ = self._nearest(unit, factor, found.guard, self._compared_on(pair)[0])
+        seed = self._compared_on(pair)[0]
+        step, _ = exactest(unit, factor, found.guard, seed, self.search.mutate, self.search.trials)
         candidate = self.search.holding(unit, step, found.guard, pair) if step != factor else None
         return candidate or found
-
-    def _nearest(self, unit: Unit, factor: float, guard: Guard, seed: int) -> tuple[float, float]:
-        """Return the factor whose missions are closest to the designed ones on a seed, and their deviation."""
-
-        def deviation(step: float) -> float:
-            mutations = unit.mutations(self.search.mutate, step)
-            try:
-                return self.search.trials.deviation(Candidate(mutations, guard), [seed])
-            except RepairError:
-                return inf
-
-        if factor <= 0.0 or isinstance(unit.operands[0].value, bool):
-            return factor, deviation(factor)
-        return nearest(factor, deviation)
 
     def _smaller(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
         """Yield a much smaller change of another constant first, unless missions then deviate more from the design."""

@@ -156,6 +156,7 @@ class Sweep:
                 still = [unit for unit in self._families if unit not in leading]
                 yield from self._all(factor, guard, [*leading, *still])
                 yield from self._inward(guard)
+                yield from self.adjusting.exactly(guard)
                 yield from self.combining.leaders(guard)
         if not self.gains.anything():
             yield from self._late_ones(self.aside, chief)
@@ -205,6 +206,7 @@ class Sweep:
             yield from self._all(factor, guard, leading[:LEADING])
         yield from self._uses_apart(guard, block)
         yield from self._inward(guard)
+        yield from self.adjusting.exactly(guard)
         yield from self.combining.leaders(guard)
         yield from self.combining.unmasked(guard)
 
