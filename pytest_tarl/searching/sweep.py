@@ -204,11 +204,11 @@ class Sweep:
         for factor, before in () if self.gains.anything() else FURTHER:
             leading = self._leading(before, guard, self.goal.wanted * HINT)
             yield from self._all(factor, guard, leading[:LEADING])
-        yield from self._uses_apart(guard, block)
         yield from self._inward(guard)
         yield from self.adjusting.exactly(guard)
         yield from self.combining.leaders(guard)
         yield from self.combining.unmasked(guard)
+        yield from self._uses_apart(guard, block)
 
     def _uses_apart(self, guard: Guard, block: Sequence[Unit]) -> Iterator[Candidate]:
         """Change a constant at one of its uses only, because its effects at several uses may cancel each other."""
