@@ -141,7 +141,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
             yield tarl
     finally:
         try:
-            episode.trace = tarl.rewarded(recorder.finish())
+            episode.trace = tarl.rewarded(recorder.finish(signed=episode.plan.signed))
             episode.judged = tarl.judged
             episode.topics, episode.values = dict(tarl.topics), tarl.values
             episode.outputs = outputs.sums

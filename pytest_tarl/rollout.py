@@ -19,7 +19,8 @@ KEPT = 6  # number of started episodes that a worker keeps while other episodes 
 class EpisodePlan:
     """One planned run of a test. `overlay` maps files to replacement texts; with `record`, nodes are instrumented.
 
-    With `outputs`, the messages that the nodes publish are summed up.
+    With `outputs`, the messages that the nodes publish are summed up. With `signed`, which needs `record`, the trace
+    holds numbers with their signs in place of flow values.
 
     With a `bag`, the mission in the bag replaces the test's world. If `drift` is a space, `point` is a point of it;
     without `point`, the seed determines a random one.
@@ -32,6 +33,7 @@ class EpisodePlan:
     bag: Path | None = None
     point: Mapping[str, float] | None = None
     outputs: bool = False
+    signed: bool = False
 
 
 @dataclass(frozen=True)

@@ -39,9 +39,12 @@ def joined(parts: Sequence[Pairs]) -> Pairs:
 
 def sizes(flow: Floats) -> Floats:
     """Return the flow value (see `magnitude`) of each float in `flow`; both have shape (events,)."""
-    flow = np.minimum(np.abs(flow), np.where(np.isinf(flow), np.inf, LIMIT))
-    flow[~np.isfinite(flow)] = 0.0
-    return flow
+    return np.abs(limited(flow))
+
+
+def limited(values: Floats) -> Floats:
+    """Return the values with their signs, limited to ±LIMIT; infinity and NaN become 0. Both have shape (events,)."""
+    return np.where(np.isfinite(values), np.clip(values, -LIMIT, LIMIT), 0.0)
 
 
 def _whole(entries: list[Any]) -> list[int]:

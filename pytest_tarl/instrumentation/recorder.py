@@ -17,7 +17,7 @@ import numpy as np
 
 from pytest_tarl.instrumentation.constants import bound
 from pytest_tarl.instrumentation.entries import Entries, SharedEntries
-from pytest_tarl.instrumentation.events import Pairs, joined, paired, sizes
+from pytest_tarl.instrumentation.events import Pairs, joined, limited, paired, sizes
 from pytest_tarl.instrumentation.magnitude import magnitude
 from pytest_tarl.instrumentation.threads import ThreadWatch
 from pytest_tarl.instrumentation.trace import Floats, Ints, Trace
@@ -106,20 +106,20 @@ class Recorder:
         if self._packing and len(self._own.entries) > MANY and threading.get_ident() == self._maker:
             self._own.pack()
 
-    def finish(self) -> Trace:
-        """End the episode and return its trace. Later events are dropped."""
+    def finish(self, *, signed: bool = False) -> Trace:
+        """End the episode and return its trace; if `signed`, numbers keep their signs. Later events are dropped."""
         self._watch.end()
         parts = [self._columns(buffer, number) for number, buffer in enumerate(self._buffers)]
         columns = [np.concatenate(part) for part in zip(*parts, strict=True)]
         if len(self._buffers) > 1:
             order = np.lexsort((columns[4], columns[3]))
             columns = [column[order] for column in columns]
-        site, flow, event_cell, event_step, thread = columns
+        site, values, event_cell, event_step, thread = columns
         latched = np.array(self._latched, np.int32)
         return Trace(
             cells=tuple(self._cells),
             site=site,
-            flow=flow,
+            flow=limited(values) if signed else sizes(values),
             event_cell=event_cell,
             event_step=event_step,
             step_cell=latched[self._rewards],
@@ -150,7 +150,7 @@ class Recorder:
         self._own.entries.__class__ = SharedEntries
 
     def _columns(self, buffer: _Buffer, number: int) -> tuple[Ints, Floats, Ints, Ints, Ints]:
-        """Return site, flow, cell, step and thread of one thread's events, each of shape (events,)."""
+        """Return site, value, cell, step and thread of one thread's events, each of shape (events,)."""
         buffer.pack()
         site, flow, starts = joined(buffer.packed)
         before = np.searchsorted(starts, np.array(buffer.lengths, np.int64), side="left")
@@ -161,7 +161,7 @@ class Recorder:
         closing[np.array(self._rewards, np.int64) + 1] = 1
         steps = np.minimum(np.cumsum(closing), max(0, len(self._rewards) - 1)).astype(np.int32)
         thread = np.full(len(site), number, np.int32)
-        return site, sizes(flow), np.repeat(cells, between), np.repeat(steps, between), thread
+        return site, flow, np.repeat(cells, between), np.repeat(steps, between), thread
 
     def _part_columns(self) -> dict[str, Floats]:
         names = dict.fromkeys(name for parts in self._parts for name in parts)

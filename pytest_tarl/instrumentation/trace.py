@@ -26,7 +26,7 @@ class Trace:
 
     cells: tuple[Cell, ...]
     site: Ints
-    flow: Floats  # finite, at least 0
+    flow: Floats  # finite; at least 0 unless the episode was planned with `signed`
     event_cell: Ints
     event_step: Ints
     step_cell: Ints  # the cell of each step, at the time of its reward

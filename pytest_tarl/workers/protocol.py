@@ -43,7 +43,13 @@ def read(pipe: BinaryIO) -> bytes | None:
 def plan_message(plan: EpisodePlan) -> bytes:
     """Encode a plan."""
     overlay = {str(path): text for path, text in plan.overlay.items()}
-    head = {"seed": str(plan.seed), "drift": plan.drift, "overlay": overlay, "record": plan.record}
+    head = {
+        "seed": str(plan.seed),
+        "drift": plan.drift,
+        "overlay": overlay,
+        "record": plan.record,
+        "signed": plan.signed,
+    }
     point = None if plan.point is None else dict(plan.point)
     return _joined({**head, "bag": str(plan.bag or ""), "point": point, "outputs": plan.outputs}, {})
 
@@ -54,7 +60,7 @@ def planned(message: bytes) -> EpisodePlan:
     overlay = {Path(path): text for path, text in head["overlay"].items()}
     bag = Path(head["bag"]) if head["bag"] else None
     given = (int(head["seed"]), head["drift"], overlay, head["record"], bag, head["point"])
-    return EpisodePlan(*given, outputs=head["outputs"])
+    return EpisodePlan(*given, outputs=head["outputs"], signed=head["signed"])
 
 
 def run_message(run: EpisodeRun) -> bytes:

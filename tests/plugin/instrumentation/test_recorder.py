@@ -46,6 +46,14 @@ def test_events_are_in_order_with_their_flow_values(threads):
     assert trace.thread is None
 
 
+def test_numbers_keep_their_signs_if_the_episode_was_planned_so():
+    recorder = Recorder()
+    program(recorder)["work"]([-0.5, -2, math.nan])
+    recorder.reward(1.0)
+    # in each round: the value, its double, and whether the double is larger than 2; NaN is no measurement
+    assert recorder.finish(signed=True).flow.tolist() == [-0.5, -1.0, 0.0, -2.0, -4.0, 0.0, 0.0, 0.0, 0.0]
+
+
 def test_events_after_a_reward_belong_to_the_step_that_the_reward_ended():
     recorder = Recorder()
     for step in range(3):

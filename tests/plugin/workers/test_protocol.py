@@ -25,6 +25,7 @@ PLAN = EpisodePlan(
     bag=Path("/bags/one"),
     point={"friction": 0.25},
     outputs=True,
+    signed=True,
 )
 
 
