@@ -1,0 +1,50 @@
+"""The values of one statement in one mission, and pairs of missions with one seed, one in each world."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.instrumentation.trace import Floats
+
+Ints = NDArray[np.int32]
+TAILS = 0.02  # share of the values on each side that `scale` leaves out
+
+
+@dataclass(frozen=True)
+class Series:
+    """The values of a statement, of shape (values,), the step of each, and the mission's rewards, of shape (steps,)."""
+
+    values: Floats
+    step: Ints
+    reward: Floats
+
+    def until(self, steps: int) -> Series:
+        """Return the series of the first steps of the mission."""
+        early = self.step < steps
+        return Series(self.values[early], self.step[early], self.reward[:steps])
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A statement's series in two missions with one seed."""
+
+    designed: Series
+    drifted: Series
+
+    def together(self) -> Pair:
+        """Return both series up to the end of the shorter mission, so that neither has progressed further."""
+        steps = min(len(self.designed.reward), len(self.drifted.reward))
+        return Pair(self.designed.until(steps), self.drifted.until(steps))
+
+
+def scale(pairs: Sequence[Pair]) -> float:
+    """Return the range of the designed values, without the `TAILS`; 0 if there are no values."""
+    values = np.concatenate([pair.designed.values for pair in pairs] or [np.zeros(0)])
+    if not values.size:
+        return 0.0
+    low, high = np.quantile(values, (TAILS, 1.0 - TAILS))
+    return float(high - low)

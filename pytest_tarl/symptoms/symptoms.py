@@ -1,0 +1,198 @@
+"""The symptoms, each a function of a statement's series in a few mission pairs.
+
+A symptom returns its strength from 0 (no sign of it) to 1. Values are compared with the designed missions, because a
+program may be noisy or swing by design.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from statistics import fmean
+
+import numpy as np
+
+from pytest_tarl.instrumentation.trace import Floats
+from pytest_tarl.symptoms.series import Pair, Series, scale
+
+Symptom = Callable[[Sequence[Pair]], float]
+
+TALL = 0.25  # minimum height of a spike, as a share of the range of the values
+BACK = 0.5  # maximum change across a spike, as a share of its height
+SPIKES = 0.04  # additional share of spikes that counts as certain
+ROUGH = 0.01  # roughness that does not matter, as a share of the range of the values
+ROUGHER = (1.5, 6.0)  # growth of the roughness at which noise begins, and at which it is certain
+SWITCHES = 0.1  # additional share of steps with a switch that counts as certain
+JUMP = 0.4  # minimum change from one value to the next that counts as a jump, as a share of the range
+SOON = 5  # maximum number of steps from a jump to the loss that it causes
+LOSS = 0.02  # minimum additional loss of a step that counts, as a share of a designed mission's reward
+STEADY = 0.02  # standard deviation at the end of a mission that does not matter, as a share of the range
+SWINGS = (2.0, 6.0)  # growth of that standard deviation at which a swing begins, and at which it is certain
+CROSSINGS = 3  # minimum number of times that a swing crosses its mean
+ASIDE = 0.5  # growth of the mean at the end that counts as a certain offset, as a share of the range
+GROWTH = 0.2  # (end - start) / (end + start) of a value that certainly runs away
+FEWEST = 6  # minimum number of values in a series
+
+
+def spikes(pairs: Sequence[Pair]) -> float:
+    """Return how strongly single values stick out between two similar ones."""
+    height = max(scale(pairs), scale([Pair(pair.drifted, pair.designed) for pair in pairs]))
+    return _more(pairs, lambda series: _lone(series.values, height), SPIKES)
+
+
+def noise(pairs: Sequence[Pair]) -> float:
+    """Return how much rougher the values have become: the median of their absolute second differences."""
+    least = ROUGH * scale(pairs)
+    designed = fmean(_roughness(pair.designed.values) for pair in pairs)
+    drifted = fmean(_roughness(pair.drifted.values) for pair in pairs)
+    return _grown(designed + least, drifted + least, ROUGHER)
+
+
+def chatter(pairs: Sequence[Pair]) -> float:
+    """Return how much more often the values cross the middle of their range."""
+    values = np.concatenate([one.values for pair in pairs for one in (pair.designed, pair.drifted)])
+    if not values.size or values.min() == values.max():
+        return 0.0
+    middle = (values.min() + values.max()) / 2
+    return _more(pairs, lambda series: _switches(series.values > middle), SWITCHES)
+
+
+def jumps(pairs: Sequence[Pair]) -> float:
+    """Return how much likelier losses are soon after a jump of the value.
+
+    A value that is about the same before each loss is no cause of them. The share of losses with a jump in the `SOON`
+    steps before is therefore reduced by the same share of all steps of the designed missions.
+    """
+    height = JUMP * max(scale(pairs), max((_largest(pair.designed.values) for pair in pairs), default=0.0))
+    after, usual = [], []
+    for pair in pairs:
+        shaken = _soon(pair.drifted, height)
+        after += [float(shaken[step]) for step in losses(pair)]
+        usual.append(float(_soon(pair.designed, height).mean()) if pair.designed.reward.size else 0.0)
+    return max(fmean(after) - fmean(usual), 0.0) if after and height else 0.0
+
+
+def offset(pairs: Sequence[Pair]) -> float:
+    """Return how far the value stays on one side of zero in the second half, while it nears zero by design."""
+    both = [pair.together() for pair in pairs]
+    size = scale(both)
+    ends = [(_late(pair.designed.values), _late(pair.drifted.values)) for pair in both]
+    if not size or any(one.size < FEWEST // 2 or other.size < FEWEST // 2 for one, other in ends):
+        return 0.0
+    designed, drifted = (fmean(abs(float(each[at].mean())) for each in ends) for at in (0, 1))
+    left = min(designed / (max(_largest(pair.designed.values) for pair in both) or 1.0), 1.0)
+    one_sided = fmean(_one_sided(other) for _, other in ends)
+    return float(one_sided * (1.0 - left) * np.clip((drifted - designed) / (ASIDE * size), 0.0, 1.0))
+
+
+def swing(pairs: Sequence[Pair]) -> float:
+    """Return how much the value swings slowly in the second half, compared with the designed missions."""
+    least = STEADY * scale(pairs)
+    ends = [(_late(pair.designed.values), _late(pair.drifted.values)) for pair in pairs]
+    if not least or any(one.size < FEWEST or other.size < FEWEST for one, other in ends):
+        return 0.0
+    designed, drifted = (fmean(float(each[at].std()) for each in ends) for at in (0, 1))
+    return _grown(designed + least, drifted, SWINGS) * fmean(_smoothness(other) for _, other in ends)
+
+
+def runaway(pairs: Sequence[Pair]) -> float:
+    """Return how much the value's size grows during a mission, while it shrinks by design."""
+    both = [pair.together() for pair in pairs]
+    grown = fmean(_growth(pair.drifted.values) - max(_growth(pair.designed.values), 0.0) for pair in both)
+    return float(np.clip(grown / GROWTH, 0.0, 1.0)) * fmean(
+        _one_sided(_late(pair.drifted.values)) for pair in both
+    )
+
+
+SYMPTOMS: Mapping[str, Symptom] = {
+    "chatter": chatter,
+    "jumps": jumps,
+    "noise": noise,
+    "offset": offset,
+    "runaway": runaway,
+    "spikes": spikes,
+    "swing": swing,
+}
+RECEIVED = ("noise", "spikes")  # symptoms that are treated where a value is received, not where it is sent
+
+
+def losses(pair: Pair) -> list[int]:
+    """Return the steps of the drifted mission that lose more than any step of the designed one."""
+    designed = pair.designed.reward
+    if not designed.size:
+        return []
+    least = designed.min() - LOSS * abs(designed.sum())
+    return np.flatnonzero(pair.drifted.reward < least).tolist()
+
+
+def _more(pairs: Sequence[Pair], share: Callable[[Series], float], certain: float) -> float:
+    """Return by how much a share has grown, as a share of the growth that counts as certain."""
+    grown = fmean(share(pair.drifted) for pair in pairs) - fmean(share(pair.designed) for pair in pairs)
+    return float(np.clip(grown / certain, 0.0, 1.0))
+
+
+def _grown(before: float, after: float, growth: tuple[float, float]) -> float:
+    """Return the place of after / before between two growths, on a log scale from 0 to 1."""
+    if before <= 0.0 or after <= 0.0:
+        return 0.0
+    low, high = np.log(growth)
+    return float(np.clip((np.log(after / before) - low) / (high - low), 0.0, 1.0))
+
+
+def _lone(values: Floats, height: float) -> float:
+    """Return the share of values that differ from both neighbours, in the same direction, by `TALL` of a height."""
+    if values.size < FEWEST or not height:
+        return 0.0
+    before, value, after = values[:-2], values[1:-1], values[2:]
+    up, down = value - before, value - after
+    tall = np.where(up * down > 0.0, np.minimum(np.abs(up), np.abs(down)), 0.0)
+    return float(np.mean((tall >= TALL * height) & (np.abs(after - before) <= BACK * tall)))
+
+
+def _roughness(values: Floats) -> float:
+    return float(np.median(np.abs(np.diff(values, 2)))) if values.size >= FEWEST else 0.0
+
+
+def _switches(above: np.ndarray) -> float:
+    return float(np.mean(above[1:] != above[:-1])) if above.size >= FEWEST else 0.0
+
+
+def _soon(series: Series, height: float) -> np.ndarray:
+    """Return for each step whether the value jumped in it or in the `SOON` steps before, boolean of shape (steps,)."""
+    found = np.zeros(len(series.reward), dtype=bool)
+    # the first value counts as a jump from zero, such as a command to a robot at rest
+    jumped = np.abs(np.diff(series.values, prepend=0.0)) >= height
+    for step in set(series.step[jumped].tolist()):
+        found[step : step + SOON + 1] = True
+    return found
+
+
+def _largest(values: Floats) -> float:
+    return float(np.abs(values).max()) if values.size else 0.0
+
+
+def _late(values: Floats) -> Floats:
+    return values[values.size // 2 :]
+
+
+def _one_sided(values: Floats) -> float:
+    """Return |mean| / root mean square: 1 for values that are all equal, 0 if they lie evenly around zero."""
+    size = float(np.sqrt((values**2).mean())) if values.size else 0.0
+    return abs(float(values.mean())) / size if size else 0.0
+
+
+def _smoothness(values: Floats) -> float:
+    """Return the correlation of successive values, or 0 if they cross their mean fewer than `CROSSINGS` times."""
+    around = values - values.mean()
+    spread = float((around**2).mean())
+    if not spread or int((around[1:] * around[:-1] < 0.0).sum()) < CROSSINGS:
+        return 0.0
+    return max(float((around[1:] * around[:-1]).mean()) / spread, 0.0)
+
+
+def _growth(values: Floats) -> float:
+    """Return (end - start) / (end + start) of the mean size in the last and the first third of the values."""
+    if values.size < FEWEST:
+        return 0.0
+    part = values.size // 3
+    start, end = float(np.abs(values[:part]).mean()), float(np.abs(values[-part:]).mean())
+    return (end - start) / (end + start) if end + start else 0.0
