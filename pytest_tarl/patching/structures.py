@@ -43,7 +43,7 @@ class Keeper:
 
 def described(form: Form, x: str, y: str, values: Mapping[str, float], sensor: str = "") -> str:
     """Describe the effect of a form in a sentence."""
-    texts = {name: number(float(value)) for name, value in values.items()}
+    texts = _numbers(form.template, values)
     left, op, right = _compared(x)
     named = {"left": left, "op": op, "right": right, "closed": _CLOSED.get(op, "")}
     return plainly(form.template.summary, {"x": x, "y": y, "sensor": sensor, **named, **texts})
@@ -55,7 +55,7 @@ def form_edits(
     """Return the edits that write a form at an expression. Raise RepairError if it cannot be written there."""
     made = form.template
     statement = source.statement(node)
-    fill = {name: number(float(value)) for name, value in values.items()} | {"sensor": sensor}
+    fill = _numbers(made, values) | {"sensor": sensor}
     keeper = _keeper(source, statement) if made.state else None
     taken = set(names(source)) | class_attributes(source)
     states = {}
@@ -70,6 +70,12 @@ def form_edits(
     ):  # first the edits that declare the state, because `global` has to precede the lines that use it
         found = _state_edits(keeper, [(states[name], initial) for name, initial in made.state]) + found
     return found
+
+
+def _numbers(template: Template, values: Mapping[str, float]) -> dict[str, str]:
+    """Return the code of each parameter's value; counts, whose grid is 1, are written as integers."""
+    counts = {one.name for one in template.parameters if one.grid == 1.0}
+    return {name: number(round(value) if name in counts else float(value)) for name, value in values.items()}
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from typing import Any
 
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.patching.expressions import ARITHMETIC, ATOM, TERM, enclosed
+from pytest_tarl.symptoms.symptoms import SYMPTOMS
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -37,7 +38,18 @@ STRONGER = ("larger", "smaller")
 WITHOUT = ("", "factor", "term")
 # placeholders of comparisons: the operator, its form with or without equality, its reverse
 OPERATORS = ("op", "closed", "back")
-_KEYS = {"summary", "on", "without", "cost", "lines", "expression", "state", "parameters", "example"}
+_KEYS = {
+    "summary",
+    "on",
+    "without",
+    "cost",
+    "lines",
+    "expression",
+    "state",
+    "symptoms",
+    "parameters",
+    "example",
+}
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 _ADDED = re.compile(r"\+ \{(\w+)\}$")
 _NEGATIVE = re.compile(r"-([0-9][0-9.e+-]*)")
@@ -75,6 +87,7 @@ class Template:
     state: tuple[tuple[str, str], ...] = ()
     parameters: tuple[Parameter, ...] = ()
     without: str = ""
+    symptoms: tuple[str, ...] = ()  # symptoms that speak for the template (see `pytest_tarl.symptoms`)
 
     def uses(self, placeholder: str) -> int:
         """Return how often a placeholder occurs in the lines and the expression."""
@@ -118,6 +131,7 @@ def template(path: Path) -> Template:
             tuple((name, str(initial)) for name, initial in data.get("state", {}).items()),
             parameters,
             str(data.get("without", "")),
+            tuple(map(str, data.get("symptoms", ()))),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
         raise SettingsError(
@@ -128,6 +142,11 @@ def template(path: Path) -> Template:
         raise SettingsError(f"{path}: on = {made.on!r} is unknown; use one of {', '.join(KINDS)}.")
     if made.without not in WITHOUT:
         raise SettingsError(f"{path}: without = {made.without!r} is unknown; use factor or term, or omit it.")
+    for name in made.symptoms:
+        if name not in SYMPTOMS:
+            raise SettingsError(
+                f"{path}: the symptom {name!r} is unknown; known are {', '.join(sorted(SYMPTOMS))}."
+            )
     _check_placeholders(path, made)
     return made
 

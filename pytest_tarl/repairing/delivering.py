@@ -25,7 +25,7 @@ from pytest_tarl.repairing.ledger import Refused, Tried
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.partial import Best
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repairing.structural import form_words
+from pytest_tarl.repairing.template_forms import form_words
 from pytest_tarl.report import amounts, guarantees, next_commands, repair_words, words
 from pytest_tarl.searching.plainness import edges
 from pytest_tarl.searching.search import Candidate, effective_value

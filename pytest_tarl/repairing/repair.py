@@ -14,11 +14,13 @@ from pytest_tarl.repairing.accepting import Accepted, Examiner
 from pytest_tarl.repairing.budget import Purse
 from pytest_tarl.repairing.confirmed_effects import with_confirmed
 from pytest_tarl.repairing.delivering import attempts, delivered, partial, remarks, withheld
+from pytest_tarl.repairing.early import Early
 from pytest_tarl.repairing.enriching import enriched
 from pytest_tarl.repairing.exceeding import exceeding
 from pytest_tarl.repairing.guaranteeing import guaranteed
 from pytest_tarl.repairing.incumbent import Watch
 from pytest_tarl.repairing.ledger import Refused
+from pytest_tarl.repairing.mission_pairs import NO_SIGNS
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.partial import best
 from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, repaired_sizes
@@ -58,6 +60,7 @@ class _Findings:
     episodes: int = 0
     ranking: Ranking | None = None  # None unless all sites were ranked
     structure: int = 0  # number of episodes spent on structural changes; included in `episodes`
+    early: Early | None = None  # the structural changes tried within the last search
 
     def take(self, purse: Purse) -> None:
         """Add the episodes that a budget spent."""
@@ -113,7 +116,10 @@ def _search(
     trials = purse.phase(mutants, method, watch, share)
     if share < 1.0:
         trials.reserve, trials.worth = round(RESERVE * (purse.episodes - purse.spent)), mutants.order.goal
-    strategy = strategies.strategy(mutants, method, searched, trials)
+    early = Early(mutants.order, _chief(searched), trials)
+    strategy = strategies.strategy(
+        mutants, method, searched, trials, early.candidates if share < 1.0 else lambda: iter(())
+    )
     try:
         if found.accepted is None:
             found.accepted = examiner.first(strategy.candidates(), trials)
@@ -121,8 +127,12 @@ def _search(
             _exhibit(strategy)
     except KeyboardInterrupt:
         found.interrupted = True
-    if not found.effects:
+    if found.accepted is not None and any(one.form for one in found.accepted.candidate.mutations):
+        found.effects, found.method = early.effects(), "structure"
+        found.structure = early.spent
+    elif not found.effects:
         found.effects, found.method = strategy.effects(), method
+    found.early = early
     found.curves += (SearchTrace(method, tuple(trials.totals), tuple(trials.labels)),)
     purse.settle(trials)
 
@@ -137,8 +147,11 @@ def _restructure(
 ) -> None:
     """Spend the remaining episodes on structural changes, because no change of constants was accepted."""
     trials = purse.phase(mutants, "structure", watch)
-    chief = tuple(dict.fromkeys((candidates.ALWAYS, searched[0])))
-    structures = Structures(mutants.order, chief, trials, found.effects or {})
+    signs = NO_SIGNS
+    if found.early is not None:
+        trials.know(found.early.trials)
+        signs = found.early.signs(trials)
+    structures = Structures(mutants.order, _chief(searched), trials, found.effects or {}, signs)
     examiner.turns += 1
     try:
         found.accepted = examiner.first(structures.candidates(), trials)
@@ -149,6 +162,11 @@ def _restructure(
     found.curves += (SearchTrace("structure", tuple(trials.totals), tuple(trials.labels)),)
     purse.settle(trials)
     found.structure = trials.spent
+
+
+def _chief(searched: Sequence[Guard]) -> tuple[Guard, ...]:
+    """Return the guards of structural changes."""
+    return tuple(dict.fromkeys((candidates.ALWAYS, searched[0])))
 
 
 def _rank(mutants: Mutants, found: _Findings, guard: Guard, watch: Watch) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from pytest_tarl import seeds
@@ -19,7 +19,7 @@ from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
 from pytest_tarl.searching.halving import Halving
 from pytest_tarl.searching.plainness import writing
 from pytest_tarl.searching.ranking import Ranking
-from pytest_tarl.searching.search import Strategy, Trials
+from pytest_tarl.searching.search import Candidate, Strategy, Trials
 from pytest_tarl.searching.sweep import Sweep
 from tarl_lint.api import Analysis
 from tarl_lint.model import Operand, SiteId
@@ -27,8 +27,17 @@ from tarl_lint.model import Operand, SiteId
 MOST_GUARDS = 3  # maximum number of guards per search
 
 
-def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Trials) -> Strategy:
-    """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins."""
+def strategy(
+    mutants: Mutants,
+    method: str,
+    guards: Sequence[Guard],
+    trials: Trials,
+    interlude: Callable[[], Iterator[Candidate]] = lambda: iter(()),
+) -> Strategy:
+    """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
+
+    The sweep calls `interlude` before each of its steps.
+    """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
     if method == "sweep":
@@ -45,6 +54,7 @@ def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Tri
             structure_follows=order.options.structure,
             charts=charts(order, moved),
             scope=name_scope(order.analysis),
+            interlude=interlude,
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

@@ -5,40 +5,29 @@ Each parameter of a template at an expression is an operand like any other, so t
 
 from __future__ import annotations
 
-import ast
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
 from types import MappingProxyType
 
 from pytest_tarl.model import Guard, OperandEffect
-from pytest_tarl.patching.document import Document, document
-from pytest_tarl.patching.mutate import Mutation, form_values
-from pytest_tarl.patching.structures import Form, described
-from pytest_tarl.patching.templates import FIXED, OF_SENSORS, Template, templates
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.structures import Form
+from pytest_tarl.patching.templates import OF_SENSORS, Template, templates
+from pytest_tarl.repairing.evident import evident
+from pytest_tarl.repairing.mission_pairs import NO_SIGNS, Signs
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repairing.telling_sensors import continuous, telling, usual
-from pytest_tarl.repairing.template_places import Spot, pairs, spots
+from pytest_tarl.repairing.telling_sensors import OVERLAP, telling, varies
+from pytest_tarl.repairing.template_forms import fixed, forms
+from pytest_tarl.repairing.template_places import Spot, spots
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.sensors import Sensor
-from tarl_lint.model import Operand, Span
+from tarl_lint.model import Operand
 
-MOST = {
-    "value": 5,
-    "input": 3,
-    "number": 5,
-    "comparison": 5,
-    "pair": 4,
-    "sent": 3,
-    "sensor": 3,
-    "sent by sensor": 2,
-}  # kind of template → maximum number of expressions at which to try one
 COMMANDED = ("stored", "sent")  # kinds of expressions that go into a published message
-NUMBERS = ("value", "input", "stored", "sent")  # kinds of expressions that templates for any number fit
-RESPONDS = 0.2  # a statement responds if one of its constants gains at least this share of the wanted gain
+RESPONDS = 0.2  # minimum gain of a constant whose statement responds, as a share of the wanted gain
 FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
-CLAMPS = ("clamp", "clip", "saturate", "constrain")
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
 LEAST = 50
@@ -50,14 +39,23 @@ COMMANDS = 3  # maximum number of commands that are scaled or shifted before all
 LEAST_EACH = 4
 
 
+@dataclass(frozen=True)
+class _Group:
+    """Operands that are searched together; `share` returns their episodes, given their equal share and all left."""
+
+    operands: Sequence[Operand]
+    share: Callable[[int, int], int] = lambda share, _: share
+
+
 class Structures:
     """A search over templates, cheapest first; for each kind, the best `FIRST` expressions come first.
 
-    Templates of equal cost form a group. A group gets a part of the episodes, in proportion to its number of
-    parameters. If one of its templates gains much, the group also gets half of the episodes left for the other groups.
-    The statements whose constants gained come first (`effects`, by the statement's id), and the best of them has a
-    group of its own. Changes of a whole command by a gain or an offset come before all others, because they compensate
-    for an actuator whatever the node computes.
+    Changes for which the recorded missions speak (`signs`) come before all others. Templates of equal cost form a
+    group. A group gets a part of the episodes, in proportion to its number of parameters. If one of its templates gains
+    much, the group also gets half of the episodes left for the other groups. The statements whose constants gained come
+    first (`effects`, by the statement's id), and the best of them has a group of its own. Changes of a whole command by
+    a gain or an offset come before those without symptoms, because they compensate for an actuator whatever the node
+    computes.
     """
 
     def __init__(
@@ -66,8 +64,10 @@ class Structures:
         guards: Sequence[Guard],
         trials: Trials,
         effects: Mapping[str, Sequence[OperandEffect]] = MappingProxyType({}),
+        signs: Signs = NO_SIGNS,
     ) -> None:
         self.order = order
+        self.signs = signs
         self.responding = _responding(effects, order.goal.wanted)
         self.guards = guards
         self.trials = trials
@@ -75,17 +75,46 @@ class Structures:
         self._found: dict[Operand, Form] = {}
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield confirmed candidates, cheap templates first. Raise BudgetSpentError."""
+        """Yield confirmed candidates: first those with symptoms, then cheap templates. Raise BudgetSpentError."""
         known, places = templates(self.order.root), list(spots(self.order, self.responding))
-        told = self._told(known, places)
-        sent = self._at_commands(known, places)
-        near = self._at_the_best(known, places)
-        groups = [group for group in (told, sent, near) if group] + self._groups(known, places)
+        first = [
+            _Group(self._evident(known, places), lambda share, left: max(share, left // 2)),
+            _Group(
+                self._told(known, places, self._telling()),
+                lambda share, left: min(max(share, LEAST), left // 3),
+            ),
+            self._at_commands(known, places),
+            _Group(self._at_the_best(known, places), lambda share, left: max(share, left // 2)),
+        ]
+        yield from self._searched([group for group in first if group.operands] + self._groups(known, places))
+
+    def early(self, most: int) -> Iterator[Candidate]:
+        """Yield confirmed candidates of the changes with symptoms; spend `most` episodes, more if one gains much.
+
+        Among them are the templates with a telling sensor that varies, because no constant fits all its values.
+        """
+        order = self.order
+        known, places = templates(order.root), list(spots(order))
+        varying = [one for one in self._telling() if order.goal.ranged or varies(order, one)]
+        found = [self._evident(known, places), self._told(known, places, varying)]
+        groups = [_Group(operands, lambda share, _: share // 2) for operands in found]
+        trials = self.trials
+        budget, reserve, worth, spent = trials.budget, trials.reserve, trials.worth, trials.spent
+        trials.budget = min(spent + 2 * most, budget)
+        try:
+            yield from self._searched([group for group in groups if group.operands])
+        except BudgetSpentError:
+            pass
+        finally:
+            trials.budget, trials.reserve, trials.worth = budget, reserve, worth
+
+    def _searched(self, groups: Sequence[_Group]) -> Iterator[Candidate]:
+        """Search groups one after another, each with its share of the budget. Raise BudgetSpentError."""
         whole = self.trials.budget
-        sizes = [len(operands) for operands in groups]
-        for number, operands in enumerate(groups):
+        sizes = [len(group.operands) for group in groups]
+        for number, group in enumerate(groups):
             sweep = Sweep(
-                operands,
+                group.operands,
                 self.mutate,
                 self.guards,
                 self.trials,
@@ -97,13 +126,7 @@ class Structures:
             )
             self._sweeps.append(sweep)
             left = whole - self.trials.spent
-            share = left * sizes[number] // sum(sizes[number:])
-            if operands is told:
-                share = min(max(share, LEAST), left // 3)
-            elif operands is sent:
-                share = min(max(share, LEAST_EACH * len(sent)), left // 3)
-            elif operands is near:
-                share = max(share, left // 2)
+            share = group.share(left * sizes[number] // sum(sizes[number:]), left)
             limit = whole if number == len(groups) - 1 else whole - int(KEPT * (left - share))
             self.trials.budget = self.trials.spent + share
             self.trials.reserve, self.trials.worth = (left - share) // 2, self.order.goal
@@ -165,26 +188,38 @@ class Structures:
         return [
             other
             for other, its in self._found.items()
-            if other.span == operand.span and replace(its, parameter="") == bare and _fixed(its)
+            if other.span == operand.span and replace(its, parameter="") == bare and fixed(its)
         ]
 
-    def _told(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
-        """Return the operands of templates with a telling sensor (see `telling_sensors`), at all expressions."""
-        sensors = telling(self.order)
+    def _evident(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
+        """Return the operands of the changes for which the recorded missions speak."""
+        found = dict(evident(self.order, known, among, self.signs))
+        self._found |= found
+        return [operand for operand, form in found.items() if not fixed(form)]
+
+    def _telling(self) -> list[Sensor]:
+        """Return the telling sensors, without those that tell only since drifted missions end early."""
+        return [one for one in telling(self.order) if self.signs.overlap(self.order, one) <= OVERLAP]
+
+    def _told(
+        self, known: Sequence[Template], among: Sequence[Spot], sensors: Sequence[Sensor]
+    ) -> list[Operand]:
+        """Return the operands of templates with one of the sensors, at all expressions."""
         found: list[Operand] = []
         for made in known if sensors else ():
-            for forms in _forms(self.order, made, among) if made.on in OF_SENSORS else ():
-                for operand, form in forms:
-                    if form.sensor in sensors:
+            for each in forms(self.order, made, among) if made.on in OF_SENSORS else ():
+                for operand, form in each:
+                    if form.sensor in sensors and operand not in self._found:
                         self._found[operand] = form
-                        found += [] if _fixed(form) else [operand]
+                        found += [] if fixed(form) else [operand]
         return found
 
-    def _at_commands(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
+    def _at_commands(self, known: Sequence[Template], among: Sequence[Spot]) -> _Group:
         """Return the operands of the templates for any number at the values that are published."""
         nearest = sorted((spot for spot in among if spot.kind in COMMANDED), key=lambda spot: spot.away)
         fitting = [one for one in known if one.on == "number"]
-        return [operand for one in fitting for operand in self._at(one, nearest[:COMMANDS], first=None)]
+        found = [operand for one in fitting for operand in self._at(one, nearest[:COMMANDS], first=None)]
+        return _Group(found, lambda share, left: min(max(share, LEAST_EACH * len(found)), left // 3))
 
     def _at_the_best(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
         """Return, at the statement that responds most, the operands of the templates that need no sensor."""
@@ -192,22 +227,22 @@ class Structures:
         fitting = [one for one in known if one.on not in OF_SENSORS]
         return [operand for one in fitting for operand in self._at(one, here, first=True)]
 
-    def _groups(self, known: Sequence[Template], among: Sequence[Spot]) -> list[list[Operand]]:
-        groups: list[list[Operand]] = []
+    def _groups(self, known: Sequence[Template], among: Sequence[Spot]) -> list[_Group]:
+        groups: list[_Group] = []
         for first in (True, False):
             for _, same in groupby(known, key=lambda one: one.cost):
                 operands = [operand for one in same for operand in self._at(one, among, first)]
-                groups += [operands] if operands else []
+                groups += [_Group(operands)] if operands else []
         return groups
 
     def _at(self, template: Template, among: Sequence[Spot], first: bool | None) -> Iterator[Operand]:
         """Yield a template's operands at the first, the later or all expressions; store their forms."""
-        for number, forms in enumerate(_forms(self.order, template, among)):
+        for number, each in enumerate(forms(self.order, template, among)):
             if first is None or (number < FIRST) == first:
-                for operand, form in forms:
+                for operand, form in each:
                     if operand not in self._found:
                         self._found[operand] = form
-                        if not _fixed(form):
+                        if not fixed(form):
                             yield operand
 
 
@@ -221,106 +256,3 @@ def _responding(effects: Mapping[str, Sequence[OperandEffect]], wanted: float) -
     gains = {site: max(gains, default=0.0) for site, gains in known.items()}
     found = [site for site, gain in gains.items() if gain > 0.0 and gain >= RESPONDS * wanted]
     return tuple(sorted(found, key=lambda site: -gains[site]))
-
-
-def form_words(order: Order, mutation: Mutation) -> str:
-    """Describe a structural mutation."""
-    form = mutation.form
-    assert form is not None  # noqa: S101
-    source = document(mutation.operand.span.path, order.analysis.sources[mutation.operand.span.path])
-    x = _folded(source, source.find(mutation.operand.span))
-    y = _folded(source, source.find(form.partner)) if form.partner is not None else ""
-    return described(form, x, y, form_values(mutation), form.sensor.name if form.sensor else "")
-
-
-def _forms(order: Order, template: Template, among: Sequence[Spot]) -> Iterator[list[tuple[Operand, Form]]]:
-    """Yield, for each expression that a template fits, an operand for each of its parameters."""
-    if template.on == "pair":
-        for one, other in pairs(among, MOST["pair"]):
-            partner = _span(other.source, other.node)
-            yield list(
-                _operands(template, one, Form(template, partner=partner), {"typical": 1.0, "larger": 1.0})
-            )
-        return
-    for spot in _fitting(template, among)[: MOST[template.on]]:
-        if template.on not in OF_SENSORS:
-            scales = {"typical": spot.typical, "larger": spot.larger}
-            yield list(_operands(template, spot, Form(template), scales))
-            continue
-        by_sensor: list[tuple[Operand, Form]] = []
-        for sensor in order.comparison.sensors:
-            if continuous(sensor):
-                by_sensor += _operands(template, spot, Form(template, sensor=sensor), _scales(order, sensor))
-        yield by_sensor
-
-
-def _fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
-    """Return the expressions that a template fits, in the order to try them."""
-    if template.on.startswith("sent"):
-        return [spot for spot in among if spot.kind == "sent" or (spot.kind == "value" and not spot.away)]
-    if template.on == "number":
-        return [
-            spot
-            for spot in among
-            if spot.kind in NUMBERS and spot.numeric and template.without not in spot.constants
-        ]
-    kind = "value" if template.on == "sensor" else template.on
-    fitting = [spot for spot in among if spot.kind == kind or (kind == "value" and spot.kind == "input")]
-    if template.on == "sensor":
-        # sensors are read where messages arrive; they correct sent values before the values are limited, so that the
-        # limits still hold
-        fitting.sort(key=lambda spot: (spot.kind != kind, not spot.hears, _limited(spot.node), spot.away))
-    else:
-        fitting.sort(key=lambda spot: spot.kind != kind)
-    return fitting
-
-
-def _limited(node: ast.expr) -> bool:
-    """Return whether an expression limits a value to a range, as `max(low, min(high, x))` or `clamp(x)` do."""
-    if not isinstance(node, ast.Call):
-        return False
-    name = ast.unparse(node.func).rpartition(".")[2]
-    inner = [ast.unparse(each.func) for each in node.args if isinstance(each, ast.Call)]
-    return name in CLAMPS or (name in ("max", "min") and {"max", "min"} - {name} <= set(inner))
-
-
-def _scales(order: Order, sensor: Sensor) -> dict[str, float]:
-    """Return, for each key of `of` in a template (such as `usual`), the size by which defaults are multiplied."""
-    drifted = usual(order, sensor)
-    scales = {"sensor": 1.0 / drifted, "usual": drifted}
-    if sensor.low is not None and sensor.low >= 0.0:
-        scales["designed"] = usual(order, sensor, order.fixture.sample)
-    return scales
-
-
-def _operands(
-    template: Template, spot: Spot, bare: Form, scales: Mapping[str, float]
-) -> Iterator[tuple[Operand, Form]]:
-    """Yield an operand for each parameter; nothing if a default is unknown."""
-    if any(one.of and one.of not in scales for one in template.parameters):
-        return
-    defaults = tuple(
-        (one.name, float(f"{one.default * scales.get(one.of, 1.0):.4g}")) for one in template.parameters
-    )
-    code = _folded(spot.source, spot.node)
-    for name, value in defaults or (("", None),):
-        form = Form(template, name, defaults, bare.partner, bare.sensor)
-        by = f" by {bare.sensor.name}" if bare.sensor else ""
-        text = f"{template.name.replace('_', ' ')}{by} of {code}{f', {name}' if name else ''}"
-        yield Operand(spot.site, _span(spot.source, spot.node), text, value if name else False), form
-
-
-def _fixed(form: Form) -> bool:
-    """Return whether the parameter of a form is fixed, that is, moved only after the change gained much."""
-    return any(one.name == form.parameter and one.of == FIXED for one in form.template.parameters)
-
-
-def _span(source: Document, node: ast.expr) -> Span:
-    start = source.start(node) - source.line_starts[node.lineno - 1]
-    last = node.end_lineno or node.lineno
-    end = source.end(node) - source.line_starts[last - 1]
-    return Span(source.path, node.lineno, start + 1, last, end + 1)
-
-
-def _folded(source: Document, node: ast.expr) -> str:
-    return " ".join(source.source(node).split())

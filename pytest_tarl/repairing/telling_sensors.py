@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import isfinite
+from collections.abc import Iterator, Mapping
+from math import exp, isfinite, log
 
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.sensors import Sensor
 
+VARIES = 1.5  # minimum growth of the number of bins that a sensor uses, from which on it is said to vary
 OVERLAP = 0.25  # a sensor is telling if at most this share of steps is in the same bins in both worlds
 
 
 def telling(order: Order) -> list[Sensor]:
     """Return the telling numeric sensors, in their order."""
     return [one for one in order.comparison.sensors if continuous(one) and _overlap(order, one) <= OVERLAP]
+
+
+def varies(order: Order, sensor: Sensor) -> bool:
+    """Return whether a sensor uses more bins in the drifted world, so that no single constant fits all its values.
+
+    A bin counts by its share of the steps: the number is the exponential of the entropy of the shares.
+    """
+    designed = _shares(order, order.fixture.sample, sensor)
+    drifted = _shares(order, order.online.recorded.sample, sensor)
+    return bool(designed and drifted) and _used(drifted) >= VARIES * _used(designed)
 
 
 def continuous(sensor: Sensor) -> bool:
@@ -43,6 +54,10 @@ def bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, f
     for cell, count in zip(world.chain.cell.tolist(), world.chain.count.tolist(), strict=True):
         low, high = sensor.interval(world.cells[cell][at], world.cells[cell][at])
         yield low, high, count
+
+
+def _used(shares: Mapping[tuple[float, float], float]) -> float:
+    return exp(-sum(share * log(share) for share in shares.values() if share))
 
 
 def _overlap(order: Order, sensor: Sensor) -> float:

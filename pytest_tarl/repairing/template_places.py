@@ -119,6 +119,8 @@ def _expressions(
                 yield value, "value"
             elif isinstance(value, ast.Attribute):
                 yield value, "input"
+            elif isinstance(value, ast.Compare) and len(value.ops) == 1 and _orders(value.ops[0]):
+                yield value, "comparison"
             elif isinstance(value, ast.Name) and numeric and _stored(statement):
                 yield value, "stored"
         elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):

@@ -151,6 +151,10 @@ class Trials:
             self.labels.append(label(candidate))
         return self._known[key]
 
+    def know(self, other: Trials) -> None:
+        """Take over the outcomes of another phase, so that its episodes do not run again."""
+        self._known = {**other._known, **self._known}
+
     def expect(self, wanted: Iterable[Wanted]) -> None:
         """Announce the episodes that are likely to be requested next, in order, so that workers can start them."""
         left = max(self.budget - self.spent, 0)

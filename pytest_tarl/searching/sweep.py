@@ -66,7 +66,7 @@ class Sweep:
     it `weaker` are skipped. Only parameters of the same change are combined. The last steps of the sweep are
     tried on every operand. If a search for structural changes follows, only the nearest of these steps are
     tried, on named constants. `responding` contains the ids of statements whose constants increased the
-    reward.
+    reward. `interlude` is called before each step and each long phase, and may yield candidates of another search.
     """
 
     def __init__(
@@ -86,7 +86,9 @@ class Sweep:
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
         responding: Collection[str] = (),
         scope: Scope = everywhere,
+        interlude: Callable[[], Iterator[Candidate]] = lambda: iter(()),
     ) -> None:
+        self.interlude = interlude
         self.responding = responding
         self.structure_follows = structure_follows
         self.late = units(late)
@@ -128,7 +130,9 @@ class Sweep:
         yield from self._in_large_steps(chief)
         gained = self.gains.anything()
         if gained:
+            yield from self.interlude()
             yield from self.combining.sharpened(chief)
+            yield from self.interlude()
             yield from self.combining.jointly(chief)
             yield from self.combining.best_with_others()
         yield from self._finely(chief)
@@ -233,6 +237,7 @@ class Sweep:
 
     def _all(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try one factor on several operands, then refine the best one."""
+        yield from self.interlude()
         pair = self._turn % len(self.goal.pairs)
         self._turn += 1
         among = self.gains.distinct(among)

@@ -16,7 +16,7 @@ import pytest
 from pytest_tarl import Sensor
 from pytest_tarl.patching.mutate import rewrite
 from pytest_tarl.patching.templates import SHIPPED, template
-from pytest_tarl.repairing import structural, typical_sizes
+from pytest_tarl.repairing import structural, template_forms, typical_sizes
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
@@ -130,6 +130,24 @@ def prediction(state: dict[str, float], x: float) -> float:
     return value + 6.0 * change
 
 
+def confirmed(state: dict[str, float], x: float) -> float:
+    value = x / 2.0
+    state["count"] = state.get("count", 0.0) + 1.0 if value < 0.0 else 0.0
+    return value if state["count"] >= 3.0 else -value
+
+
+def median() -> Command:
+    """Return a command that sends the median of the last five values."""
+    values: list[float] = []
+
+    def command(value: float, _: float) -> float:
+        values.append(2.0 * value)
+        del values[:-5]
+        return sorted(values)[len(values) // 2]
+
+    return command
+
+
 def hysteresis(state: dict[str, float], x: float) -> float:
     value = x / 2.0
     state["on"] = float(value < (0.9 if state.get("on") else 0.0))
@@ -140,6 +158,7 @@ MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
     "at_least": (VALUE, lambda: lambda value, _: max(0.8, 2 * value)),
     "at_most": (VALUE, lambda: lambda value, _: min(0.7, 2 * value)),
     "comparison": (COMPARED, lambda: lambda value, _: value if value <= 1.0 else -value),
+    "confirmed": (COMPARED, lambda: kept(confirmed)),
     "dead_band": (VALUE, lambda: lambda value, _: 2 * value if abs(2 * value) > 1.2 else 0.0),
     "delay": (INPUT, delayed),
     "delay_by_travel": (INPUT, delayed_by_travel),
@@ -149,6 +168,7 @@ MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
     "integral": (VALUE, lambda: kept(integral)),
     "limit": (VALUE, lambda: lambda value, _: max(-0.9, min(0.9, 2 * value))),
     "low_pass": (VALUE, lambda: kept(low_pass)),
+    "median": (VALUE, median),
     "offset": (INPUT, lambda: lambda value, _: value - 0.6),
     "power": (VALUE, lambda: lambda value, slope: 2 * value * slope**2),
     "prediction": (INPUT, lambda: kept(prediction)),
@@ -232,7 +252,7 @@ def check_found(name: str, world: World, monkeypatch: pytest.MonkeyPatch, usual:
     """Search with a single template and check the result on fresh seeds."""
     monkeypatch.setattr(structural, "templates", lambda _: (template(SHIPPED / f"{name}.toml"),))
     monkeypatch.setattr(structural, "telling", lambda _: [])
-    monkeypatch.setattr(structural, "usual", lambda *_: usual)
+    monkeypatch.setattr(template_forms, "usual", lambda *_: usual)
     pairs = tuple(Pair(seed, world.run(Candidate((), ALWAYS), seed).total) for seed in range(8))
     online = sum(pair.total for pair in pairs) / len(pairs)
     assert online < 8.0, "the node needs no change"

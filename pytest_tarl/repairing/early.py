@@ -1,0 +1,55 @@
+"""Structural changes with symptoms, tried within the search of constants.
+
+Most drifts are repaired by a constant within few episodes. If a search has lasted longer than that, changes for which
+the recorded missions speak are likelier than further constants.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
+
+from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.repairing.mission_pairs import Signs, signs
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.structural import Structures
+from pytest_tarl.searching.search import Candidate, Trials
+
+FROM = 60  # number of episodes after which the changes are tried; the mean of a search that a constant ends
+MOST = 45  # number of episodes for the changes; half as many more if one of them gains much
+
+
+class Early:
+    """The structural changes of a search of constants, tried once; `spent` counts their episodes."""
+
+    def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
+        self.order = order
+        self.guards = guards
+        self.trials = trials
+        self.spent = 0
+        self._signs: Signs | None = None
+        self._structures: Structures | None = None
+
+    def candidates(self) -> Iterator[Candidate]:
+        """Yield confirmed candidates if the search has come to `FROM` episodes, otherwise nothing."""
+        if self._structures is not None or self.trials.spent < FROM:
+            return
+        begun = self.trials.spent
+        found = self.signs(self.trials)
+        self._structures = Structures(self.order, self.guards, self.trials, signs=found)
+        try:
+            for candidate in self._structures.early(MOST):
+                self.spent = self.trials.spent - begun
+                yield candidate
+        finally:
+            self.spent = self.trials.spent - begun
+
+    def signs(self, trials: Trials) -> Signs:
+        """Return the symptoms of the mission pairs; the first call records them and charges the given trials."""
+        if self._signs is None:
+            self._signs = signs(self.order, trials)
+        return self._signs
+
+    def effects(self) -> Mapping[str, Sequence[OperandEffect]]:
+        """Return, for each site, the gains of each template's best values."""
+        return MappingProxyType({}) if self._structures is None else self._structures.effects()

@@ -1,0 +1,97 @@
+"""Missions of the unrepaired program that are recorded in both worlds with the same seed, and the symptoms in them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pytest_tarl.errors import TarlError
+from pytest_tarl.instrumentation.sites import plan
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.recording import sound
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.rollout import EpisodePlan
+from pytest_tarl.searching.search import BudgetSpentError, Trials
+from pytest_tarl.sensors import Cell, Sensor
+from pytest_tarl.symptoms.series import Pair, Series
+from pytest_tarl.symptoms.symptoms import SYMPTOMS
+
+PAIRS = 2  # number of seeds; each costs an episode in both worlds
+
+Recorded = tuple[Trace, Trace]  # the designed and the drifted mission of a seed
+
+
+@dataclass(frozen=True)
+class Signs:
+    """The strength of each symptom by site id, and the sensor cells of each step, by mission pair.
+
+    Steps before the first message have no cell. Both missions of a pair have the same number of steps here.
+    """
+
+    strengths: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    cells: tuple[tuple[tuple[Cell, ...], tuple[Cell, ...]], ...] = ()
+
+    def strength(self, site: str, symptoms: Sequence[str]) -> float:
+        """Return the strength of the strongest of some symptoms at a site."""
+        found = self.strengths.get(site, {})
+        return max((found.get(one, 0.0) for one in symptoms), default=0.0)
+
+    def overlap(self, order: Order, sensor: Sensor) -> float:
+        """Return the share of the steps in which a sensor is in the same bins in both worlds; 0 if nothing is known.
+
+        Only steps that both missions of a pair reached count, since a mission that ends early has seen less.
+        """
+        at = [one.name for one in order.comparison.sensors].index(sensor.name)
+        counts = [Counter(cell[at] for pair in self.cells for cell in pair[world]) for world in (0, 1)]
+        steps = [sum(one.values()) for one in counts]
+        if not all(steps):
+            return 0.0
+        return sum(min(counts[0][one] / steps[0], counts[1][one] / steps[1]) for one in counts[0])
+
+
+NO_SIGNS = Signs()
+
+
+def signs(order: Order, trials: Trials) -> Signs:
+    """Record `PAIRS` mission pairs and return their symptoms; none if the budget or the test does not allow it."""
+    if order.drift is None:
+        return Signs()
+    seeds = [pair.seed for pair in order.goal.pairs[:PAIRS]]
+    try:
+        recorded = [_recorded(order, trials, seed) for seed in seeds]
+    except (BudgetSpentError, TarlError):
+        return Signs()
+    return Signs(dict(_strengths(order, recorded)), tuple(map(_cells, recorded)))
+
+
+def _recorded(order: Order, trials: Trials, seed: int) -> Recorded:
+    """Run both missions of a seed; charge them to the budget. Raise BudgetSpentError and TarlError."""
+    found = []
+    for drift in (None, order.drift):
+        trials.charge()
+        found.append(sound(order.rollout(EpisodePlan(seed, drift, record=True, signed=True))).trace)
+    return found[0], found[1]
+
+
+def _strengths(order: Order, recorded: Sequence[Recorded]) -> Iterator[tuple[str, Mapping[str, float]]]:
+    for number, place in enumerate(plan(order.analysis).places):
+        pairs = [Pair(_series(one, number), _series(other, number)) for one, other in recorded]
+        if place.role != "publish" and all(pair.drifted.values.size for pair in pairs):
+            yield place.id, {name: symptom(pairs) for name, symptom in SYMPTOMS.items()}
+
+
+def _series(trace: Trace, number: int) -> Series:
+    here = trace.site == number
+    return Series(trace.flow[here], trace.event_step[here], trace.reward)
+
+
+def _cells(recorded: Recorded) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
+    steps = min(trace.steps for trace in recorded)
+    designed, drifted = (
+        tuple(trace.cells[one] for one in np.asarray(trace.step_cell[:steps]).tolist() if one >= 0)
+        for trace in recorded
+    )
+    return designed, drifted

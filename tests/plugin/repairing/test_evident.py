@@ -1,0 +1,255 @@
+"""Structural changes for which recorded missions speak: which templates, at which expressions, and at what cost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl import Sensor
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.instrumentation.sites import plan
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.patching.templates import template, templates
+from pytest_tarl.repairing import mission_pairs
+from pytest_tarl.repairing.early import FROM, MOST, Early
+from pytest_tarl.repairing.evident import CHANGES, PLACES, evident
+from pytest_tarl.repairing.mission_pairs import PAIRS, Signs, signs
+from pytest_tarl.repairing.structural import Structures
+from pytest_tarl.repairing.template_places import spots
+from pytest_tarl.rollout import EpisodePlan, EpisodeRun
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from tarl_lint.api import analyse
+
+NODE = """\
+import rospy
+from std_msgs.msg import Float64
+
+
+class Keeper:
+    def __init__(self):
+        self.range = 0.0
+        self.near = False
+        self.out = rospy.Publisher("/out", Float64, queue_size=1)
+        rospy.Subscriber("/in", Float64, self.on_value)
+
+    def on_value(self, msg):
+        self.range = msg.data
+        self.near = self.range < 0.5
+        speed = 0.4 * self.range
+        if self.near:
+            speed = 0.0
+        self.out.publish(Float64(data=min(speed, 1.0)))
+
+
+if __name__ == "__main__":
+    rospy.init_node("keeper")
+    Keeper()
+"""
+SENSOR = Sensor("range", topic="/in", field="data", low=0, high=4, bins=8)
+
+
+def order_of(folder: Path, rollout: Any = None) -> Any:
+    path = folder / "keeper.py"
+    path.write_text(NODE)
+    none = np.zeros(0, np.int64)
+    lists: Any = SimpleNamespace(lists=(), chain=SimpleNamespace(cell=none, count=none), cells=())
+    return SimpleNamespace(
+        analysis=analyse([path], root=folder),
+        root=folder,
+        rollout=rollout,
+        drift="echoes",
+        comparison=SimpleNamespace(culprits=(), sensors=(SENSOR,)),
+        fixture=SimpleNamespace(sample=lists, lists=()),
+        online=SimpleNamespace(recorded=SimpleNamespace(sample=lists)),
+        goal=Goal((Pair(3, 1.0), Pair(4, 1.0), Pair(5, 0.5)), near=8.5, enough=9.0, online=1.0),
+    )
+
+
+def site(order: Any, text: str) -> str:
+    (found,) = [str(step.site) for step in order.analysis.sites if step.site.text.startswith(text)]
+    return found
+
+
+def tried(order: Any, strengths: Mapping[str, Mapping[str, float]]) -> list[tuple[str, str]]:
+    """Return the template and the code of the chosen changes."""
+    found = evident(order, templates(order.root), list(spots(order)), Signs(strengths))
+    told = [
+        (form.template.name, operand.code.partition(" of ")[2].partition(", ")[0]) for operand, form in found
+    ]
+    return list(dict.fromkeys(told))
+
+
+def test_spikes_speak_for_a_median_where_the_value_is_received(tmp_path: Path) -> None:
+    order = order_of(tmp_path)
+    received, used = site(order, "self.range = "), site(order, "speed = 0.4")
+    spiky = {"spikes": 1.0}
+    assert tried(order, {received: spiky, used: spiky})[:2] == [
+        ("low_pass", "msg.data"),
+        ("low_pass", "0.4 * self.range"),
+    ]
+    assert ("median", "msg.data") in tried(order, {received: spiky})
+
+
+def test_spikes_of_a_comparison_speak_for_its_confirmation(tmp_path: Path) -> None:
+    order = order_of(tmp_path)
+    told = tried(order, {site(order, "self.near = "): {"spikes": 0.9, "swing": 0.2}})
+    assert told == [("confirmed", "self.range < 0.5")]
+
+
+def test_jumps_are_limited_next_to_the_publish_call(tmp_path: Path) -> None:
+    order = order_of(tmp_path)
+    strengths = {site(order, text): {"jumps": 0.9} for text in ("self.range = ", "speed = 0.4")}
+    limited = [code for name, code in tried(order, strengths) if name == "rate_limit"]
+    assert limited == ["0.4 * self.range", "msg.data"]
+
+
+def test_stronger_symptoms_come_first_and_weak_ones_not_at_all(tmp_path: Path) -> None:
+    order = order_of(tmp_path)
+    here = site(order, "speed = 0.4")
+    told = [name for name, _ in tried(order, {here: {"swing": 0.6, "offset": 0.9, "runaway": 0.4}})]
+    assert told[0] == "integral"
+    assert "derivative" in told
+    assert "sign" not in told
+    assert tried(order, {}) == []
+
+
+def test_the_number_of_changes_is_limited(tmp_path: Path) -> None:
+    order = order_of(tmp_path)
+    everywhere = {
+        str(step.site): dict.fromkeys(("jumps", "noise", "spikes", "swing", "offset"), 1.0)
+        for step in order.analysis.sites
+    }
+    told = tried(order, everywhere)
+    assert len(told) == CHANGES
+    assert max([name for name, _ in told].count(name) for name, _ in told) <= PLACES
+
+
+def test_a_template_with_an_unknown_symptom_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "odd.toml"
+    path.write_text('summary = "x"\non = "value"\ncost = 1\nexpression = "-{x}"\nsymptoms = ["fever"]\n')
+    with pytest.raises(SettingsError, match=r"the symptom 'fever' is unknown; known are chatter, jumps"):
+        template(path)
+
+
+class Missions:
+    """Missions in which the received value is 3, or in the drifted world an echo now and then."""
+
+    def __init__(self) -> None:
+        self.plans: list[EpisodePlan] = []
+        self.order: Any = None
+
+    def __call__(self, asked: EpisodePlan) -> EpisodeRun:
+        self.plans.append(asked)
+        places = plan(self.order.analysis).places
+        here = next(number for number, place in enumerate(places) if place.code.startswith("self.range = "))
+        steps = 30 if asked.drift is None else 20
+        values = 3.0 + np.random.default_rng(asked.seed).normal(0.0, 0.01, steps)
+        if asked.drift:
+            values[4::7] = 0.3
+        at = np.arange(steps, dtype=np.int32)
+        trace = Trace(
+            ((7,), (1,)),
+            np.full(steps, here, np.int32),
+            values,
+            at,
+            at,
+            np.zeros(steps, np.int32),
+            np.full(steps, 0.1),
+            {},
+        )
+        return EpisodeRun(asked, trace, passed=not asked.drift)
+
+
+def missions(folder: Path) -> tuple[Any, Missions]:
+    rollout = Missions()
+    rollout.order = order_of(folder, rollout)
+    return rollout.order, rollout
+
+
+def unhelpful(_: Candidate, __: int) -> Outcome:
+    return Outcome(1.0, passed=False)
+
+
+def test_both_worlds_run_with_the_seeds_of_losing_missions_and_are_charged(tmp_path: Path) -> None:
+    order, rollout = missions(tmp_path)
+    trials = Trials(unhelpful, 100)
+    found = signs(order, trials)
+    assert [(one.seed, one.drift) for one in rollout.plans] == [
+        (seed, drift) for seed in (3, 4) for drift in (None, "echoes")
+    ]
+    assert all(one.record and one.signed for one in rollout.plans)
+    assert trials.spent == 2 * PAIRS
+    assert found.strength(site(order, "self.range = "), ("spikes",)) == 1.0
+    assert found.strength(site(order, "self.range = "), ("offset",)) < 0.5
+    assert found.strength("elsewhere", ("spikes",)) == 0.0
+
+
+def test_without_episodes_or_without_a_drift_there_are_no_signs(tmp_path: Path) -> None:
+    order, rollout = missions(tmp_path)
+    assert signs(order, Trials(unhelpful, 1)) == Signs()
+    order.drift = None
+    rollout.plans.clear()
+    assert signs(order, Trials(unhelpful, 100)) == Signs()
+    assert not rollout.plans
+
+
+def test_a_sensor_is_compared_only_over_the_steps_that_both_missions_reached(tmp_path: Path) -> None:
+    order = order_of(tmp_path)
+    same = Signs(cells=((((1,), (1,)), ((1,), (1,))),))
+    other = Signs(cells=((((1,), (1,)), ((1,), (2,))),))
+    assert same.overlap(order, SENSOR) == 1.0
+    assert other.overlap(order, SENSOR) == 0.5
+    assert Signs().overlap(order, SENSOR) == 0.0
+    found = mission_pairs.signs(*((missions(tmp_path)[0]), Trials(unhelpful, 100)))
+    assert [len(one) for pair in found.cells for one in pair] == [20, 20, 20, 20]
+
+
+def test_changes_with_symptoms_come_before_all_other_structural_changes(tmp_path: Path) -> None:
+    order = order_of(tmp_path)
+    labels: list[str] = []
+
+    def run(candidate: Candidate, _: int) -> Outcome:
+        form = candidate.mutations[0].form
+        assert form is not None
+        labels.append(form.template.name)
+        return Outcome(1.0, passed=False)
+
+    told = Signs({site(order, "self.near = "): {"spikes": 1.0}})
+    structures = Structures(order, (ALWAYS,), Trials(run, 40), signs=told)
+    assert list(_quietly(structures)) == []
+    assert labels[0] == "confirmed"
+    assert set(labels) > {"confirmed"}
+
+
+def _quietly(structures: Structures) -> list[Candidate]:
+    from pytest_tarl.searching.search import BudgetSpentError
+
+    try:
+        return list(structures.candidates())
+    except BudgetSpentError:
+        return []
+
+
+def test_early_changes_wait_for_the_constants_run_once_and_leave_their_budget(tmp_path: Path) -> None:
+    order, rollout = missions(tmp_path)
+    trials = Trials(unhelpful, 200)
+    early = Early(order, (ALWAYS,), trials)
+    assert list(early.candidates()) == []
+    assert not rollout.plans
+    for _ in range(FROM):
+        trials.charge()
+    assert list(early.candidates()) == []
+    assert len(rollout.plans) == 2 * PAIRS
+    assert 2 * PAIRS < early.spent <= 2 * PAIRS + 2 * MOST
+    assert trials.budget == 200
+    assert trials.reserve == 0
+    spent = trials.spent
+    assert list(early.candidates()) == []
+    assert trials.spent == spent
