@@ -6,8 +6,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, Final
 
 from tarl_lint.workspace.conditions import combined
@@ -22,6 +22,7 @@ from tarl_lint.workspace.launch_alternatives import (
     negated,
     one_of,
 )
+from tarl_lint.workspace.launch_paths import Branch, Frame, Loop, Names
 from tarl_lint.workspace.launch_run import Action
 from tarl_lint.workspace.match_patterns import fits
 from tarl_lint.workspace.python_values import Bound, Class, Function, Made, Scope
@@ -32,58 +33,16 @@ _ADDING: Final = frozenset(["append", "extend", "insert", "add_action", "add_ent
 _Runs = tuple[Callable[[], None], Callable[[], None]]  # functions that interpret the two branches
 
 
-@dataclass
-class _Branch:
-    """A condition that statements run under. `old` are the containers that existed before it, by identity."""
-
-    condition: str
-    old: dict[int, Any]
-    # whether the condition holds until the end of the loop, instead of only until the end of the iteration
-    whole: bool = True
-
-
-@dataclass
-class _Frame:
-    """A call of a function: its values returned so far, each under a condition, and the conditions around it."""
-
-    branches: int
-    returned: list[tuple[str, Any]] = field(default_factory=list)
-    last: str = ""  # the condition of the last `return`
-
-
-@dataclass
-class _Names:
-    """The names of a scope and of those around it."""
-
-    scopes: list[dict[str, Any]]
-    values: list[dict[str, Any]]
-
-    @classmethod
-    def of(cls, names: Scope) -> _Names:
-        """Return the current names."""
-        scopes: list[dict[str, Any]] = []
-        scope: Scope | None = names
-        while scope is not None:
-            scopes.append(scope.names)
-            scope = scope.around
-        return cls(scopes, [dict(one) for one in scopes])
-
-    def restore(self) -> None:
-        """Bind all names as they were."""
-        for scope, values in zip(self.scopes, self.values, strict=True):
-            scope.clear()
-            scope.update(values)
-
-
 class BranchingInterpreter(Interpreter):
     """Interprets both branches of an `if` whose condition is not constant."""
 
-    _branches: list[_Branch]
-    _frames: list[_Frame]
+    _branches: list[Branch]
+    _frames: list[Frame]
+    _open_loops: list[Loop]
 
     def __init__(self, *args: Any, **keywords: Any) -> None:
         super().__init__(*args, **keywords)
-        self._branches, self._frames = [], []
+        self._branches, self._frames, self._open_loops = [], [], []
 
     @property
     def condition(self) -> str:
@@ -140,14 +99,14 @@ class BranchingInterpreter(Interpreter):
         A branch ends early by `return`, `raise`, `break` or `continue`.
         """
         text, other_text = closed(text), negated(text)
-        before = _Names.of(names)
+        before = Names.of(names)
         old = self._containers(before)
-        left, rest = self._branch(runs[0], _Branch(text, old))
-        after = _Names.of(names)
+        left, rest = self._branch(runs[0], Branch(text, old))
+        after = Names.of(names)
         before.restore()
-        other, other_rest = self._branch(runs[1], _Branch(other_text, old))
+        other, other_rest = self._branch(runs[1], Branch(other_text, old))
         if left is not None and other is not None:
-            self._leave_both(left, other, text)
+            self._leave_both(left, other, text, after, old, names)
         if left is None and other is None:
             self._join(after, text, line)
             if rest or other_rest:
@@ -155,14 +114,14 @@ class BranchingInterpreter(Interpreter):
                     f"({_all(text, rest)} or {_all(other_text, other_rest)})", old, [*rest, *other_rest]
                 )
         elif other is None:
-            self._note(left, text)
+            self._note(left, text, after)
             self._go_on(_all(other_text, other_rest), old, other_rest, left)
         else:
+            self._note(other, other_text, Names.of(names))
             after.restore()
-            self._note(other, other_text)
             self._go_on(_all(text, rest), old, rest, other)
 
-    def _branch(self, run: Callable[[], None], branch: _Branch) -> tuple[Exception | None, list[_Branch]]:
+    def _branch(self, run: Callable[[], None], branch: Branch) -> tuple[Exception | None, list[Branch]]:
         """Interpret a branch; return the exception that ended it early, or None, and the conditions if it continues."""
         count = len(self._branches)
         self._branches.append(branch)
@@ -175,33 +134,45 @@ class BranchingInterpreter(Interpreter):
         finally:
             del self._branches[count:]
 
-    def _note(self, left: Exception | None, text: str) -> None:
-        """Note the value that one branch returns."""
+    def _note(self, left: Exception | None, text: str, names: Names) -> None:
+        """Note the value that one branch returns, or its names if it ends with `break` or `continue`."""
         if isinstance(left, Returned):
             if not self._frames:
                 raise left
             self._frames[-1].returned.append((combined(self.condition, text), left.value))
+        elif isinstance(left, Left):
+            loop = self._open_loops[-1]
+            within = _all("", self._branches[loop.start :])
+            (loop.breaks if left.whole else loop.continues).append((combined(within, text), names))
 
     def _go_on(
-        self, text: str, old: dict[int, Any], within: list[_Branch], left: Exception | None = None
+        self, text: str, old: dict[int, Any], within: list[Branch], left: Exception | None = None
     ) -> None:
         """Put the following statements under a condition, up to the end of the function or loop that `left` ends."""
         whole = any(one.whole for one in within) if left is None else not isinstance(left, Left) or left.whole
-        self._branches.append(_Branch(text, old, whole))
+        self._branches.append(Branch(text, old, whole))
 
-    def _leave_both(self, left: Exception, other: Exception, text: str) -> None:
-        """Raise the exception that represents both branches, each of which ended early."""
+    def _leave_both(
+        self, left: Exception, other: Exception, text: str, after: Names, old: dict[int, Any], names: Scope
+    ) -> None:
+        """Raise the exception that represents both branches, each of which ended early.
+
+        A branch that ends with `break` or `continue` represents both, since statements follow it.
+        """
         if isinstance(left, Raised):
             raise other
-        if isinstance(other, Raised):
-            raise left
-        if isinstance(other, Returned):
-            self._note(left, text)
+        if isinstance(other, Left) or (isinstance(left, Returned) and isinstance(other, Returned)):
+            self._note(left, text, after)
+            if isinstance(other, Left):
+                self._go_on(negated(text), old, [], left)
             raise other
-        self._note(left, text)
-        raise other if isinstance(left, Returned) else left
+        if isinstance(other, Returned):
+            self._note(other, negated(text), Names.of(names))
+            self._go_on(text, old, [], other)
+        after.restore()
+        raise left
 
-    def _join(self, after: _Names, text: str, line: int) -> None:
+    def _join(self, after: Names, text: str, line: int) -> None:
         """Bind each name to the value of both branches; `after` are the names of the first one."""
         for scope, first in zip(after.scopes, after.values, strict=True):
             for name in [*first, *(one for one in scope if one not in first)]:
@@ -214,7 +185,7 @@ class BranchingInterpreter(Interpreter):
             self._frames[-1].last = self.condition
         super()._do_return(statement, names)
 
-    def _containers(self, names: _Names) -> dict[int, Any]:
+    def _containers(self, names: Names) -> dict[int, Any]:
         """Return the lists, dicts and objects that names refer to, by identity."""
         found: dict[int, Any] = {}
         pending: list[Any] = [one for scope in names.values for one in scope.values()]
@@ -249,10 +220,10 @@ class BranchingInterpreter(Interpreter):
         if not isinstance(test, Unknown | Library):
             return self.value(node.body if test else node.orelse, names)
         text = closed(ast.unparse(node.test)[:LONGEST])
-        old = self._containers(_Names.of(names))
+        old = self._containers(Names.of(names))
         found = []
         for expression, condition in ((node.body, text), (node.orelse, negated(text))):
-            self._branches.append(_Branch(condition, old))
+            self._branches.append(Branch(condition, old))
             try:
                 found.append(self.value(expression, names))
             finally:
@@ -262,7 +233,7 @@ class BranchingInterpreter(Interpreter):
     def _enter(
         self, function: Function, args: list[Any], keywords: dict[str, Any], owner: Class | None = None
     ) -> Any:
-        frame = _Frame(len(self._branches))
+        frame = Frame(len(self._branches))
         self._frames.append(frame)
         try:
             returned = super()._enter(function, args, keywords, owner)
@@ -275,32 +246,76 @@ class BranchingInterpreter(Interpreter):
         return one_of([*frame.returned, (frame.last, returned)], function.node.lineno)
 
     def _stops(self, body: list[ast.stmt], names: Scope) -> bool:
-        count = len(self._branches)
+        """Interpret the body of a loop once, and return whether no iteration follows.
+
+        If the body ends early, go on where an unknown condition left the iteration or the loop before.
+        """
+        loop, loop.start = self._open_loops[-1], len(self._branches)
         try:
-            return super()._stops(body, names)
-        finally:
-            self._branches[count:] = [one for one in self._branches[count:] if one.whole]
+            stops = super()._stops(body, names)
+        except (Returned, Raised) as left:
+            if not loop.continues and not loop.breaks:
+                raise
+            self._note(left, "", Names.of(names))
+            goes_on = bool(loop.continues)
+            self._resume(loop, names)
+            return not goes_on
+        if stops and loop.continues:
+            self._note(Left(whole=True), "", Names.of(names))
+            self._resume(loop, names)
+            return False
+        self._branches[loop.start :] = [one for one in self._branches[loop.start :] if one.whole]
+        self._join_all(loop.continues, loop.line)
+        return stops
 
     def _do_for(self, statement: ast.For, names: Scope) -> None:
         count, returned = len(self._branches), self._returned()
-        super()._do_for(statement, names)
+        with self._loop(statement.lineno):
+            super()._do_for(statement, names)
         if self._returned() == returned:
             del self._branches[count:]
+
+    @contextmanager
+    def _loop(self, line: int) -> Iterator[None]:
+        """Interpret a loop; after it, names have the values of all its ends."""
+        loop = Loop(len(self._branches), len(self._branches), line)
+        self._open_loops.append(loop)
+        try:
+            yield
+        finally:
+            self._open_loops.pop()
+        self._join_all(loop.breaks, line)
+
+    def _resume(self, loop: Loop, names: Scope) -> None:
+        """Go on with the names with which an unknown condition left the iteration, or else the loop."""
+        begin, left = (loop.start, loop.continues) if loop.continues else (loop.begin, loop.breaks)
+        texts = [text for text, _ in left]
+        left.pop()[1].restore()
+        self._join_all(left, loop.line)
+        text = texts[0] if len(texts) == 1 else f"({' or '.join(dict.fromkeys(texts))})"
+        self._branches[begin:] = [Branch(text, self._containers(Names.of(names)))]
+
+    def _join_all(self, left: list[tuple[str, Names]], line: int) -> None:
+        """Bind each name to its values where the loop or the iteration was left, or else to the current one."""
+        while left:
+            text, names = left.pop()
+            self._join(names, text, line)
 
     def _do_while(self, statement: ast.While, names: Scope) -> None:
         """Interpret a loop; one that an unknown condition may end is interpreted once."""
         count, returned = len(self._branches), self._returned()
-        while True:
-            test = self.value(statement.test, names)
-            if isinstance(test, Unknown | Library):
-                super()._do_while(statement, names)
-                return
-            if not test or self._stops(statement.body, names) or len(self._branches) > count:
-                break
-        if self._returned() == returned:
-            del self._branches[count:]
-        if not test:
-            self._body(statement.orelse, names)
+        with self._loop(statement.lineno):
+            while True:
+                test = self.value(statement.test, names)
+                if isinstance(test, Unknown | Library):
+                    super()._do_while(statement, names)
+                    return
+                if not test or self._stops(statement.body, names) or len(self._branches) > count:
+                    break
+            if self._returned() == returned:
+                del self._branches[count:]
+            if not test:
+                self._body(statement.orelse, names)
 
     def _returned(self) -> int:
         return len(self._frames[-1].returned) if self._frames else 0
@@ -313,7 +328,7 @@ def _inside(value: Any) -> list[Any]:
     return list(held.values()) if isinstance(held, Mapping) else list(held)
 
 
-def _all(text: str, rest: list[_Branch]) -> str:
+def _all(text: str, rest: list[Branch]) -> str:
     for one in rest:
         text = combined(text, one.condition)
     return text

@@ -5,7 +5,7 @@ from pathlib import Path
 from textwrap import dedent, indent
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from tarl_lint.workspace.launch_model import Launch
@@ -302,6 +302,11 @@ class Writer:
 
 
 @given(block=blocks(2, loop=False))
+@example([("for", [("if", [("break",)], [("driver",)])])])
+@example([("for", [("if", [("return",)], [("break",)])]), ("append",)])
+@example([("for", [("if", [("continue",)], []), ("return",)])])
+@example([("for", [("if", [("continue",)], []), ("break",)]), ("append",)])
+@example([("for", [("if", [("break",)], []), ("append",), ("return",)]), ("append",)])
 def test_the_nodes_are_those_of_all_branches(
     tmp_path_factory: pytest.TempPathFactory, block: Statements
 ) -> None:
