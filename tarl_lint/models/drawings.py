@@ -54,6 +54,8 @@ def drawn_into(
 
 def pass_to_function(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
     """Draw data into a drawing that a library's function gets with the data, such as `show(image, ax=axes)`."""
+    if ("lib", KEY) not in ctx.objects:
+        return
     given = [*arguments[0], *arguments[1].values()]
     whole = next((o.whole for v in given for o in v.pts if is_drawing(o)), None)
     if whole is None:
