@@ -87,7 +87,7 @@ class Template:
     state: tuple[tuple[str, str], ...] = ()
     parameters: tuple[Parameter, ...] = ()
     without: str = ""
-    symptoms: tuple[str, ...] = ()  # symptoms that speak for the template (see `pytest_tarl.symptoms`)
+    symptoms: tuple[str, ...] = ()  # symptoms that indicate the template (see `pytest_tarl.symptoms`)
 
     def uses(self, placeholder: str) -> int:
         """Return how often a placeholder occurs in the lines and the expression."""

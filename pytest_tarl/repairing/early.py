@@ -1,7 +1,7 @@
 """Structural changes with symptoms, tried within the search of constants.
 
-Most drifts are repaired by a constant within few episodes. If a search has lasted longer than that, changes for which
-the recorded missions speak are likelier than further constants.
+Most drifts are repaired by a constant within few episodes. After that, a change with a symptom is likelier to help than
+further constants.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Choose the structural changes for which the recorded missions speak, and the expressions at which to try them."""
+"""Choose the structural changes that symptoms indicate, and the expressions at which to try them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.repairing.template_places import Spot
 from pytest_tarl.symptoms.symptoms import RECEIVED
 from tarl_lint.model import Operand, SiteId
 
-STRONG = 0.5  # minimum strength of a symptom that speaks for a template
+STRONG = 0.5  # minimum strength of a symptom that indicates a template
 PLACES = 3  # maximum number of expressions for each template
 CHANGES = 8  # maximum number of changes, each a template at an expression
 

@@ -50,7 +50,7 @@ class _Group:
 class Structures:
     """A search over templates, cheapest first; for each kind, the best `FIRST` expressions come first.
 
-    Changes for which the recorded missions speak (`signs`) come before all others. Templates of equal cost form a
+    Changes that a symptom indicates (`signs`) come before all others. Templates of equal cost form a
     group. A group gets a part of the episodes, in proportion to its number of parameters. If one of its templates gains
     much, the group also gets half of the episodes left for the other groups. The statements whose constants gained come
     first (`effects`, by the statement's id), and the best of them has a group of its own. Changes of a whole command by
@@ -192,7 +192,7 @@ class Structures:
         ]
 
     def _evident(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
-        """Return the operands of the changes for which the recorded missions speak."""
+        """Return the operands of the changes that a symptom indicates."""
         found = dict(evident(self.order, known, among, self.signs))
         self._found |= found
         return [operand for operand, form in found.items() if not fixed(form)]

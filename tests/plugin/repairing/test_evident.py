@@ -1,4 +1,4 @@
-"""Structural changes for which recorded missions speak: which templates, at which expressions, and at what cost."""
+"""Structural changes that symptoms indicate: which templates, at which expressions, and at what cost."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def tried(order: Any, strengths: Mapping[str, Mapping[str, float]]) -> list[tupl
     return list(dict.fromkeys(told))
 
 
-def test_spikes_speak_for_a_median_where_the_value_is_received(tmp_path: Path) -> None:
+def test_spikes_indicate_a_median_where_the_value_is_received(tmp_path: Path) -> None:
     order = order_of(tmp_path)
     received, used = site(order, "self.range = "), site(order, "speed = 0.4")
     spiky = {"spikes": 1.0}
@@ -97,7 +97,7 @@ def test_spikes_speak_for_a_median_where_the_value_is_received(tmp_path: Path) -
     assert ("median", "msg.data") in tried(order, {received: spiky})
 
 
-def test_spikes_of_a_comparison_speak_for_its_confirmation(tmp_path: Path) -> None:
+def test_spikes_of_a_comparison_indicate_its_confirmation(tmp_path: Path) -> None:
     order = order_of(tmp_path)
     told = tried(order, {site(order, "self.near = "): {"spikes": 0.9, "swing": 0.2}})
     assert told == [("confirmed", "self.range < 0.5")]
