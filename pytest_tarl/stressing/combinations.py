@@ -29,7 +29,7 @@ REFINED = 0.08  # share of the budget for the search between the first chains of
 ATTEMPTS = 2  # number of chains to test until a drift is confirmed
 # shares of the whole risk that the first chains get; each further chain gets half of the rest
 SHARES = (0.2, 0.3, 0.2, 0.1)
-APART = 1.08  # minimum distance of a reported failure that contains another, as a multiple of the other's distance
+APART = 1.05  # minimum distance of a reported failure that contains another, as a multiple of the other's distance
 QUICK = SIZES[0]  # number of episodes that the search runs at a confirmed failure
 
 
@@ -39,7 +39,8 @@ class Together:
 
     risk: float
     curves: Sequence[Curve]
-    found: list[Failure] = field(default_factory=list)
+    found: list[Failure] = field(default_factory=list)  # without those that hardly differ from a nearer one
+    every: list[Failure] = field(default_factory=list)  # all of them
     tried: int = 0  # number of drifts in several directions that the search tried
     margin_map: MarginMap | None = None
     chains: int = 0  # number of chains tested so far
@@ -50,7 +51,7 @@ class Together:
     @property
     def confirmed(self) -> list[Failure]:
         """Return the confirmed failing drifts along single directions and in combination."""
-        return [*confirmed(self.curves), *self.found]
+        return [*confirmed(self.curves), *self.every]
 
     def confirm(self, chain: Sequence[Point], evaluator: Evaluator, part: Part = "both") -> bool:
         """Test drifts on fresh seeds, farthest first, until one is not confirmed; return whether one was confirmed.
@@ -87,13 +88,12 @@ class Together:
                 self._add(failure(evaluator.space, point), evaluator)
         finally:
             evaluator.release(pool)
-            if part == "rate":
-                self.found = _apart(self.found, evaluator)
+            self.found = _apart(self.every, evaluator)
         return found
 
     def _add(self, found: Failure, evaluator: Evaluator) -> None:
         if len(found.names) > 1:
-            self.found.append(found)
+            self.every.append(found)
         else:
             self._along(found, evaluator)
 

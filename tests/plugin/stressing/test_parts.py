@@ -12,7 +12,7 @@ import pytest
 from pytest_tarl import Drift
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import chains
-from pytest_tarl.stressing.combinations import APART, _apart
+from pytest_tarl.stressing.combinations import APART, Together, _apart
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
 from pytest_tarl.stressing.findings import failure
 from pytest_tarl.stressing.guarantee import Guarantee, Outcome, hopeless, most_passed, refuted
@@ -90,8 +90,8 @@ def test_a_chain_of_failures_goes_on_towards_nominal_in_short_steps_if_seeds_sha
 
 def test_failures_that_contain_a_nearer_one_and_hardly_differ_from_it_are_not_reported() -> None:
     evaluator = evaluator_of(lambda point, _: (point["a"] < 0.9, 1.0), SQUARE)
-    every = [failure(SQUARE, point) for point in (at(0.6), at(0.53), at(0.51), at(0.5), at(0.4, 0.31))]
-    assert 0.51 < 0.53 < APART * 0.5 < 0.6
+    every = [failure(SQUARE, point) for point in (at(0.6), at(0.52), at(0.51), at(0.5), at(0.4, 0.31))]
+    assert 0.51 < 0.52 < APART * 0.5 < 0.6
     assert _apart(every, evaluator) == [every[0], every[3], every[4]]
     assert _apart([], evaluator) == []
 
@@ -123,3 +123,12 @@ def test_unlucky_seeds_explain_failures_that_all_drifts_on_them_have() -> None:
     even = np.array([0.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 2.0])
     steep = RateField(prior, 9.0, even, episodes, -5.0)
     assert RateField(prior, 9.0, even, episodes, -5.0, steep, 4.0 * used @ used.T).evidence < steep.evidence
+
+
+def test_a_failure_that_is_left_out_does_not_hide_farther_ones_once_it_is_no_longer_the_nearest() -> None:
+    evaluator = evaluator_of(lambda point, _: (point["a"] < 0.45, 1.0), SQUARE)
+    together = Together(0.5, [])
+    assert together.confirm([at(0.53, 0.1), at(0.51, 0.1)], evaluator)
+    assert together.confirm([at(0.495, 0.1)], evaluator)
+    assert [one.point["a"] for one in together.every] == [0.53, 0.51, 0.495]
+    assert [one.point["a"] for one in together.found] == [0.53, 0.495]
