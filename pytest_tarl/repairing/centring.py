@@ -19,7 +19,7 @@ from pytest_tarl.searching.accept import Reference
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 
 THIN = 0.35  # candidates that lose less than this share of the margin are not improved
-STEPS = (1.3, 1.12, 1.04, 1.015)  # ratios between neighbouring values, tried in this order
+STEPS = (1.3, 1.12, 1.04)  # ratios between neighbouring values, tried in this order
 SEEDS = 5  # maximum number of seeds on which to compare values
 BEHIND = 2  # number of seeds after which a value that earned less than the best one is dropped
 MOVES = 3  # maximum number of moves in one direction with one ratio

@@ -21,7 +21,7 @@ from tarl_lint.model import Operand
 
 POWERS = (1.5, 2.0)  # exponents of the factors of a candidate at the edge of the range of good values
 MILDER = (0.75, 0.5)  # exponents of the factors of a candidate whose missions succeed but earn too little
-RATIOS = (1.1, 1.03, 1.01)  # ratios between neighbours of a value that loses too much in its test
+RATIOS = (1.1, 1.03)  # ratios between neighbours of a value that loses too much in its test
 MOVES = 3  # maximum number of moves in one direction with one ratio
 BETTER = 0.1  # a neighbour must earn at least this share of the margin more
 CLOSE = 1.3  # maximum ratio of two rejected values between which good values may lie

@@ -77,7 +77,8 @@ class Adjusting:
     def exactly(self, guard: Guard) -> Iterator[Candidate]:
         """Move the best unit under a guard once to where its missions follow the designed ones most closely.
 
-        Before a unit that gains much is combined with others, its value may only have to be more exact.
+        Before a unit that gains much is combined with others, its value may only have to be more exact. If that is not
+        enough, it is refined once more.
         """
         search = self.search
         leaders = () if search.proposed else search.gains.leaders(guard)[:1]
@@ -88,6 +89,7 @@ class Adjusting:
             seed = search.goal.pairs[0].seed
             step, _ = exactest(unit, factor, guard, seed, search.mutate, search.trials)
             yield from search.attempt(unit, guard, step, 0)
+            yield from self.refine(0)
 
     def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
         """Try factors between the operand's best factor and the neighbouring factors, on a log scale."""
