@@ -20,13 +20,18 @@ MOST = 45  # number of episodes for the changes; half as many more if one of the
 
 
 class Early:
-    """The structural changes of a search of constants, tried once; `spent` counts their episodes."""
+    """The structural changes of a search of constants, tried once; `spent` counts their episodes.
+
+    `waiting` is true from the moment a candidate is yielded until the search continues, so it stays true if that
+    candidate is accepted.
+    """
 
     def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
         self.order = order
         self.guards = guards
         self.trials = trials
         self.spent = 0
+        self.waiting = False
         self._signs: Signs | None = None
         self._structures: Structures | None = None
 
@@ -40,7 +45,9 @@ class Early:
         try:
             for candidate in self._structures.early(MOST):
                 self.spent = self.trials.spent - begun
+                self.waiting = True
                 yield candidate
+                self.waiting = False
         finally:
             self.spent = self.trials.spent - begun
 

@@ -30,7 +30,7 @@ from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.repairing.unsearched_modules import unnamed_modules
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ranking import Ranking
-from pytest_tarl.searching.search import BudgetSpentError, Candidate, Strategy, label
+from pytest_tarl.searching.search import BudgetSpentError, Strategy, label
 
 CONSTANTS = 2 / 3  # share of the budget for the search of constants; structural changes get the rest
 RESERVE = 1 / 6  # share of the budget that is added to the search of constants if a candidate has gained much
@@ -128,7 +128,7 @@ def _search(
             _exhibit(strategy)
     except KeyboardInterrupt:
         found.interrupted = True
-    if first and found.accepted is not None and _is_structural(found.accepted.candidate):
+    if first and found.accepted is not None and early.waiting:
         found.effects, found.method = early.effects(), "structure"
         found.structure = early.spent
     elif not found.effects:
@@ -163,10 +163,6 @@ def _restructure(
     found.curves += (SearchTrace("structure", tuple(trials.totals), tuple(trials.labels)),)
     purse.settle(trials)
     found.structure = trials.spent
-
-
-def _is_structural(candidate: Candidate) -> bool:
-    return any(mutation.form is not None for mutation in candidate.mutations)
 
 
 def _chief(searched: Sequence[Guard]) -> tuple[Guard, ...]:
