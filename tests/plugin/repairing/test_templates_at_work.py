@@ -133,7 +133,7 @@ def prediction(state: dict[str, float], x: float) -> float:
 def confirmed(state: dict[str, float], x: float) -> float:
     value = x / 2.0
     state["count"] = state.get("count", 0.0) + 1.0 if value < 0.0 else 0.0
-    return value if state["count"] >= 3.0 else -value
+    return value if state["count"] >= 6.0 else -value
 
 
 def median() -> Command:
