@@ -151,7 +151,7 @@ def _restructure(
     signs = NO_SIGNS
     if found.early is not None:
         trials.know(found.early.trials)
-        signs = found.early.signs(trials)
+        signs = NO_SIGNS if purse.late else found.early.signs(trials)
     structures = Structures(mutants.order, _chief(searched), trials, found.effects or {}, signs)
     examiner.turns += 1
     try:
