@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Protocol
 
 from pytest_tarl.model import Guard
+from pytest_tarl.searching import plateau
 from pytest_tarl.searching.exact import exactest
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.gains import Gains
@@ -64,6 +65,8 @@ class Adjusting:
                 for tried, _ in search.gains.items()
                 if self.refined[tried] < _most(tried[0]) and tried not in search.refused
             ]
+            if not search.proposed:
+                open_to = plateau.nearby(open_to, search.gains, PROMISING * wanted) or open_to
             best = max(open_to, key=search.gains.most, default=None)
             before = search.gains.most(best) if best is not None else 0.0
             if best is None or before <= search.slack:

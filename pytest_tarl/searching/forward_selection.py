@@ -7,7 +7,7 @@ yielded.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pytest_tarl.errors import RepairError
@@ -50,6 +50,9 @@ class Joint:
         return Joint(tuple(part for part in self.parts if part[0] != unit), self.guard)
 
 
+Preferred = Callable[[Candidate, Unit, float], Iterator[Candidate]]
+
+
 @dataclass(frozen=True)
 class Settled:
     """The candidates that were tried on further seeds, and the candidates that were confirmed and yielded."""
@@ -70,7 +73,10 @@ class Settled:
 
 
 class ForwardSelection:
-    """Combine units; `gains` are the gains of single units by factor, `slack` is the smallest gain that matters."""
+    """Combine units; `gains` are the gains of single units by factor, `slack` is the smallest gain that matters.
+
+    If a confirmed combination has only one part that is needed, `preferred` yields the changes that come before it.
+    """
 
     def __init__(
         self,
@@ -81,7 +87,9 @@ class ForwardSelection:
         gains: Mapping[Unit, Mapping[float, float]],
         slack: float,
         settled: Settled | None = None,
+        preferred: Preferred = lambda *_: iter(()),
     ) -> None:
+        self.preferred = preferred
         self.units = units
         self.mutate = mutate
         self.trials = trials
@@ -204,6 +212,8 @@ class ForwardSelection:
             return
         for one in dict.fromkeys((fewer, candidate)):
             if self.settled.holds(one, self.trials, self.goal, 0):
+                if one == fewer and len(least.parts) == 1:
+                    yield from self.preferred(one, *least.parts[0])
                 yield one
                 if self.trials.gain(one, self.goal.pairs) > AMPLE * self.goal.wanted:
                     return  # refused, but not because it earns too little

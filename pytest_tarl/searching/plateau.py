@@ -6,7 +6,8 @@ and 0.4) are tried on named constants. In between, larger steps are tried on all
 reduce the reward.
 
 A large change that gains most is often only a way around the problem. Before it is combined with other changes,
-the inward steps are tried on the constants that matter, as far as a fixed number of episodes allows.
+the inward steps are tried on the constants that matter, as far as a fixed number of episodes allows, and a smaller
+change that gains much is refined first.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from collections.abc import Sequence
 from math import log
 
 from pytest_tarl.model import Guard
-from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.gains import Gains, Key
 from pytest_tarl.searching.plainness import Oddness, kind, named
 from pytest_tarl.searching.units import Unit, change_size
 
@@ -44,6 +45,18 @@ def best_is_far(gains: Gains, guard: Guard) -> bool:
         for factor, gain in by_factor.items():
             (near if change_size(unit, factor) <= log(NEARBY) + 1e-9 else far).append(gain)
     return max(far) > max(near) + gains.slack
+
+
+def nearby(tried: Sequence[Key], gains: Gains, least: float) -> list[Key]:
+    """Return the units and guards whose best factor is not large and gains at least `least`.
+
+    Return none unless a large change gains most.
+    """
+    best = {key: max(gains.of(*key).items(), key=lambda one: one[1]) for key in tried}
+    near = [key for key, (factor, _) in best.items() if change_size(key[0], factor) <= log(NEARBY) + 1e-9]
+    if max(tried, key=gains.most, default=None) in near:
+        return []
+    return [key for key in near if best[key][1] >= least]
 
 
 def inward(units: Sequence[Unit], gains: Gains) -> tuple[list[Unit], list[float]]:

@@ -22,7 +22,17 @@ from pytest_tarl.searching.gentler import another_way, gentler
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
-from pytest_tarl.searching.smaller import BESIDE, EARLY, EPISODES, LOST, WORSE, milder, onward, smaller
+from pytest_tarl.searching.smaller import (
+    BESIDE,
+    EARLY,
+    EPISODES,
+    LOST,
+    WORSE,
+    inside,
+    milder,
+    onward,
+    smaller,
+)
 from pytest_tarl.searching.units import NEAR, Unit
 
 # number of refinements of each constant whose change a maintainer would prefer to the candidate found
@@ -36,6 +46,7 @@ class Search(Protocol):
 
     units: tuple[Unit, ...]
     guards: Sequence[Guard]
+    mutate: Mutate
     trials: Trials
     goal: Goal
     proposed: bool
@@ -203,7 +214,10 @@ class Preferences:
             self._aside.append((other, candidate))
 
     def _milder(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """Yield the value halfway to the old one first if it earns as much and nothing between them was tried."""
+        """Yield the value halfway to the old one first if it earns as much and nothing between them was tried.
+
+        A value a little nearer to the old one must hold, too, so that the value lies inside the good range.
+        """
         gains = self.search.gains.of(unit, found.guard)
         halfway = milder(unit, factor, gains)
         if self.search.proposed or halfway is None:
@@ -214,9 +228,20 @@ class Preferences:
         one, other = (
             self.search.trials.totals_of(each, self.search.goal.pairs) for each in (candidate, found)
         )
-        both = one.keys() & other.keys()
-        if fmean(one[at] - other[at] for at in both) >= -LOST * self.search.goal.wanted:
+        lost = fmean(other[at] - one[at] for at in one.keys() & other.keys())
+        if lost <= LOST * self.search.goal.wanted and self._holds_inside(unit, halfway, found.guard, pair):
             yield candidate
+        else:
+            self._aside.append((unit, candidate))
+
+    def _holds_inside(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
+        """Return whether a factor a little nearer to 1 reaches the goal on a few seeds."""
+        nearer = Candidate(unit.mutations(self.search.mutate, inside(factor)), guard)
+        trials, goal = self.search.trials, self.search.goal
+        try:
+            return all(goal.reached(trials(nearer, seed), seed) for seed in self._compared_on(pair))
+        except RepairError:
+            return False
 
     def _small_steps(
         self, parts: Sequence[Part], found: Candidate, unit: Unit, factor: float, begun: int

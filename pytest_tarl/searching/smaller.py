@@ -25,6 +25,7 @@ TRACE = 0.005  # minimum gain of a small step that is followed by steps ONWARD, 
 EPISODES = 20  # number of episodes after which no further constant is tried
 EARLY = 0.5  # share of the budget after which a repair is no longer compared
 LOST = 0.01  # maximum reward that a milder value of the same constant may lose, as a share of the wanted gain
+INSIDE = 0.85  # size of the change that must hold, too, as a share of the size of the milder one
 WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
 
 
@@ -81,3 +82,9 @@ def milder(unit: Unit, factor: float, gains: Mapping[float, float]) -> float | N
         return None
     low, high = sorted((1.0, factor))
     return None if any(low < one < high for one in gains) else round(sqrt(factor), 3)
+
+
+def inside(factor: float) -> float:
+    """Return a factor a little nearer to 1."""
+    nearer: float = factor**INSIDE
+    return round(nearer, 3)

@@ -373,4 +373,11 @@ class Sweep:
             gains,
             self.slack,
             self._settled,
+            self._alone,
         )
+
+    def _alone(self, candidate: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
+        """Yield the changes preferred to a single change that was found as part of a combination."""
+        self._tried.add(candidate)
+        self._learn(unit, candidate, factor)
+        yield from self.preferences.before(candidate, unit, factor, 0, True, True)

@@ -11,7 +11,7 @@ from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.gains import Gains
-from pytest_tarl.searching.plateau import AROUND, AT_LEAST, best_is_far, inward
+from pytest_tarl.searching.plateau import AROUND, AT_LEAST, best_is_far, inward, nearby
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import Unit, units
@@ -72,6 +72,49 @@ def test_a_narrow_good_range_of_another_constant_is_found_although_a_large_chang
     found = next(Sweep(GAINS, mutations, (ALWAYS,), trials, goal).candidates())
     assert [mutation.operand for mutation in found.mutations] == [GAINS[2]]
     assert trials.spent < 130
+
+
+@pytest.mark.parametrize(
+    ("entries", "expected"),
+    [
+        ([(0, 5.0, 9.0), (1, 1.5, 8.0), (2, 0.4, 3.9)], [1]),  # a large change gains most
+        ([(0, 5.0, 9.0), (1, 1.5, 8.9)], [1]),
+        ([(0, 2.2, 9.0), (1, 1.5, 8.0), (2, 5.0, 8.5)], []),  # it does not
+        ([(0, 5.0, 9.0), (1, 0.15, 8.0)], []),
+        ([], []),
+    ],
+)
+def test_smaller_changes_that_gain_much_are_refined_before_a_large_one(
+    entries: list[tuple[int, float, float]], expected: list[int]
+) -> None:
+    table = gains_of(*((UNITS[at], factor, gain) for at, factor, gain in entries))
+    tried = [key for key, _ in table.items()]
+    assert nearby(tried, table, 4.0) == [(UNITS[at], ALWAYS) for at in expected]
+
+
+def test_a_small_change_is_found_although_five_times_another_constant_nearly_suffices() -> None:
+    """A robot drives by the clock on worn tyres: it must drive for a third longer, or by chance five times as fast."""
+    wait, speed = GAINS[2], GAINS[0]
+
+    def run(candidate: Candidate, _: int) -> Outcome:
+        factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
+        late, fast = abs(factors.get(wait, 1.0) - 1.34), factors.get(speed, 1.0)
+        total = (
+            10.0 - 25.0 * late
+            if late < 0.2
+            else 8.0
+            if 4.9 < fast < 5.5
+            else 3.0
+            if 2.0 < fast < 3.0
+            else 0.0
+        )
+        return Outcome(total - 0.01 * len(factors), total > 9.0)
+
+    goal = Goal(tuple(Pair(seed, 0.0) for seed in range(6)), near=9.0, enough=9.4, online=0.0)
+    trials = Trials(run, 300)
+    found = next(Sweep(GAINS, mutations, (ALWAYS,), trials, goal).candidates())
+    assert [mutation.operand for mutation in found.mutations] == [wait]
+    assert trials.spent < 100
 
 
 @pytest.mark.parametrize(("factor", "far"), [(1.2, False), (0.5, True), (3.0, True)])

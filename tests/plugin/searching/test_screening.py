@@ -63,3 +63,20 @@ def test_a_run_that_holds_by_chance_is_yielded_without_unneeded_parts() -> None:
     found = list(screened(together, ALWAYS, generator(1, "sweep")))
     assert worth_screening(together.units)
     assert {m.operand for candidate in found for m in candidate.mutations} <= {gains[20]}
+
+
+def test_a_change_found_in_a_screening_is_compared_with_named_constants() -> None:
+    """Scaling a literal and lowering the threshold in the next line have the same effect; the threshold has a name."""
+    literals = [operand(line, "1.0", 1.0) for line in range(0, 120, 2)]
+    scale = literals[30]
+    threshold = operand(scale.span.line + 1, "THRESHOLD", 1.0, named=True)
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        values = {one.operand: float(one.value) for one in candidate.mutations}
+        right = values.get(scale, 1.0) > 2.0 or values.get(threshold, 1.0) < 0.5
+        return Outcome(10.0 if right else 0.0, right)
+
+    sweep = Sweep(
+        (*literals, threshold), mutations, (ALWAYS,), Trials(run, 400), GOAL, generator(0, "screening")
+    )
+    assert [one.operand for one in next(sweep.candidates()).mutations] == [threshold]
