@@ -50,7 +50,6 @@ class Search(Protocol):
     trials: Trials
     goal: Goal
     proposed: bool
-    mutate: Mutate
     gains: Gains
     refused: set[tuple[Unit, Guard]]
 
