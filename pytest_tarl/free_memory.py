@@ -45,8 +45,9 @@ def _of_groups() -> Iterator[int | None]:
             continue
         version, base = (1, _GROUPS / "memory") if controllers else (2, _GROUPS)
         own = base / path.lstrip("/")
+        # in a container, the files of the group may be at the root of the hierarchy, so the parents are read too
         for folder in (own, *own.parents):
-            if folder.is_relative_to(base):  # in a container, the group may be shown as the root
+            if folder.is_relative_to(base):
                 yield _left(folder, *_FILES[version])
 
 

@@ -57,7 +57,8 @@ class Options:
     bags: tuple[Path, ...] = ()  # recorded missions to compare
     stress_budget: int = 1000  # limit of a stress run, in episodes
     stress_seconds: float | None = None  # limit of a stress run in seconds, instead of episodes
-    stress_repair: bool = False  # whether a stress run repairs at the boundary
+    # whether a stress run also searches for a repair at the nearest drift that was confirmed to fail
+    stress_repair: bool = False
     total: int | None = None  # number of episodes that all comparisons of the run share
     resume: bool = False  # whether to reuse the finished episodes of an interrupted run
 

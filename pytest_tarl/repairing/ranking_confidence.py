@@ -28,11 +28,13 @@ def ranking_confidence(
     )
     held = len(accepted.acceptance.drifted) if accepted else 0
     if len(places) > 1:
-        first = f"the first {len(places)} were repaired together; the repair passed on {held} fresh seeds"
+        first = (
+            f"the first {len(places)} lines were repaired together; the repair passed on {held} fresh seeds"
+        )
     elif places:
-        first = f"the repair of the first passed on {held} fresh seeds"
+        first = f"the repair of the first line passed on {held} fresh seeds"
     else:
-        first = "no accepted repair confirms the first"
+        first = "no accepted repair confirms the first line"
     if ranking is None:
         simulated = f"{len(effects)} of {sites} lines were simulated, most of them in few runs"
         return f"{first}; {simulated} (--tarl-localize=full ranks all)"
@@ -53,8 +55,8 @@ def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequen
     span = f"{by}, about {percent(CONFIDENCE)}, {found.seeds} common seeds"
     if found.ahead:
         more = "one line gains" if found.ahead == 1 else f"{found.ahead} lines gain"
-        return f"{told}; {more} more than the first in the drifted world ({span})"
+        return f"{told}; {more} more than the first line in the drifted world ({span})"
     if found.level:
         others = "one other" if found.level == 1 else f"{found.level} others"
-        return f"{told}; {others} cannot be distinguished from the first (the next: {span})"
-    return f"{told}; the first gains more than the next ({span})"
+        return f"{told}; {others} cannot be distinguished from the first line (the next: {span})"
+    return f"{told}; the first line gains more than the next ({span})"

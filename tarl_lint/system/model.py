@@ -15,7 +15,9 @@ from tarl_lint.workspace.launch_model import LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.ros_names import joined, remapped
 
-Role = Literal["publishes", "subscribes", "serves", "calls", "performs"]  # of topics, services, actions
+Role = Literal[
+    "publishes", "subscribes", "serves", "calls", "performs"
+]  # what a node does with a topic, service or action
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,11 +97,12 @@ class Instance:
     name: str
     interface: Interface | None = None
     unread: str = ""
-    seen: tuple[Endpoint, ...] = ()  # for an unread node, the topics that its C++ source names
+    seen: tuple[
+        Endpoint, ...
+    ] = ()  # topics that the C++ source of a node names, if it could not be read otherwise
     silent: bool = False  # whether the node is known to publish nothing that other nodes subscribe to
-    meant: tuple[
-        tuple[str, str], ...
-    ] = ()  # for an unread node, the remappings of groups that are meant for it
+    # if the code of the node could not be read: the remappings of its launch groups that it can use
+    meant: tuple[tuple[str, str], ...] = ()
 
     def resolve(self, name: str) -> str:
         """Return the launched name of a topic or service in the code."""

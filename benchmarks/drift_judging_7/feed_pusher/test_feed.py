@@ -15,7 +15,7 @@ Range = message_type("sensor_msgs/msg/Range")
 DT = 0.2
 GOAL = 0.80
 LENGTH = 7.0
-BAND = 0.09  # error of the distance in m at which feed is left behind
+BAND = 0.09  # if the distance is wrong by more than this (m), feed is left behind
 
 
 class Barn:

@@ -28,7 +28,8 @@ class WireError(ValueError):
 def serialize(message: Any) -> bytes:
     """Serialise a message. Raise FieldError for a value that its field's type does not allow."""
     parts: list[bytes] = []
-    copied = getattr(type(message), "_tarl_copy", None)  # an installed ROS checks while it serialises
+    # classes of an installed ROS lack it, because they check the values themselves while they serialise
+    copied = getattr(type(message), "_tarl_copy", None)
     _write_message(message if copied is None else copied(message), parts)
     return b"".join(parts)
 

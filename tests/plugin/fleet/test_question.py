@@ -395,7 +395,7 @@ def test_the_answer_does_not_depend_on_the_number_of_workers(
     assert document.text(again) == document.text(found)
 
 
-def test_two_runs_that_add_the_same_missions_at_once_count_them_once(
+def test_missions_that_two_runs_add_at_the_same_time_are_counted_once(
     folder: Path, found: Answer, tmp_path: Path
 ) -> None:
     """Let other runs add missions after a run has read the existing ones and before it writes its first file."""

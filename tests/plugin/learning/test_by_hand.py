@@ -215,7 +215,7 @@ def test_binomial_coefficients_probabilities_and_tails_equal_known_values() -> N
 
 
 @given(st.floats(0.01, 0.99))
-def test_bisection_finds_the_largest_value_that_the_test_refutes(edge: float) -> None:
+def test_bisection_finds_the_largest_value_for_which_the_condition_holds(edge: float) -> None:
     assert root(lambda value: value <= edge, 0.0, 1.0) == pytest.approx(edge, abs=1e-12)
     assert root(lambda _: False, 0.0, 1.0) == 0.0
     coarse = root(lambda value: value <= edge, 0.0, 1.0, 3)

@@ -165,7 +165,7 @@ def test_the_json_of_a_watch_has_evidence_onset_alarm_and_cells() -> None:
 
 
 @given(st.lists(st.integers(1, 7), max_size=30), st.integers(2, 9))
-def test_the_times_of_every_nth_mission_are_kept_for_any_portions_of_missions(
+def test_the_time_of_every_nth_mission_is_kept_however_the_missions_are_batched(
     portions: list[int], most: int
 ) -> None:
     most *= 2

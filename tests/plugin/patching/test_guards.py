@@ -206,7 +206,7 @@ def test_the_guard_checks_for_none_unless_the_surrounding_code_excludes_it(
         ),
     ],
 )
-def test_an_attribute_set_only_by_a_callback_is_used_where_the_code_already_reads_it(
+def test_a_guard_uses_an_attribute_that_only_a_callback_sets_only_where_the_code_reads_it(
     text: str, bound: bool
 ) -> None:
     assert (choose(text, ("self.p",)) is not None) is bound
@@ -221,7 +221,7 @@ def test_an_attribute_set_only_by_a_callback_is_used_where_the_code_already_read
         ("def step(p): HERE = 1", True),
     ],
 )
-def test_a_global_set_only_by_a_callback_is_used_where_the_code_already_reads_it(
+def test_a_guard_uses_a_global_that_only_a_callback_sets_only_where_the_code_reads_it(
     text: str, bound: bool
 ) -> None:
     assert (choose(text, ("p",)) is not None) is bound

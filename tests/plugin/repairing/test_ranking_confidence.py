@@ -37,7 +37,9 @@ def ranked(budget: int) -> Ranking:
 
 def test_without_a_ranking_the_number_of_simulated_lines_is_stated() -> None:
     told = ranking_confidence(ORDER, EFFECTS, accepted(GAIN), None)
-    assert told.startswith("the repair of the first passed on 12 fresh seeds; 2 of 3 lines were simulated")
+    assert told.startswith(
+        "the repair of the first line passed on 12 fresh seeds; 2 of 3 lines were simulated"
+    )
     assert "--tarl-localize=full" in told
 
 
@@ -48,7 +50,7 @@ def test_a_ranking_states_by_how_much_the_first_line_leads() -> None:
 
 
 def test_the_first_line_is_not_called_the_best_if_other_lines_gain_more() -> None:
-    assert "one line gains more than the first in the drifted world (-" in ranking_confidence(
+    assert "one line gains more than the first line in the drifted world (-" in ranking_confidence(
         ORDER, EFFECTS, accepted(BIAS), raced()
     )
 
@@ -63,13 +65,13 @@ def raced() -> Ranking:
 def test_lines_repaired_together_are_reported_together() -> None:
     told = ranking_confidence(ORDER, EFFECTS, accepted(GAIN, LIMIT), ranked(300))
     assert told.startswith(
-        "the first 2 were repaired together; the repair passed on 12 fresh seeds; 2 lines were simulated alone"
+        "the first 2 lines were repaired together; the repair passed on 12 fresh seeds; 2 lines were simulated alone"
     )
 
 
 def test_a_ranking_says_if_it_is_incomplete_or_without_a_repair() -> None:
     told = ranking_confidence(ORDER, EFFECTS, None, ranked(4))
-    assert told.startswith("no accepted repair confirms the first; ")
+    assert told.startswith("no accepted repair confirms the first line; ")
     assert told.endswith("the budget ended before all were ranked")
 
 

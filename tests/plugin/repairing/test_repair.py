@@ -262,13 +262,13 @@ def test_a_full_ranking_continues_after_the_repair_and_states_its_certainty(tank
     assert full["repair"]["guard"] == alone["repair"]["guard"]
     assert full["episodes"]["search"] > alone["episodes"]["search"]
     assert re.search(
-        r"ranking the repair of the first passed on \d+ fresh seeds; 2 of 2 lines .* common seeds\)",
+        r"ranking the repair of the first line passed on \d+ fresh seeds; 2 of 2 lines .* common seeds\)",
         told,
     )
     assert "--tarl-repair --tarl-localize full" in told
     assert {one["method"] for one in full["culprits"] if one["operands"]} == {"ranking"}
     (page,) = tank.path.glob(".tarl/report/*.html")
-    assert "Confidence in this ranking: the repair of the first passed on" in page.read_text()
+    assert "Confidence in this ranking: the repair of the first line passed on" in page.read_text()
 
 
 def test_the_flag_localize_accepts_its_values_and_requires_the_flag_repair(tank: pytest.Pytester) -> None:

@@ -79,7 +79,7 @@ def test_a_pair_that_barely_earns_enough_is_adjusted_after_its_refusal() -> None
     assert better.mutations[0].value == pytest.approx(0.6, rel=0.08)
 
 
-def test_a_pair_that_earns_more_than_enough_is_not_adjusted_after_its_refusal() -> None:
+def test_two_constants_that_gain_more_than_needed_are_not_adjusted_when_refused() -> None:
     assert len(list(selection().gain(Joint(((GRIP, 0.61), (ANGLE, 1.5)), ALWAYS)))) == 1
 
 
