@@ -31,7 +31,7 @@ from pytest_tarl.sensors import Cell
 ALPHA = 0.05
 SIZES = (0.0, 0.1, 0.2, 0.5, 1.0)
 OFFLINE, ONLINE = 200, 40
-# number of missions in the pool of designed (True) and of drifting missions (False)
+# number of missions in each pool: designed missions (True), drifted missions (False)
 POOLED = {True: 3000, False: 1500}
 POOLED_EXAMPLE = {True: 1000, False: 300}
 
@@ -44,8 +44,8 @@ class Seen:
     drift: bool
     kolmogorov: bool
     threshold: bool
-    held: float  # of the changed cells that the missions visited, the share that is in the region
-    others: int  # number of cells in the region that the drift does not change
+    held: float  # share of the visited cells changed by the drift that are in the reported region
+    others: int  # number of cells in the reported region that the drift does not change
 
 
 @dataclass(frozen=True)

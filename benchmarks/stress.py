@@ -52,7 +52,7 @@ class Sized:
     """Runs episodes of a task whose drift is a single number: the coordinate of the point to evaluate."""
 
     stage: Stage
-    name: str  # of the drift
+    name: str  # name of the drift
     whole: bool  # whether the task's drift must be a whole number
     workers = 1
 

@@ -184,7 +184,7 @@ def belt(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
         if steady == 8 or arm > 260.0:
             break
     angle = abs(yaw + turn)
-    room = 46.0 - 30.0 * cos(angle) - 22.0 * sin(angle)  # between the fingers, across
+    room = 46.0 - 30.0 * cos(angle) - 22.0 * sin(angle)  # free width between the fingers
     gap, ahead = abs(side - reach), abs(place - arm)
     pads = max(0.0, 1.0 - (ahead / 20.0) ** 2) * cos(1.5 * min(angle, 1.0))
     holds = 2.7 * dust * pads * (1 + draws.normal(0.0, 0.05)) > weight

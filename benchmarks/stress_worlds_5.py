@@ -81,7 +81,7 @@ def crane(rng: np.random.Generator, rope: float, wind: float, load: float, late:
     )  # half a period: the second half of each push cancels the sway
     delay, seen = round(late / step), [0.0] * 8
     trolley = speed = sway = rate = worst = 0.0
-    limit = min(0.6, 14.0 / (load + 4.0))  # in m/s², of the motor
+    limit = min(0.6, 14.0 / (load + 4.0))  # maximum acceleration by the motor (m/s²)
     for now in range(steps):
         seen.append(rope * sin(sway))
         if now < 110:
@@ -138,7 +138,7 @@ def infusion(
 
     The patient announces a usual meal whatever they eat, so a small meal brings too much insulin.
     """
-    steps = 96  # of five minutes
+    steps = 96  # number of steps of five minutes
     eaten = int(rng.integers(14, 24))
     strong, noise = float(rng.normal(1.0, 0.08)), rng.normal(0.0, 4.0, steps)
     glucose, gut, stored, active = 118.0, 0.0, 0.0, 1.0
@@ -152,7 +152,7 @@ def infusion(
         if known < 78.0:
             dose = 0.0
         if now == eaten:
-            dose += 18.0  # announced: as much as a usual meal needs
+            dose += 18.0  # dose for an announced meal: as much as a usual meal needs
         gut += meal if now == eaten else 0.0
         absorbed, gut = 0.075 * gut, 0.925 * gut
         stored += 0.12 * (min(dose, 20.0) * (1.0 - leak) - stored)

@@ -155,7 +155,7 @@ def mower(
         heading += step * turn + shakes[now] * (0.5 + wet)
         side += step * (0.8 * sin(heading) + sliding)
         charge -= 0.0004 + 0.00004 * grass + 0.0002 * abs(turn)
-        missed += max(0.0, abs(side) - 0.2) / 0.6  # lanes overlap
+        missed += max(0.0, abs(side) - 0.2) / 0.6  # lanes overlap, so 0.2 m do no harm
         safe = safe and 0.65 + 0.45 * (now // lane) - side > 0.1
     return safe and charge > 0.15, 100.0 * (1.0 - min(1.0, missed / steps))
 
@@ -172,7 +172,7 @@ def dish(
     step, steps = 0.5, 400
     turned, angle = radians(tilt), float(rng.uniform(-0.6, 0.6)) + 0.9  # rad
     shocks, reads = rng.normal(0.0, 1.0, steps).tolist(), rng.normal(0.0, 0.08, steps).tolist()
-    skew = float(rng.normal(0.0, 0.12))  # s, of the ephemeris
+    skew = float(rng.normal(0.0, 0.12))  # error of the ephemeris (s)
     azimuth, rate, gust, held, received = degrees(atan2(-760.0, 117.0)), 0.0, 0.0, 0, 0.0
     for now in range(steps):
         true, own = step * (now - steps / 2), step * (now - steps / 2) + clock + skew

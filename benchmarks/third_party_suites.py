@@ -24,7 +24,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 PLAIN_RUNS = 4  # maximum number of plain runs
-FILE_RUNS = 20  # maximum number of plain runs of only the files whose tests still differ
+FILE_RUNS = 20  # maximum number of further plain runs, restricted to the files whose tests still differ
 TOOLS = ("pytest==8.4.2", "hypothesis==6.135.0")
 
 

@@ -24,7 +24,7 @@ from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
 OFFLINE = 200  # number of missions in a recording
-# number of missions in the pool of designed (True) and of drifting missions (False)
+# number of missions in each pool: designed missions (True), drifted missions (False)
 POOLED = {True: 3000, False: 1500}
 POOLED_EXAMPLE = {True: 1000, False: 300}
 FAILING = 0.03  # share of the designed missions that count as failed: those with the smallest totals

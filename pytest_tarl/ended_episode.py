@@ -27,7 +27,7 @@ class EndedEpisode:
     situation: Situation
     faults: Faults
     drifted: bool  # whether a drift or a fault is active; then a node that publishes nothing is not an error
-    ros: Ros | None  # None if the test did not use it
+    ros: Ros | None  # the ROS of the episode; None if the test did not use ROS
     drives_ros: bool  # whether nodes were started
     replay: Replay | None  # the recorded mission, if the episode replays one
     unrecorded: Mapping[Path, tuple[Position, ...]]  # per file, the statements that cannot be recorded
@@ -70,7 +70,7 @@ class EndedEpisode:
                 "tarl.reward(world.monitor())."
             )
         if self.drifted:
-            return None  # not an error: a drift may cause that sensors and nodes are silent
+            return None  # not an error, because a drift may silence sensors and nodes
         problem = self.situation.problem() or self._unmet()
         if problem is None and self._silent:
             problem = RecordingError(

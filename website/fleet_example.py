@@ -16,7 +16,7 @@ from pytest_tarl.commands.cli import main
 from tests.plugin.monitoring.missions import fixture, log, walks
 
 BEGAN = datetime(2026, 9, 7, 8, 26, tzinfo=timezone.utc).timestamp()
-APART = 7.5 * 3600  # s between two missions of a robot
+APART = 7.5 * 3600  # time between two missions of a robot (s)
 ROBOTS, DRIFTED = 32, (4, 9)
 SLIGHT = 0.4  # size of the drift at the second site; that of the two drifting robots is 1
 

@@ -102,7 +102,7 @@ def engine_torque(throttle: float, rpm: float) -> float:
 
 def automatic_transmission(inputs: Signal) -> Mapping[str, Signal]:
     """Return `speed` in mph, `rpm` and `gear`, from throttle in % (0 to 100) and brake torque in ft lb (0 to 325)."""
-    rpm, wheel, gear, waited = 1000.0, 0.0, 0, 0.0  # gear from 0
+    rpm, wheel, gear, waited = 1000.0, 0.0, 0, 0.0  # gears count from 0
     pending = 0
     speeds, rpms, gears = (np.empty(len(inputs)) for _ in range(3))
     for step, (throttle, brake) in enumerate(inputs.tolist()):

@@ -46,7 +46,7 @@ from pytest_tarl.stressing.guarantee import Guarantee
 from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.search import explore
 
-SPREAD = 0.35  # first standard deviation of CMA-ES, in units of the ranges
+SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the ranges
 _NONE = np.zeros(0, np.int32)
 
 

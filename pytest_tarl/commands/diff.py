@@ -35,7 +35,7 @@ class FixtureDiff:
     gone: tuple[SitePlace, ...]
     new: tuple[SitePlace, ...]
     moved: tuple[Moved, ...]
-    cells: tuple[int, int, int]  # number of cells that are only in A, in both, and only in B
+    cells: tuple[int, int, int]  # number of cells only in recording A, in both, only in B
     same_sensors: bool
     p_failures: float = 1.0
 

@@ -12,7 +12,7 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-# no message is left after this number of attempts without one; a single attempt may have handled another event
+# number of consecutive attempts without a message after which none is left; an attempt may handle another event
 IDLE = 3
 
 Say = Callable[[dict[str, Any]], None]

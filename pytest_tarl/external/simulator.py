@@ -108,7 +108,7 @@ class Simulator:
         if self.setup.step is not None:
             self._stepped(self.setup.step)
         else:
-            # the simulator has passed the target, because it continues while the test does something else
+            # the simulator has passed the target, because it keeps running while the test does something else
             if self._target <= self._time:
                 self._target = self._time + nanoseconds(dt)
             self._deliver(self._released())

@@ -131,7 +131,7 @@ class _Design:
     def __init__(self, totals: Totals) -> None:
         self.totals = totals
         self.first = np.concatenate([[0], np.cumsum(totals.sizes)]).astype(np.int64)
-        self.columns = totals.levels + self.first[:-1]  # (rows, factors)
+        self.columns = totals.levels + self.first[:-1]  # shape (rows, factors)
         self.width = int(self.first[-1])
         robots = totals.squares.size
         place = (totals.robot[:, None] * self.width + self.columns).ravel()

@@ -144,7 +144,7 @@ class _Writer:
     origin: Origin
     fixture: Fixture
     recording: bytes
-    rows: dict[str, list[Row]] = field(default_factory=lambda: defaultdict(list))  # by day
+    rows: dict[str, list[Row]] = field(default_factory=lambda: defaultdict(list))  # day → its rows
     known: dict[str, dict[int, str]] = field(default_factory=dict)  # day → mission → its robot
     waiting: int = 0
 

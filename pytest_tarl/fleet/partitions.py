@@ -30,8 +30,8 @@ RESULTS = ("mission", "passed", "total", "steps")
 class Wanted:
     """The selected missions of a part: their sorted IDs, and their numbers in the database of the query."""
 
-    cells: str  # file of the transitions
-    missions: str  # file of the results
+    cells: str  # file with the transitions between cells
+    missions: str  # file with the results of the missions
     identities: NDArray[np.uint64]
     numbers: Ints
 

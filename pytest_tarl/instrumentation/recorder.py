@@ -39,7 +39,7 @@ class _Buffer:
     entries: list[Any] = field(default_factory=list)
     lengths: list[int] = field(default_factory=list)
     packed: list[Pairs] = field(default_factory=list)
-    gone: int = 0  # number of packed entries
+    gone: int = 0  # number of entries that were moved from the buffer into columns
 
     def pack(self) -> None:
         """Convert the entries to columns. Call it in the buffer's own thread, or after the episode."""

@@ -155,7 +155,7 @@ def _value(
     if isinstance(node, ast.BinOp):
         left, right = (_value(one, names, given, found, depth) for one in (node.left, node.right))
         return _operated(node.op, left, right)
-    # launch joins a list of substitutions to one text, here of a single element
+    # launch joins a list of substitutions into one text; here, the list has a single element
     if isinstance(node, ast.List) and len(node.elts) == 1:
         return _value(node.elts[0], names, given, found, depth)
     if isinstance(node, ast.Call) and _function(node) == "LaunchConfiguration":

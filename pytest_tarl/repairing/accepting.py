@@ -107,7 +107,7 @@ class Examiner:
                 )  # keep the centred values, so that they are not centred again
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
-                # narrower guards cannot gain more than this one, which is as wide as that of the search
+                # this guard is as wide as that of the search, and narrower guards cannot gain more
                 break
         for others in (
             *(self.others.inward(edge, trials) for edge in edges),

@@ -15,7 +15,7 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.searching.search import Candidate, Trials
 
-FROM = 60  # number of episodes after which the changes are tried; the mean of a search that a constant ends
+FROM = 60  # number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
 MOST = 45  # number of episodes for the changes; half as many more if one of them gains much
 
 

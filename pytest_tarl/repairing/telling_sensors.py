@@ -9,7 +9,7 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.sensors import Sensor
 
-VARIES = 1.5  # minimum growth of the number of bins that a sensor uses, from which on it is said to vary
+VARIES = 1.5  # a sensor is said to vary if its number of visited bins grows at least by this factor
 OVERLAP = 0.25  # a sensor is telling if at most this share of steps is in the same bins in both worlds
 
 

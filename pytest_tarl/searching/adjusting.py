@@ -18,7 +18,7 @@ from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
 ROUNDS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
-LEAST = 0.5  # minimum gain of a unit that is moved to its most exact value, as a share of the wanted gain
+LEAST = 0.5  # minimum gain of a unit whose exact value is searched, as a share of the wanted gain
 REFINED = 8  # maximum number of runs that refine one operand
 
 

@@ -30,7 +30,7 @@ STEPS: tuple[Step, ...] = (
     *((1.285, INWARD), (0.78, INWARD), (1.1, INWARD), (0.91, INWARD), (1.16, INWARD), (0.86, INWARD)),
     *((1.42, INWARD), (0.7, INWARD), (1.62, INWARD), (0.6, INWARD), (1.05, INWARD), (0.95, INWARD)),
 )
-NEARBY = 2.5  # the largest factor by which a change that is not large increases or decreases a constant
+NEARBY = 2.5  # a change is large if it multiplies or divides a constant by more than this factor
 AROUND = 40  # maximum number of episodes for inward steps around large changes that gain
 AT_LEAST = 2  # minimum number of inward steps around large changes that gain
 

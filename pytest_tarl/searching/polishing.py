@@ -18,7 +18,7 @@ STEPS = (1.2, 1.08)
 SHARP_STEPS = (1.08, 1.03)  # ratios for a single constant that earns much on most seeds
 MUCH = 0.7  # minimum gain of a constant that SHARP_STEPS applies to, as a share of the wanted gain
 EPISODES = 36  # number of episodes after which no further factor is tried
-# factors that fall short by more than this share of the wanted gain on the first seeds run on no further seed
+# a factor that falls short by more than this share of the wanted gain on the first seeds is dropped
 BEHIND = 0.05
 
 Factors = tuple[float, ...]

@@ -25,7 +25,7 @@ TRACE = 0.005  # minimum gain of a small step that is followed by steps ONWARD, 
 EPISODES = 20  # number of episodes after which no further constant is tried
 EARLY = 0.5  # share of the budget after which a repair is no longer compared
 LOST = 0.01  # maximum reward that a milder value of the same constant may lose, as a share of the wanted gain
-INSIDE = 0.85  # size of the change that must hold, too, as a share of the size of the milder one
+INSIDE = 0.85  # a change of this share of the milder change's size must hold, too
 WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
 
 

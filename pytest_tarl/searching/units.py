@@ -13,7 +13,7 @@ from pytest_tarl.searching.search import Mutate, operand_effect
 from tarl_lint.model import Operand
 
 NEAR = (2.2, 0.4)  # the first factors to try on every unit
-ENOUGH = 0.9  # minimum gain of a use that brings the gain of all uses, as a share of the latter
+ENOUGH = 0.9  # a use alone is credited with the gain of all uses if it gains at least this share of that gain
 
 Scope = Callable[[Operand], str]
 

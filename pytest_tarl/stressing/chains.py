@@ -20,8 +20,8 @@ from pytest_tarl.stressing.guarantee import Part
 from pytest_tarl.stressing.nearest import Nearest
 
 NEARER = 0.98  # maximum distance of the next confirmed drift, as a share of the distance of the last one
-# probabilities that a test shows too many failures: at least LIKELY at the farther drifts of a chain whose tests are
-# about these alone, less than UNLIKELY for tests of the loss alone
+# A chain tests the failure rate alone if a test at its farther drifts shows too many failures with at least the
+# probability LIKELY; it tests the loss alone if that probability is below UNLIKELY.
 LIKELY, UNLIKELY = 0.5, 0.05
 VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
 POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a drift beyond the near end

@@ -20,7 +20,7 @@ from pytest_tarl.stressing.nearest import EXPECTED, Nearest
 from pytest_tarl.stressing.rate_tests import RateTests
 from pytest_tarl.stressing.rays import Ray, distance, joined
 
-# share of the distance to each boundary at which pairs are tested; each direction alone holds there
+# pairs of directions are tested at this share of the distance to each boundary, where each direction alone holds
 INSIDE = 0.9
 FIRST = 0.5  # share of the budget for the first search for the nearest failing drift
 CONFIRMED = 0.95  # share of the budget that the tests of a nearer failing drift may use

@@ -13,7 +13,7 @@ from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
 
 HIGHEST = 1.0 - LOWEST  # larger losses count as this one, because margins below LOWEST count as LOWEST
 WIDTH = 0.3  # standard deviation of the weights of drifts by their mean loss, in units of the tolerated loss
-# weight of the typical variance, in degrees of freedom, beside those of drifts with a similar mean loss
+# weight (degrees of freedom) of the typical variance, averaged with the variances of drifts of similar mean loss
 LIKE = 2.0
 PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
 

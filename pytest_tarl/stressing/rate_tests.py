@@ -30,12 +30,12 @@ class RateTests:
     pool: str
     risk: float
     ran: set[int] = field(default_factory=set)  # seeds that ran under the last confirmed drift
-    failed: set[int] = field(default_factory=set)  # those of them that failed there
+    failed: set[int] = field(default_factory=set)  # the seeds in `ran` whose episodes failed
 
     def confirm(self, point: Point) -> bool:
         """Return whether fresh episodes show that too few episodes pass at a point. Raise BudgetSpentError."""
         looks, groups = self._looks(), self._groups()
-        outcomes: dict[int, bool] = {}  # by the number of the seed, whether its episode failed
+        outcomes: dict[int, bool] = {}  # number of a seed → whether its episode failed
         shown = False
         try:
             for block in _blocks(groups):

@@ -18,17 +18,17 @@ Symptom = Callable[[Sequence[Pair]], float]
 
 TALL = 0.25  # minimum height of a spike, as a share of the range of the values
 BACK = 0.5  # maximum change across a spike, as a share of its height
-SPIKES = 0.04  # additional share of spikes that counts as certain
+SPIKES = 0.04  # growth of the share of spikes from which on the symptom is certain
 ROUGH = 0.01  # roughness that does not matter, as a share of the range of the values
 ROUGHER = (1.5, 6.0)  # growth of the roughness at which noise begins, and at which it is certain
-SWITCHES = 0.1  # additional share of steps with a switch that counts as certain
+SWITCHES = 0.1  # growth of the share of steps with a switch from which on the symptom is certain
 JUMP = 0.4  # minimum change from one value to the next that counts as a jump, as a share of the range
 SOON = 5  # maximum number of steps from a jump to the loss that it causes
 LOSS = 0.02  # minimum additional loss of a step that counts, as a share of a designed mission's reward
 STEADY = 0.02  # standard deviation at the end of a mission that does not matter, as a share of the range
 SWINGS = (2.0, 6.0)  # growth of that standard deviation at which a swing begins, and at which it is certain
 CROSSINGS = 3  # minimum number of times that a swing crosses its mean
-ASIDE = 0.5  # growth of the mean at the end that counts as a certain offset, as a share of the range
+ASIDE = 0.5  # growth of the mean at the end from which on an offset is certain, as a share of the range
 GROWTH = 0.2  # (end - start) / (end + start) of a value that certainly runs away
 FEWEST = 6  # minimum number of values in a series
 

@@ -226,7 +226,7 @@ class Tracer:
 
     def calls(self, frame: Frame, outer: Frame) -> Sequence[Written] | None:
         """Return the statements whose calls lead from one frame to another; None if no calls do."""
-        if (frame, outer) not in self._chains:  # the same for all flows
+        if (frame, outer) not in self._chains:  # cached, because all flows have the same chains
             places = calls(frame, outer)
             found = [written for place in places if (written := self._statement(place)) is not None]
             self._chains[frame, outer] = found if places else None

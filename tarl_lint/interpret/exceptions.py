@@ -63,7 +63,7 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
     if not any(e.decision == decision and e.name == raises for e in frame.escapes):
         leave(
             ctx, Escape(frame, statement, raises, Value(deps), decision), frame
-        )  # its text quotes the arguments
+        )  # the text of the exception quotes the arguments
 
 
 def _expected(ctx: Interpreter, frame: Frame) -> str:

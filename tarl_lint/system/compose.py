@@ -33,7 +33,7 @@ from tarl_lint.workspace.parameter_yaml import NoYamlError, content
 from tarl_lint.workspace.ros_names import resolved
 
 UNKNOWN: Final = "?"
-# prefix before the name of a service; together they name the unread node that answers the service
+# prefix before the name of a service; together they stand for a server whose code is not analysed
 SERVER: Final = "server of "
 # ROS programs that use only topics of transforms, robot models and displays
 _SILENT: Final = frozenset(

@@ -56,7 +56,7 @@ class InteractiveMarkerServer:
         self._id = server_id
         self._number = 0
         self._shown: dict[str, _Shown] = {}
-        self._waiting: dict[str, _Shown | None] = {}  # None: to be erased
+        self._waiting: dict[str, _Shown | None] = {}  # None for a marker to be erased
         self._moved: dict[str, Any] = {}  # marker name → new pose, for markers that only moved
         self._update = self._publisher("update", "InteractiveMarkerUpdate")
         self._full = self._publisher("update_full", "InteractiveMarkerInit")
