@@ -48,7 +48,7 @@ def test_import_cycles_are_found(imports: dict[str, set[str]], found: list[set[s
     assert list(circles(imports)) == found
 
 
-def test_only_mirrors_of_rclpy_are_in_import_cycles() -> None:
+def test_only_modules_that_mirror_rclpy_are_in_import_cycles() -> None:
     graph = grimp.build_graph("tarl_lint", "pytest_tarl", cache_dir=None)
     imports = {module: set(graph.find_modules_directly_imported_by(module)) for module in graph.modules}
     rooms = sorted(sorted({module.rpartition(".")[0] for module in one}) for one in circles(imports))

@@ -68,7 +68,7 @@ def test_faults_are_injected_into_augmented_assignments(sown: Any, tmp_path: Pat
     assert mutated(sown, tmp_path, text)
 
 
-def test_the_lines_of_a_match_statement_are_those_of_its_subject(sown: Any, tmp_path: Path) -> None:
+def test_a_match_statement_has_the_line_numbers_of_its_subject(sown: Any, tmp_path: Path) -> None:
     file = tmp_path / "module.py"
     file.write_text("def f(a):\n    match a + 1:\n        case 1:\n            return a < 2\n")
     assert {(one.kind.split()[0], one.lines) for one in sown.faults(file, "module.py")} == {

@@ -185,7 +185,7 @@ async def test_columns_count_utf16_units(client: LanguageClient, tmp_path: Path)
     assert found[0].range.start == lsp.Position(PUBLISH, 16)
 
 
-async def test_code_lenses_name_the_topics_with_data_in_a_call_and_those_that_decide_on_it(
+async def test_code_lenses_name_the_topics_that_supply_data_or_conditions_of_a_publish_call(
     client: LanguageClient, tmp_path: Path
 ) -> None:
     await diagnostics(client, uri(tmp_path), 2)
@@ -264,7 +264,7 @@ async def test_a_finding_is_accepted_into_the_baseline(client: LanguageClient, t
     assert "Accept this TARL101 into the baseline" not in await actions(client, tmp_path)
 
 
-async def test_a_repair_that_does_not_fit_the_file_is_refused_with_one_sentence(
+async def test_one_sentence_says_that_a_repair_does_not_fit_its_file(
     client: LanguageClient, tmp_path: Path
 ) -> None:
     await diagnostics(client, uri(tmp_path), 2)

@@ -29,7 +29,7 @@ def dependence(text: str) -> dict[int, set[tuple[int, str]]]:
     return {lines[n]: {(lines[b], way) for b, way in branches} for n, branches in control.direct.items()}
 
 
-def test_both_branches_depend_on_the_condition_and_later_statements_do_not():
+def test_both_branches_of_an_if_depend_on_its_condition_and_later_statements_do_not():
     found = dependence("""
         if a:
             b()
@@ -121,7 +121,7 @@ def test_each_statement_stores_a_bounded_number_of_conditions():
     assert control.far
 
 
-def test_memory_of_control_dependence_is_linear_in_the_statements():
+def test_the_memory_for_control_dependences_is_linear_in_the_number_of_statements():
     body = ast.parse("x = 0\n" + "if x:\n    x = 1\n" * 5_000)
     program = lower_module(Module("node.py", "node", "", body))
     tracemalloc.start()

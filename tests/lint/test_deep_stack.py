@@ -25,6 +25,6 @@ def test_the_limit_is_restored_after_an_error():
     assert sys.getrecursionlimit() == before
 
 
-def test_calls_can_be_nested():
+def test_calls_with_deep_recursion_can_be_nested():
     assert with_deep_stack(lambda: with_deep_stack(lambda: depth(100))) == 100
     assert HALF_A_CHUNK * 8 <= 4 * 2**20  # bytes, mapped but not touched

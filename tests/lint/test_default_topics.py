@@ -76,6 +76,6 @@ def test_a_topic_name_that_is_a_literal_does_not_count_as_default(tmp_path):
     assert ends(tmp_path, '"cmd_vel"') == (("cmd_vel",), ())
 
 
-def test_a_default_does_not_decide_a_condition(tmp_path):
+def test_the_default_of_a_parameter_does_not_decide_a_condition(tmp_path):
     before = 'mode = os.environ.get("MODE", "a")\n        name = "x" if mode == "a" else "y"'
     assert ends(tmp_path, "name", before) == (("x", "y"), ())

@@ -54,7 +54,7 @@ def test_a_package_named_like_a_colcon_directory_is_analysed(in_directory):
     assert "robot/log/writer.py" in paths()
 
 
-def test_ignored_and_excluded_files_are_skipped_unless_they_are_named(in_directory):
+def test_ignored_and_excluded_files_are_skipped_unless_the_command_line_names_them(in_directory):
     root = in_directory(
         {".gitignore": "made/\n*_pb2.py\n", "made/a.py": "", "b_pb2.py": "", "c.py": "", "vendor/d.py": "",
          "sub/.gitignore": "!b_pb2.py\n", "sub/b_pb2.py": ""}
@@ -72,7 +72,7 @@ def test_ignore_files_apply_up_to_the_top_of_the_repository(in_directory):
     assert paths("repo/src") == ["repo/src/b.py"]
 
 
-def test_links_are_followed_once_and_loops_end(in_directory):
+def test_symbolic_links_are_followed_once_and_cycles_of_links_end(in_directory):
     root = in_directory({"src/a.py": "", "src/deep/b.py": "", "elsewhere/c.py": ""})
     (root / "src/link.py").symlink_to("a.py")
     (root / "src/deep/loop").symlink_to(root / "src")

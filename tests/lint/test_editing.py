@@ -114,9 +114,7 @@ LAYOUT = [
 
 
 @pytest.mark.parametrize(("name", "before", "after"), LAYOUT)
-def test_an_edit_of_code_that_the_analysis_did_not_read_only_moves_lines(
-    tmp_path, analysed, name, before, after
-):
+def test_an_edit_outside_of_the_analysed_code_only_moves_lines(tmp_path, analysed, name, before, after):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     analysed.clear()
@@ -149,7 +147,7 @@ READ = [
 
 
 @pytest.mark.parametrize(("name", "before", "after"), READ)
-def test_an_edit_of_code_that_was_read_needs_a_new_analysis(tmp_path, analysed, name, before, after):
+def test_an_edit_of_analysed_code_needs_a_new_analysis(tmp_path, analysed, name, before, after):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     analysed.clear()
@@ -278,7 +276,7 @@ def module(text: str) -> Module:
     return Module("m.py", "m", text, ast.parse(text))
 
 
-def test_reading_a_body_is_recorded():
+def test_reading_the_body_of_a_function_is_recorded():
     text = "def f():\n    def g():\n        pass\ndef h():\n    pass\nif f:\n    def k(): pass\n"
     observed = watched(module(text))
     places = {"f": (1, 0), "g": (2, 4), "h": (4, 0), "k": (7, 4)}
@@ -305,6 +303,6 @@ def test_queries_about_the_text_of_a_module_are_recorded():
     assert moved_lines("def f():\n    return 1\n", "def f():\n    return 2\n", observed.reading()) is None
 
 
-def test_a_group_is_run_if_its_text_contains_certain_words():
+def test_a_group_of_files_is_analysed_if_its_text_contains_certain_words():
     assert two_sided(["rospy.Subscriber(", "pub.publish(1)"], Config())
     assert not two_sided(["rospy.Subscriber(", "# pub.publish(1)"], Config())

@@ -155,14 +155,14 @@ TOOLS = """
     """
 
 
-def test_settings_apply_to_functions_in_the_files():
+def test_settings_apply_to_functions_in_the_analysed_files():
     node = module("node", NODE.format(value="tools.checked(msg.data)").replace("import bus", "import tools"))
     tools = module("tools", TOOLS)
     assert kinds(node, tools) == [("explicit", ("a",), ("b",))]
     assert kinds(node, tools, sanitizers=("tools.checked",)) == []
 
 
-def test_settings_name_methods_by_the_defining_class():
+def test_settings_name_a_method_by_the_class_that_defines_it():
     text = """
         from tools import Bus
         class Radio(Bus):

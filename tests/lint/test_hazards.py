@@ -67,7 +67,7 @@ def test_a_limited_command_is_not_a_hazard(body):
     assert lines("TARL202", inside(RANGE, body, 8)) == []
 
 
-def test_the_hazard_is_at_the_computation_not_at_the_publish_call():
+def test_the_hazard_is_reported_at_the_computation_and_not_at_the_publish_call():
     body = "speed = 0.3 * msg.range\ncmd.linear.x = speed"
     assert lines("TARL202", inside(RANGE, body, 8)) == [13]
 

@@ -27,7 +27,7 @@ KEEPER = """
 TOTAL = "total = self.scaled + x + near + self.odom.twist.linear.x"
 
 
-def test_variables_that_contain_the_field_are_sorted_by_length(tmp_path):
+def test_variables_that_contain_the_message_field_are_sorted_by_length(tmp_path):
     analysis = analysed(tmp_path, node=KEEPER)
     place = site(analysis, TOTAL)
     assert analysis.holders("odom", "pose.position.y", place)[:3] == ("near", "self.y", "keeper.y")
@@ -42,7 +42,7 @@ def test_a_stored_message_contains_all_its_fields(tmp_path):
     assert analysis.holders("/odom", "ranges.3", site(analysis, TOTAL))[0] == "self.odom.ranges[3]"
 
 
-def test_changed_values_and_other_topics_are_not_used_as_guard_expressions(tmp_path):
+def test_changed_values_and_values_of_other_topics_are_not_used_as_guard_expressions(tmp_path):
     analysis = analysed(tmp_path, node=KEEPER)
     found = analysis.holders("/odom", "pose.position.y", site(analysis, TOTAL))
     assert "self.scaled" not in found

@@ -69,7 +69,7 @@ def test_junit_has_a_skipped_case(result):
         ("x = 1", ""),
     ],
 )
-def test_the_name_of_a_node_is_found_by_syntax(text, name):
+def test_the_name_of_a_node_is_found_without_an_analysis(text, name):
     assert node_name(ast.parse(text)) == name
 
 

@@ -84,7 +84,7 @@ def test_another_launch_file_does_not_evict_kept_interfaces(arm, capsys, analyse
     assert len(analysed) == len([*PROGRAMS, *UNKNOWN])
 
 
-def test_a_damaged_file_is_not_used(arm, capsys):  # noqa: F811
+def test_a_damaged_file_of_kept_interfaces_is_not_used(arm, capsys):  # noqa: F811
     launched(arm)
     first = run(capsys, "--launch", "a.launch")
     (file,) = Path(".tarl/cache/lint").glob("system-*.json")

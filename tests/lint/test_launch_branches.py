@@ -149,7 +149,7 @@ def test_nodes_of_both_branches_are_read_as_conditional(tmp_path: Path, name: st
     assert conditions(described(tmp_path, statements, description)) == expected
 
 
-def test_each_of_several_returns_is_read(tmp_path: Path) -> None:
+def test_nodes_of_each_return_statement_are_read(tmp_path: Path) -> None:
     text = """
         def setup(context):
             mode = LaunchConfiguration("mode").perform(context)
@@ -193,7 +193,7 @@ def test_a_value_that_differs_between_the_branches_is_symbolic(tmp_path: Path) -
     assert found.condition == ""
 
 
-def test_values_made_within_a_branch_are_known_there(tmp_path: Path) -> None:
+def test_values_computed_within_a_branch_are_known_in_this_branch(tmp_path: Path) -> None:
     statements = """
         found = []
         if REAL:

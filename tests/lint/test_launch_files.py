@@ -482,7 +482,7 @@ def test_substitutions_of_navigation_2_are_interpreted(tmp_path: Path) -> None:
     assert [one.reason for one in found.problems] == ["the parameter file $(RewrittenYaml) is not known here"]
 
 
-def test_the_content_of_a_file_is_known(tmp_path: Path) -> None:
+def test_a_launch_file_can_use_the_content_of_another_file(tmp_path: Path) -> None:
     text = """
         from launch import LaunchDescription
         from launch.substitutions import AnySubstitution, FileContent

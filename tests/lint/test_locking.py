@@ -110,14 +110,14 @@ def test_a_read_without_the_lock_in_a_custom_thread_is_reported_in_rclpy_too():
     assert len(lines("TARL201", text)) == 1
 
 
-def test_the_call_without_the_lock_is_reported_if_other_calls_hold_the_lock():
+def test_a_call_without_the_lock_is_reported_if_other_calls_hold_the_lock():
     text = inside(ROSPY, "with self.lock:\n    self.send()\nself.send()", 12)
     (line,) = lines("TARL201", text)
     assert dedent(text).strip("\n").split("\n")[line - 1].strip() == "self.send()"
     assert "on_timer" in dedent(text).strip("\n").split("\n")[line - 4]
 
 
-def test_containers_are_reported_but_not_objects_with_their_own_locks():
+def test_unlocked_access_to_a_container_is_reported_but_not_to_an_object_with_its_own_lock():
     text = inside(ROSPY, "self.store.append(2.0)", 12).replace("self.value = msg.data", "self.store.clear()")
     for made, found in (("[]", 1), ("deque()", 1), ("Store()", 0), ("store", 0)):
         assert len(lines("TARL201", text.replace("self.value = 0.0", f"self.store = {made}"))) == found
@@ -160,7 +160,7 @@ def test_access_to_a_global_variable_without_its_lock_is_reported(body, found):
     assert len(lines("TARL201", inside(GLOBAL, body, 8))) == found
 
 
-def test_flags_and_state_without_any_lock_are_not_reported():
+def test_access_to_flags_and_to_state_without_any_lock_is_not_reported():
     flag = inside(ROSPY, "self.pub.publish(self.value)", 12).replace(
         "self.value = msg.data", "self.value = True"
     )
@@ -194,7 +194,7 @@ TWO_PARTS = """
     ("written", "found"),
     [("self.x = msg.data\nself.y = 2.0 * msg.data", 2), ("self.x = msg.data", 0)],
 )
-def test_parts_that_are_written_together_must_be_read_together(written, found):
+def test_values_that_are_written_under_one_lock_must_be_read_under_one_lock(written, found):
     body = "\n".join(f"{' ' * 16}{line}" for line in written.split("\n"))
     assert len(lines("TARL201", TWO_PARTS.format(written=body))) == found
 

@@ -99,7 +99,7 @@ def test_the_newest_object_of_a_site_is_separate_from_older_ones(ctx, frame):
     assert heap.read_field(ctx, newest, "x").deps == frozenset()
 
 
-def test_data_is_found_at_any_depth_inside_an_object_but_not_in_other_objects(ctx):
+def test_data_inside_an_object_is_found_at_any_depth_without_data_of_unrelated_objects(ctx):
     outer, inner, empty = (instance(ctx, key) for key in "abc")
     updates.write_field(ctx, pointer(inner), "x", Value(DATA))
     updates.write_field(ctx, pointer(outer), "inner", pointer(inner))

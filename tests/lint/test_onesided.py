@@ -60,7 +60,7 @@ def found(modules):
     return (*findings(flows), *hazards(tracer, flows, Config()))
 
 
-def test_modules_that_only_publish_or_only_subscribe_are_not_run():
+def test_modules_that_only_publish_or_only_subscribe_are_not_analysed():
     assert skipped(TALKER)
     assert skipped(LISTENER)
     assert not skipped(TALKER, LISTENER)
@@ -88,11 +88,11 @@ def test_cases_that_the_prefilter_skips_have_no_findings():
         ("import rospy", "import rospy\n    rospy.Service('s', Empty, lambda request: 1)"),
     ],
 )
-def test_a_module_that_publishes_is_run_if_it_may_have_a_hazard_or_subscribe(changed):
+def test_a_module_that_publishes_is_analysed_if_it_may_subscribe_or_have_a_hazard(changed):
     assert not skipped(TALKER.replace(*changed))
 
 
-def test_a_module_that_subscribes_is_run_if_its_callback_may_have_no_effect():
+def test_a_module_that_subscribes_is_analysed_if_its_callback_may_have_no_effect():
     assert not skipped(LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data"))
     assert skipped(LISTENER.replace("rospy.loginfo(msg.data)", "pass").replace("on(msg)", "on(_)"))
 
@@ -118,7 +118,7 @@ LOCKED = """
     """
 
 
-def test_a_module_that_always_or_never_holds_the_lock_of_its_state_is_not_run():
+def test_a_module_that_always_or_never_holds_the_lock_of_its_state_is_not_analysed():
     assert skipped(LOCKED)
     assert skipped(LOCKED.replace("with self.lock", "if True"))
 
@@ -147,7 +147,7 @@ def test_calling_a_method_of_a_lock_does_not_call_a_function_of_the_same_name():
         ),
     ],
 )
-def test_a_module_is_run_if_it_uses_state_without_the_lock_of_that_state(changed):
+def test_a_module_is_analysed_if_it_uses_state_without_the_lock_of_that_state(changed):
     text = LOCKED.replace(*changed)
     assert text != LOCKED
     assert not skipped(text)
@@ -165,7 +165,7 @@ def test_an_empty_function_is_a_callback_only_if_it_is_passed_as_an_argument(tex
     assert skipped("import rospy\n" + text) is not run
 
 
-def test_a_module_is_not_run_for_a_disabled_hazard():
+def test_a_disabled_hazard_rule_is_no_reason_to_analyse_a_module():
     idle = LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data")
     assert skipped(idle, ignore=("TARL203",))
 

@@ -92,7 +92,7 @@ def obj(store):
     return recency.intern(linked("x = 1\n"), "sequence", "a")
 
 
-def test_only_reads_before_a_store_count_as_reads_of_the_call(store, obj):
+def test_a_read_counts_for_a_call_only_if_the_call_has_not_stored_to_that_key_before(store, obj):
     store.get((obj, "x"))
     store.put((obj, "x"), Value(DATA))
     store.put((obj, "y"), Value(DATA))
@@ -100,7 +100,7 @@ def test_only_reads_before_a_store_count_as_reads_of_the_call(store, obj):
     assert store.reads.keys == {(obj, "x")}
 
 
-def test_stores_of_another_branch_do_not_hide_reads(store, obj):
+def test_a_store_in_one_branch_does_not_hide_a_read_in_another_branch(store, obj):
     store.push()
     store.put((obj, "x"), Value(DATA))
     store.pop()
@@ -169,7 +169,7 @@ def units() -> list[Path]:
 
 
 @pytest.mark.parametrize("path", units(), ids=lambda p: str(p.relative_to(CASES)))
-def test_replays_of_the_cases_equal_executions(path):
+def test_replays_of_the_test_cases_equal_executions(path):
     linked(path.read_text(), checking=True)
 
 
@@ -199,13 +199,13 @@ def chosen_later(number: int) -> str:
 
 @pytest.mark.parametrize("number", [2, MANY - 1, MANY + 8, MANY_CARRIERS + 2])
 @pytest.mark.parametrize(("made", "kind"), [(many, "explicit"), (chosen_later, "implicit")])
-def test_a_merged_field_passes_on_all_of_its_values(number, made, kind):
+def test_a_field_whose_values_are_merged_passes_on_all_of_them(number, made, kind):
     found = flows(linked(made(number)))
     assert {(f.kind, *f.source.topics) for f in found} == {(kind, f"in{n}") for n in range(number)}
 
 
 @pytest.mark.parametrize("added", ["msg.data", "msg.data + 1"])
-def test_a_merged_field_adds_no_steps_to_flows_of_other_sources(added):
+def test_merging_the_values_of_a_field_adds_no_steps_to_flows_of_other_sources(added):
     found = flows(linked(many(MANY + 4).replace("msg.data", added)))
     for flow in found:
         (name,) = flow.source.topics
@@ -215,7 +215,7 @@ def test_a_merged_field_adds_no_steps_to_flows_of_other_sources(added):
         assert f"def on_{name[2:]}" in "".join(s.code for s in flow.steps)
 
 
-def test_values_added_to_a_merged_field_do_not_change_it():
+def test_values_added_to_a_field_whose_values_are_merged_do_not_change_its_node():
     totals = [linked(many(number)).total for number in (MANY, 2 * MANY)]
     assert totals[1] < 2.3 * totals[0]
 

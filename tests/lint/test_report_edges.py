@@ -133,7 +133,7 @@ def test_a_large_tree_uses_as_many_processes_as_its_largest_group_allows(monkeyp
     assert processes(monkeypatch, 1, 1, jobs=0) == 1
 
 
-def test_the_processors_of_this_process_are_counted(monkeypatch):
+def test_only_the_processors_that_this_process_may_use_are_counted(monkeypatch):
     monkeypatch.setattr("os.sched_getaffinity", lambda process: {*range(5 - process)}, raising=False)
     assert groups._processors() == 5
     monkeypatch.delattr("os.sched_getaffinity")

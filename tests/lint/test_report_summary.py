@@ -106,7 +106,7 @@ def test_files_and_programs_that_were_not_analysed_are_named(notes, cut, errors,
     assert [plain(line) for line in summary.not_analysed(result)] == [f"Not analysed: {said}."]
 
 
-def test_many_programs_that_were_cut_are_abbreviated():
+def test_a_long_list_of_incomplete_programs_is_abbreviated():
     cut = tuple(Cut(f"{number}.py") for number in range(21))
     (line,) = summary.not_analysed(Result(statistics=Statistics(cut=cut)))
     assert plain(line).endswith("19.py and 1 more).")
@@ -176,7 +176,7 @@ def test_accepted_findings_are_described_in_words():
     )
 
 
-def test_findings_that_are_gone_are_named_up_to_twenty(example):
+def test_at_most_twenty_vanished_findings_are_named(example):
     gone = (Accepted(FLOW, 1, ()),) * 21
     assert list(summary.vanished(Result(vanished=gone), View())) == []
     assert list(summary.vanished(Result(baseline=BASE), View())) == []
@@ -205,7 +205,7 @@ def test_a_baseline_is_counted_by_flows_and_hazards():
         ("TARL9", (), "there is no rule TARL9: correct or remove this comment."),
     ],
 )
-def test_a_comment_that_silences_nothing_has_a_reason(code, rules, reason):
+def test_the_report_gives_the_reason_why_a_comment_silences_nothing(code, rules, reason):
     comment = Suppression("a.py", 3, 5, code)
     if not rules:
         assert comment.rules == ()

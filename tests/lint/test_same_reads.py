@@ -72,7 +72,7 @@ def hidden(store: Store, obj: Obj, name: str, value: Value) -> None:
     store.pop()
 
 
-def test_a_field_that_was_added_on_another_path_is_not_seen(store, obj):
+def test_a_call_does_not_see_a_field_that_was_added_on_another_path(store, obj):
     reads = noted(store, obj)
     hidden(store, obj, "x", BOTTOM)
     assert same(store, reads)
@@ -87,7 +87,7 @@ def test_a_call_that_waits_reads_what_other_roots_store_in_new_fields(store, obj
     assert not same(store, reads)
 
 
-def test_data_stored_on_another_path_is_not_seen(store, obj):
+def test_a_call_does_not_see_data_that_was_stored_on_another_path(store, obj):
     store.put((obj, "x"), BOTTOM)
     reads = noted(store, obj)
     hidden(store, obj, "x", Value(DATA))
@@ -97,7 +97,7 @@ def test_data_stored_on_another_path_is_not_seen(store, obj):
     assert not same(store, reads)
 
 
-def test_data_inside_a_held_object_is_seen(store, obj):
+def test_a_call_sees_new_data_in_an_object_that_its_object_points_to(store, obj):
     inner = Obj("lib", "inner")
     store.put((obj, "x"), pointer(inner))
     reads = noted(store, obj)
@@ -106,7 +106,7 @@ def test_data_inside_a_held_object_is_seen(store, obj):
     assert not same(store, reads)
 
 
-def test_data_anywhere_in_an_object_is_seen_in_its_parts(store, obj):
+def test_a_call_sees_data_stored_anywhere_in_the_object_that_encloses_a_part(store, obj):
     part = obj.sub("x")
     reads = noted(store, part)
     store.put((obj, "*"), Value(DATA))
@@ -122,7 +122,7 @@ def test_a_store_into_a_part_of_an_object_prevents_the_replay(store, obj):
     assert not same(store, reads)
 
 
-def test_a_change_in_the_description_of_an_object_is_always_seen(store, obj):
+def test_a_call_always_sees_a_change_in_the_description_of_an_object(store, obj):
     reads = noted(store, obj)
     obj.describe("another thing")
     assert not same(store, reads)
@@ -139,7 +139,7 @@ def test_a_call_is_not_replayed_if_a_reachable_object_refers_to_an_object_that_t
     assert not same(store, reads)  # creating the object would first merge the held one into the older ones
 
 
-def test_only_visible_holders_of_an_object_count(store, obj):
+def test_an_object_that_points_to_another_one_counts_only_if_the_call_can_see_it(store, obj):
     one, other = Obj("instance", "one"), Obj("instance", "other")
     store.put((one, "x"), pointer(obj))
     reads = Reads(holders={obj: len(obj.holders)})

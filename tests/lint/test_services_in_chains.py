@@ -132,7 +132,7 @@ def test_a_chain_passes_through_a_service(arm, capsys: pytest.CaptureFixture[str
     assert "return PlanResponse(speed=speed)" in out
 
 
-def test_a_service_with_another_name_is_another_service(arm, capsys: pytest.CaptureFixture[str]) -> None:  # noqa: F811
+def test_services_with_different_names_are_not_connected(arm, capsys: pytest.CaptureFixture[str]) -> None:  # noqa: F811
     services(arm, node("pilot") + server("planner"))
     assert flows(run(capsys, "--launch", "a.launch", "--from", "/odom", "--to", "/cmd_vel")[1]) == []
 

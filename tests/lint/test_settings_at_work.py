@@ -150,7 +150,7 @@ def test_a_named_settings_file_is_used(lint):
     assert lint(files, "--config", "strict.toml") == []
 
 
-def test_a_run_without_findings_whose_flow_rules_are_disabled_says_so(in_directory, capsys):
+def test_a_run_without_findings_says_whether_its_flow_rules_are_disabled(in_directory, capsys):
     in_directory({"a.py": PLAIN})
     assert main(["--select", "TARL2"]) == 0
     assert capsys.readouterr().out == "No hazard in 1 file.\n"

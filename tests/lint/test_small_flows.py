@@ -193,7 +193,7 @@ def test_the_role_of_a_step_is_known_or_follows_from_its_syntax(source, name, de
     assert (step.role, step.dependence, step.code, step.span) == (role, dependence, "code", span)
 
 
-def test_the_last_publish_call_of_a_path_ends_it():
+def test_a_path_ends_at_its_last_publish_call():
     steps = [SimpleNamespace(role=role) for role in ("receive", "publish", "assign", "publish")]
     assert ending_in_publish_call([0, 1, 2], steps) == (0, 2, 1)
     assert ending_in_publish_call([0, 1, 2, 3], steps) == (0, 2, 3)

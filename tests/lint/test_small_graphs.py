@@ -35,7 +35,7 @@ def spans(count: int) -> dict[int, Span]:
         ([(0, 3)], {0, 1, 2}, [0, 1, 2, 3]),
     ],
 )
-def test_statements_are_in_the_order_of_their_edges_then_of_the_source(edges, first, expected):
+def test_statements_are_ordered_by_their_edges_and_then_by_their_source_position(edges, first, expected):
     assert in_order(spans(4), edges, first) == expected
 
 

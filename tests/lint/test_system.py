@@ -79,7 +79,7 @@ def test_flows_pass_through_one_program_that_is_launched_twice(workspace, capsys
     assert code == 0
 
 
-def test_names_are_resolved_in_the_namespace_and_private_names_in_the_node(workspace, capsys):
+def test_names_are_resolved_in_the_namespace_of_the_node_and_private_names_below_its_name(workspace, capsys):
     file = launched(
         workspace, f'<group ns="left">{relay("one", "~raw", "/out")}{relay("two", "raw", "done")}</group>'
     )

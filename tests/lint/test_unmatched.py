@@ -30,7 +30,7 @@ def test_a_setting_matches_the_definition_of_its_name_or_a_use_that_names_its_mo
     assert bool(unmatched(Config(sources=("robot.bus.listen",)), [text])) is not met
 
 
-def test_every_kind_of_name_is_checked():
+def test_every_kind_of_name_in_the_settings_is_checked():
     config = Config(
         sources=("a.one",),
         sinks=("a.two",),

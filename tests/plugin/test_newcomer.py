@@ -51,7 +51,7 @@ def test_an_unwritable_folder_is_reported_before_the_first_episode(tank: pytest.
     told.stdout.no_fnmatch_line("*mkdir*")
 
 
-def test_all_modes_work_if_pytests_terminal_plugin_is_disabled(tank: pytest.Pytester) -> None:
+def test_all_modes_work_without_the_terminal_plugin_of_pytest(tank: pytest.Pytester) -> None:
     assert tank.runpytest(*RECORD, "-p", "no:terminal").ret == pytest.ExitCode.OK
     ended = tank.runpytest(*ONLINE, "--tarl-repair", "-p", "no:terminal")
     assert ended.ret == pytest.ExitCode.TESTS_FAILED

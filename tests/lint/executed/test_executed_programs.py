@@ -40,13 +40,13 @@ def assert_reported(seeds: range) -> None:
     assert shown > len(seeds) / 2  # the programs show something
 
 
-def test_flows_that_executions_show_are_reported():
+def test_the_linter_reports_flows_that_executions_show():
     assert_reported(range(PROGRAMS))
 
 
 @slow
 @pytest.mark.parametrize("batch", range(1, 13))
-def test_flows_that_executions_of_thousands_of_programs_show_are_reported(batch):
+def test_the_linter_reports_flows_that_executions_of_thousands_of_programs_show(batch):
     assert_reported(range(batch * BATCH, (batch + 1) * BATCH))
 
 
@@ -78,7 +78,7 @@ def test_an_execution_shows_what_was_published():
     assert dependences(NODE, 1, 40) == {("a", "out")}
 
 
-def test_an_execution_that_an_unhandled_exception_ends_is_not_judged():
+def test_an_execution_that_ends_with_an_unhandled_exception_is_not_compared_with_the_report():
     with pytest.raises(UnhandledError):
         run(NODE, ("b", 0))
 
@@ -88,11 +88,11 @@ def test_an_error_in_a_generated_program_is_not_taken_for_an_intended_exception(
         run(NODE.replace("raise ValueError", "missing"), ("a", 2))
 
 
-def test_a_program_is_drawn_from_its_seed():
+def test_a_random_program_depends_only_on_its_seed():
     assert Generator(5).program() == Generator(5).program() != Generator(6).program()
 
 
-def test_a_program_is_shrunk_while_the_property_holds():
+def test_shrinking_a_program_keeps_its_tested_property():
     left = shrunk(NODE, lambda text: ("a", "out") in dependences(text, 1, 40))
     assert "raise" in left
     assert "on_b" not in left

@@ -63,7 +63,7 @@ FUNCTIONS = """\
 """
 
 
-def test_functions_and_lambdas_are_found_by_their_place():
+def test_functions_and_lambdas_are_found_by_their_position_in_the_source():
     text = text_of(FUNCTIONS)
     names = {pos: written.qualname for pos, written in text.functions.items()}
     assert names == {(1, 0): "f", (2, 8): "<lambda>", (6, 4): "C.g", (10, 4): "<lambda>", (11, 0): "k"}
@@ -88,7 +88,7 @@ def test_equal_statements_of_a_function_are_numbered():
     ]
 
 
-def test_the_statement_around_another_one_is_known():
+def test_the_enclosing_statement_of_a_statement_is_known():
     text = text_of("for a in b:\n    if c:\n        x = 1\n")
     inner = text.by_start[3, 8]
     assert inner.around is text.by_start[2, 4]

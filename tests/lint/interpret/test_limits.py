@@ -50,7 +50,7 @@ def three(x):
 
 
 @pytest.mark.parametrize("most", [1, 2, 3])
-def test_a_function_called_beyond_the_context_limit_returns_the_data_of_its_arguments(monkeypatch, most):
+def test_a_call_beyond_the_limit_on_call_contexts_returns_the_data_of_its_arguments(monkeypatch, most):
     body = "out.publish(one(msg.data)[0])  # data\nout.publish(one(1.0)[0])  # clean"
     assert differing(in_callback(body, CHAIN)) == {}
     assert machine(in_callback(body, CHAIN)).cut == {}

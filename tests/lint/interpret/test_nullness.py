@@ -58,7 +58,9 @@ def node(body: str, head: str = "") -> str:
         ("value = table.get(last.name)", "value", "control"),
     ],
 )
-def test_a_comparison_with_none_depends_on_data_only_if_data_decided_the_value(before, value, flows):
+def test_a_comparison_with_none_depends_on_data_only_if_data_decided_whether_the_value_is_none(
+    before, value, flows
+):
     assert differing(node(f"{before}\n{GATED.format(value=value, flows=flows)}".strip())) == {}
 
 
@@ -80,6 +82,6 @@ def test_a_parameter_may_be_none_if_the_argument_may_be(given, flows):
     ("result", "flows"),
     [("last", "clean"), ("found", "control"), ("level", "clean"), ("high", "control"), ("None", "clean")],
 )
-def test_a_result_may_be_none_if_the_returned_value_may_be(result, flows):
+def test_the_result_of_a_call_may_be_none_if_the_returned_value_may_be_none(result, flows):
     head = f"def asked():\n    return {result}"
     assert differing(node(GATED.format(value="asked()", flows=flows), head)) == {}

@@ -367,7 +367,7 @@ def test_an_object_created_on_one_path_has_no_value_on_the_other_path(ctx):
     assert joins.joined(ctx, [ctx.store.pop(), {}])[obj, "[0]"] is ONE
 
 
-def test_paths_that_do_not_store_contribute_the_former_value_once(ctx):
+def test_all_paths_that_do_not_store_contribute_the_former_value_only_one_time(ctx):
     obj = made(ctx, "sequence", "a")
     ctx.store.put((obj, "x"), ONE)
     assert joins.joined(ctx, [{(obj, "x"): TWO}, {}, {}])[obj, "x"] == BOTH
@@ -509,7 +509,7 @@ def test_a_reachable_part_keeps_its_enclosing_object_and_definition_alive():
 
 
 @pytest.mark.parametrize("length", [2, 2 * reachable_data.FEW])
-def test_only_data_inside_many_objects_is_cached_and_never_outdated(ctx, length):
+def test_data_found_inside_many_objects_is_cached_and_the_cache_stays_up_to_date(ctx, length):
     chain = [made(ctx, "lib", number) for number in range(length)]
     for outer, inner in itertools.pairwise(chain):
         ctx.store.put((outer, "x"), pointer(inner))
@@ -530,7 +530,7 @@ def test_the_definition_of_a_message_gives_the_definitions_of_its_parts(ctx):
     assert reachable_data.defined(ctx, message.sub("unknown")) == ""
 
 
-def test_a_message_is_replaced_once_each_of_its_fields_is_replaced(ctx):
+def test_a_message_counts_as_replaced_when_all_of_its_fields_are_replaced(ctx):
     message = made(ctx, "message", "m")
     message.defined, message.info = "Vector3", 7
     for name in "xy":

@@ -209,7 +209,7 @@ def test_a_recorded_query_keeps_its_first_answer():
     assert reads.facts[counting, "x"] == 3
 
 
-def test_the_first_wait_records_the_keys_stored_before_it_and_later_waits_change_nothing(obj):
+def test_the_first_wait_records_the_keys_stored_before_it_and_later_waits_keep_that_record(obj):
     reads = Reads(written={(obj, "x")})
     reads.wait(3, {(obj, "y")})
     reads.written.add((obj, "z"))

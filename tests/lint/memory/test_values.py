@@ -68,7 +68,7 @@ def test_joining_with_bottom_changes_nothing_and_joining_with_unknown_constants_
 @pytest.mark.parametrize(
     "change", [{"deps": frozenset([9])}, {"pts": frozenset([Obj("lib", 0)])}, {"consts": None}]
 )
-def test_values_are_equal_only_if_all_three_parts_are_equal(change):
+def test_values_are_equal_only_if_their_nodes_objects_and_constants_are_equal(change):
     parts = {"deps": frozenset([1]), "pts": frozenset(), "consts": frozenset([1])}
     assert Value(**parts) == Value(**parts)
     assert Value(**parts) != Value(**{**parts, **change})
@@ -148,7 +148,7 @@ def test_parts_beyond_the_maximum_depth_share_one_object():
     assert nested.sub("x") is not nested
 
 
-def test_a_matrix_has_a_bounded_number_of_separate_cells():
+def test_a_matrix_has_a_bounded_number_of_separately_tracked_elements():
     row = Obj("lib", "matrix").sub("[0]")
     cells = [row.sub(f"[{n}]") for n in range(MAX_CELLS + 1)]
     assert len(set(cells)) == MAX_CELLS + 1

@@ -41,7 +41,7 @@ def test_in_an_equal_text_all_lines_that_were_read_have_the_same_numbers():
     assert found == {line: line for line in (1, 3, 4, 5, 7, 10, 11, 12, 14, 15)}
 
 
-def test_lines_move_after_added_blank_lines_comments_and_lines_of_unread_bodies():
+def test_added_blank_lines_comments_and_lines_in_bodies_that_no_analysis_read_only_move_lines():
     new = OLD.replace("import a\n", "# first\n\nimport a\n").replace("return 1", "z = 1\n        return z")
     found = moved(new)
     assert found is not None
@@ -113,7 +113,7 @@ def test_changed_functions_of_equal_names_require_a_new_analysis():
     assert moved(other.replace("2", "3"), other, unread=[(1, 0), (4, 0)]) == {1: 1, 4: 4}
 
 
-def test_another_answer_about_the_text_requires_a_new_analysis():
+def test_a_query_of_the_text_with_a_changed_answer_requires_a_new_analysis():
     asked = (lambda text: "unread" in text, True)
     new = OLD.replace("return 1", "return 3")
     assert moved(new, answers=[asked]) is not None
@@ -184,7 +184,7 @@ def functions(tree: ast.AST) -> dict[str, ast.FunctionDef | ast.AsyncFunctionDef
     return found
 
 
-def test_every_function_is_unread_at_first():
+def test_at_first_no_function_counts_as_read_by_the_analysis():
     assert watched(module(FUNCTIONS)).reading() == Reading(frozenset(PLACES.values()), (), whole=False)
 
 
@@ -193,14 +193,14 @@ def test_every_function_is_unread_at_first():
     [len, list, lambda body: body[0], lambda body: body[:1], lambda body: None in body,
      lambda body: operator.add(body, []), lambda body: [*reversed(body)], ast.unparse],
 )  # fmt: skip
-def test_a_use_of_a_body_is_a_read(read):
+def test_using_the_body_of_a_function_counts_as_reading_it(read):
     watch = watched(module(FUNCTIONS))
     body = functions(watch.tree)["g"].body
     read(body if read is not ast.unparse else functions(watch.tree)["g"])
     assert watch.reading().unread == frozenset(PLACES.values()) - {PLACES["g"]}
 
 
-def test_a_second_watch_begins_anew_and_keeps_the_statements():
+def test_recording_anew_forgets_which_bodies_were_read_and_keeps_the_statements():
     first = watched(module("def f():\n    return 1\n"))
     len(functions(first.tree)["f"].body)
     second = watched(first)
@@ -208,7 +208,7 @@ def test_a_second_watch_begins_anew_and_keeps_the_statements():
     assert ast.unparse(second.tree) == "def f():\n    return 1"
 
 
-def test_questions_and_uses_of_the_text_are_recorded():
+def test_queries_about_the_text_and_uses_of_the_whole_text_are_recorded():
     watch = watched(module("x = 1\n"))
     assert displayed(watch) == "x = 1\n"
     assert watch.contains("x")

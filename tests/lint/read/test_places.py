@@ -81,7 +81,7 @@ def test_a_broken_link_names_its_target(tmp_path, monkeypatch):
         find([Path("link.py")], Config())
 
 
-def test_a_circular_link_does_not_exist_and_is_skipped(tmp_path, monkeypatch):
+def test_a_circular_link_counts_as_missing_and_is_skipped(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("loop.py").symlink_to("loop.py")
     Path("a.py").touch()

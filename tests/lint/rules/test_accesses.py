@@ -72,7 +72,7 @@ HELD = [
 
 
 @pytest.mark.parametrize(("body", "held", "tried"), HELD)
-def test_the_locks_held_and_tried_at_a_statement_are_found(body, held, tried):
+def test_the_locks_that_a_statement_holds_or_tries_to_take_are_found(body, held, tried):
     node, outline = place(body)
     assert locks_around(node, outline) == held
     assert tried_around(node, outline) == tried

@@ -245,7 +245,7 @@ def test_a_setting_of_a_parameter_that_the_node_lacks_is_reported(setting, absen
     assert messages(307, keeper("/k", setting)) == [NONE.format(name) for name in absent]
 
 
-def test_a_parameter_is_absent_only_if_no_node_with_the_setting_may_have_it():
+def test_a_parameter_counts_as_absent_only_if_no_node_with_the_setting_may_declare_it():
     setting = Setting("~gian", FILE, 1)
     assert messages(307, keeper("/k", setting), keeper("/l", setting, words=("gian",))) == []
     assert messages(307, keeper("/k", setting), keeper("/l", setting, named=False)) == []
@@ -253,7 +253,7 @@ def test_a_parameter_is_absent_only_if_no_node_with_the_setting_may_have_it():
     assert messages(307, node("/k", unread=True, settings=(setting,))) == []
 
 
-def test_a_parameter_section_without_a_namespace_is_for_a_node_without_one():
+def test_a_parameter_section_without_a_namespace_applies_to_a_node_without_a_namespace():
     section = yaml("k: {ros__parameters: {gain: 1, a: 2, b: 3, c: 4}}")
     lost = "/n/k does not get a, b, c …: the section k of k.yaml is for /k; name it /n/k or /**/k"
     assert messages(307, keeper("/n/k", section)) == [lost]

@@ -114,7 +114,7 @@ def test_a_launched_node_sees_parameters_below_a_name_as_a_table():
     assert node.value("~none") is DEFAULT
 
 
-def test_an_endpoint_with_no_or_several_names_is_undetermined(example):
+def test_an_endpoint_is_undetermined_unless_it_has_exactly_one_name(example):
     assert not undetermined(Interface("n.py", endpoints=(end("calls", "a"),), flows=(example.finding(),)))
     assert undetermined(Interface("n.py", endpoints=(end("calls", "a"), end("calls"))))
     assert undetermined(Interface("n.py", endpoints=(end("calls", "a", "b"),)))
@@ -176,12 +176,12 @@ def test_the_flows_of_a_node_have_launched_topics(example):
     assert made(instance("/k", replace(example.finding(), flow=None))) == []
 
 
-def test_the_source_and_sink_of_a_service_flow_are_named_request_and_response(example):
+def test_the_source_of_a_service_flow_is_named_request_and_its_sink_response(example):
     server = instance("/s", flow(example, ("add",), ("add",), heard="rospy.Service", said="rospy.Service"))
     assert made(server) == [("/s", "/add (request)", "/add (response)", "explicit")]
 
 
-def test_a_client_whose_server_was_not_read_may_get_its_request_back(example):
+def test_data_of_a_request_may_return_to_its_client_if_the_server_was_not_analysed(example):
     call, answer = "rospy.ServiceProxy.__call__", "rospy.ServiceProxy"
     asks, uses = flow(example, ("a",), ("add",), said=call), flow(example, ("add",), ("b",), heard=answer)
     through = [hop for hop in made(instance("/c", asks, uses)) if hop[3] == "not read"]

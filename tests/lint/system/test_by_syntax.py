@@ -161,7 +161,7 @@ def test_a_program_reads_only_parameters_that_it_names(text, named):
     assert reads_named_parameters([module("x = 1"), module(text)]) is named
 
 
-def test_all_strings_of_a_program_may_be_names_that_it_uses():
+def test_each_string_of_a_program_may_be_a_name_that_the_program_uses():
     assert words([module("a = '~b/'\nc = f'x{1}'"), module("'/d/e'; 1; b'f'")]) == {"b", "x", "d/e"}
 
 

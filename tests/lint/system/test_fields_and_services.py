@@ -74,7 +74,7 @@ def test_a_field_that_a_received_message_does_not_have_is_absent(register, funct
     assert absent(f"{function}\n{register}") == found
 
 
-def test_without_known_message_types_nothing_is_absent():
+def test_no_field_counts_as_absent_if_the_message_type_is_unknown():
     module = Module(
         "a.py", "a", "", ast.parse("from demo.msg import Twist\ndef f():\n    t = Twist()\n    t.x = 1")
     )
@@ -95,7 +95,7 @@ def test_without_known_message_types_nothing_is_absent():
         ("rospy.Service('a', Add)", None),
     ],
 )
-def test_the_service_that_a_client_calls_is_a_literal(call, found):
+def test_the_name_of_the_service_that_a_client_calls_is_read_from_a_literal(call, found):
     services = [(name, kind) for _, name, kind in called_services(Outline(ast.parse(call)))]
     assert services == ([found] if found else [])
 

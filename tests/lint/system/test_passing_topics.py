@@ -212,7 +212,7 @@ def test_a_cpp_program_receives_images_in_the_transport_of_its_parameter(workspa
     assert ends(capsys, camera(workspace, parameter))[0] == ["/mask/compressed"]
 
 
-def test_image_transport_of_ros2_is_a_function_of_the_node(workspace, capsys):
+def test_in_ros2_functions_that_take_the_node_create_endpoints_of_image_transport(workspace, capsys):
     file = camera(workspace, "")
     source = workspace / "eye/src/camera.cpp"
     source.write_text('auto pub = image_transport::create_publisher(this, "image");\n'

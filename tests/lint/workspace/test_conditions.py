@@ -103,7 +103,7 @@ def test_a_condition_on_an_argument_that_is_passed_on_names_the_outer_argument(p
     assert [one.condition for one in found.nodes] == ["if $(arg left_sim)", "if $(env RIGHT_SIM)"]
 
 
-def test_what_is_set_under_an_unknown_condition_is_symbolic(package):
+def test_a_value_set_under_an_unknown_condition_is_symbolic(package):
     found = launched(
         package,
         """<launch><arg name="front"/>

@@ -563,7 +563,7 @@ def test_unknown_elements_of_a_list_are_one_unknown_value(tmp_path):
     ("text", "steps"),
     [("", 0), ("pass\n" * 5, 5), ("x = 1", 2), ("x = 1 + 2", 4), ("for x in [1, 2]: pass", 8)],
 )
-def test_each_statement_and_expression_is_a_step(tmp_path, text, steps):
+def test_each_statement_and_expression_counts_towards_the_step_limit(tmp_path, text, steps):
     path = tmp_path / "read.py"
     path.write_text(text)
     file = Interpreter(path, {})
@@ -591,7 +591,7 @@ PROBLEMS = {
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_code_that_is_not_constant_is_a_problem_with_its_line(tmp_path, name):
+def test_code_that_is_not_constant_is_reported_with_its_line(tmp_path, name):
     text, line, reason = PROBLEMS[name]
     path = tmp_path / "read.py"
     path.write_text(text)
@@ -600,7 +600,7 @@ def test_code_that_is_not_constant_is_a_problem_with_its_line(tmp_path, name):
     assert [(one.file, one.line, one.reason) for one in file.problems] == [(path, line, reason)]
 
 
-def test_a_branch_of_unknown_choice_is_kept_unless_it_raises(tmp_path):
+def test_if_a_condition_is_unknown_a_branch_that_does_not_raise_is_taken(tmp_path):
     kept = interpreted(
         tmp_path,
         "x = y = 0\nif absent:\n    x = 1\nelse:\n    x = 2\nif absent:\n    raise E\nelse:\n    y = 3",

@@ -43,7 +43,7 @@ def test_launch_files_in_yaml_are_read(package):
     [("a: 1", NONE), ("- launch", NONE),
      ("", NONE), ("launch: [", "it is not YAML: ")],
 )  # fmt: skip
-def test_yaml_that_is_not_a_launch_file_is_a_problem(package, text, reason):
+def test_yaml_that_is_not_a_launch_file_is_reported(package, text, reason):
     (problem,) = reasons(launched(package, text, "a.launch.yaml"))
     assert problem.startswith(reason)
 

@@ -186,7 +186,7 @@ def test_at_most_five_thousand_elements_are_read(package):
     assert len(found.nodes) == 5_000
 
 
-def test_a_launch_file_that_does_not_exist_is_a_problem(package):
+def test_a_launch_file_that_does_not_exist_is_reported(package):
     found = read_launch(package / "none.launch.py", read(package.parent), {})
     assert (found.nodes, len(found.problems)) == ((), 1)
 

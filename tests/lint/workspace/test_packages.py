@@ -76,7 +76,7 @@ def test_the_dependencies_of_a_package_are_sorted_and_named_once(tmp_path):
     assert manifest(tmp_path)[0].dependencies == ("b", "c")
 
 
-def test_a_manifest_that_is_a_folder_is_a_problem(tmp_path):
+def test_a_manifest_that_is_a_folder_is_reported(tmp_path):
     (tmp_path / "package.xml").mkdir()
     found, (problem,) = manifest(tmp_path)
     assert (found.name, found.dependencies) == (tmp_path.name, ())
@@ -120,7 +120,7 @@ def test_the_modules_that_setup_files_install_are_found(tmp_path, given, modules
     assert {one.name: one.path.relative_to(tmp_path).as_posix() for one in found} == modules
 
 
-def test_a_package_of_no_known_kind_has_the_module_of_its_name(tmp_path):
+def test_a_package_of_unknown_kind_has_the_module_with_the_name_of_the_package(tmp_path):
     written(tmp_path, {"arm/__init__.py": ""})
     assert [one.name for one in installed(tmp_path, Manifest("arm", "unknown"), [])[1]] == ["arm"]
     assert installed(tmp_path, Manifest("arm", "catkin"), [])[1] == ()
@@ -189,7 +189,7 @@ def test_console_scripts_are_read_from_lists_and_texts(tmp_path, given, console,
         ("setup.cfg", "packages = a\n", "it cannot be read: File contains no section headers."),
     ],
 )
-def test_setup_files_that_cannot_be_read_are_a_problem(tmp_path, name, text, reason):
+def test_setup_files_that_cannot_be_read_are_reported(tmp_path, name, text, reason):
     (tmp_path / name).write_text(text)
     (problem,) = setup(tmp_path).problems
     assert (problem.file.name, problem.reason.startswith(reason)) == (name, True)
@@ -252,7 +252,7 @@ def test_quoted_words_of_cmake_stay_together_and_comments_are_dropped(tmp_path):
     ]
 
 
-def test_a_large_or_unreadable_cmake_file_is_a_problem(tmp_path):
+def test_a_large_or_unreadable_cmake_file_is_reported(tmp_path):
     (tmp_path / "CMakeLists.txt").write_text("#" * 500_001)
     (problem,) = cmake(tmp_path, "arm").problems
     assert problem.reason == "it has more than 500,000 bytes"
@@ -278,7 +278,7 @@ gen.generate('p', 'n', 'Arm')
         ("gen.const(names(), int_t, 1, 'd')", "a constant's name or value is not constant"),
     ],
 )
-def test_a_parameter_that_is_not_constant_is_a_problem_with_its_line(tmp_path, line, problem):
+def test_a_parameter_that_is_not_constant_is_reported_with_its_line(tmp_path, line, problem):
     (tmp_path / "Arm.cfg").write_text(CFG.format(line))
     (_, (found,)) = configurations(tmp_path / "Arm.cfg")
     assert (found.line, found.reason) == (3, problem)

@@ -80,7 +80,7 @@ def test_only_a_connection_with_the_latching_field_is_latched(tmp_path: Path, la
     assert found.latched is False
 
 
-def test_every_cut_of_a_bag_keeps_the_whole_records_before_it(tmp_path: Path) -> None:
+def test_of_a_bag_that_is_cut_anywhere_all_whole_records_before_the_cut_are_read(tmp_path: Path) -> None:
     records = [connection(3, "/a"), message(3, 1, 0, b"one"), message(3, 2, 0, b"two")]
     whole = bag(tmp_path, *records).read_bytes()
     expected = [BOOL, Recorded(10**9, "/a", b"one"), Recorded(2 * 10**9, "/a", b"two")]
@@ -97,20 +97,20 @@ def test_the_whole_records_of_a_cut_chunk_are_read(tmp_path: Path) -> None:
     assert [one.data for one in walk(path) if isinstance(one, Recorded)] == [b"one"]
 
 
-def test_a_chunk_that_ends_inside_a_record_does_not_end_the_file(tmp_path: Path) -> None:
+def test_reading_continues_after_a_chunk_that_ends_inside_a_record(tmp_path: Path) -> None:
     inside = connection(3, "/a") + message(3, 1, 0, b"one")[:-1]
     found = list(walk(bag(tmp_path, chunk(inside), message(3, 2, 0, b"two"))))
     assert found == [BOOL, Recorded(2 * 10**9, "/a", b"two")]
 
 
-def test_compressed_chunks_are_read_and_unknown_compressions_end_the_file(tmp_path: Path) -> None:
+def test_compressed_chunks_are_read_and_reading_ends_at_an_unknown_compression(tmp_path: Path) -> None:
     inside = connection(3, "/a") + message(3, 1, 0, b"one")
     found = list(walk(bag(tmp_path, chunk(inside, "bz2"))))
     assert found == [BOOL, Recorded(10**9, "/a", b"one")]
     assert list(walk(bag(tmp_path, chunk(inside, "zip"), connection(3, "/a")))) == []
 
 
-def test_messages_of_an_unknown_connection_end_the_file(tmp_path: Path) -> None:
+def test_reading_ends_at_a_message_of_an_unknown_connection(tmp_path: Path) -> None:
     assert list(walk(bag(tmp_path, message(3, 1, 0, b"one"), connection(3, "/a")))) == []
 
 
@@ -189,7 +189,7 @@ def test_an_mcap_has_channels_with_the_definition_of_their_schema(tmp_path: Path
     ]
 
 
-def test_every_cut_of_an_mcap_keeps_the_whole_records_before_it(tmp_path: Path) -> None:
+def test_of_an_mcap_that_is_cut_anywhere_all_whole_records_before_the_cut_are_read(tmp_path: Path) -> None:
     records = [*HEAD, recorded(5, 1, b"one"), recorded(5, 2, b"two")]
     whole = mcap_file(tmp_path, *records).read_bytes()
     expected = [BOOL, Recorded(1, "/a", b"one"), Recorded(2, "/a", b"two")]

@@ -52,7 +52,7 @@ def test_a_recording_does_not_differ_from_itself(tmp_path: Path, capsys: pytest.
     assert not any(line.startswith(("  gone", "  new", "  moved")) for line in told.splitlines())
 
 
-def test_fail_if_worse_fails_on_a_significant_loss(
+def test_the_flag_fail_if_worse_fails_the_command_on_a_significant_loss(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     good = example()

@@ -336,7 +336,9 @@ def test_the_command_ingest_prints_the_missions_of_each_log_and_their_sum(
     assert told.err == ""
 
 
-def test_a_refused_log_does_not_stop_the_others_but_fails_the_command(calls: Calls, capsys: Printed) -> None:
+def test_a_refused_log_fails_the_command_after_the_other_logs_were_ingested(
+    calls: Calls, capsys: Printed
+) -> None:
     ingested(calls, added("a.log", missions=9, problem="a.log: torn"), added("b.log", missions=1))
     assert cli.main(["ingest", "a.log", "b.log", *REQUIRED]) == 2
     assert capsys.readouterr() == (

@@ -56,7 +56,7 @@ def test_a_diagnostic_has_the_range_message_code_and_data_of_its_finding(places:
         ("TARL201", "accepted", Severity.Hint),
     ],
 )
-def test_hazards_are_warnings_flows_information_and_accepted_findings_hints(
+def test_the_severity_is_warning_for_hazards_and_information_for_flows_and_hint_for_accepted_findings(
     places: Places, code: str, status: Any, severity: Severity
 ) -> None:
     assert one(finding(code, status=status), places).severity == severity

@@ -111,7 +111,7 @@ def test_a_running_simulator_drives_the_clock_and_topics_of_the_nodes(guardian: 
     assert made.clock == 6.5
 
 
-def test_the_test_waits_for_a_simulator_that_ran_on_only_for_the_new_step(
+def test_after_a_simulator_ran_ahead_the_test_waits_only_until_the_end_of_the_new_step(
     guardian: Guardian, ros: Ros
 ) -> None:
     made = begun(SETUP, guardian, ros)
@@ -246,7 +246,7 @@ def test_a_step_ends_only_with_a_new_message_on_each_required_topic(
         ([{"kind": "answer", "id": 1, "error": "no"}], "/step failed: no"),
     ],
 )
-def test_a_service_that_fails_or_stays_silent_loses_the_simulator(
+def test_the_simulator_counts_as_lost_if_a_service_fails_or_does_not_answer(
     guardian: Guardian, ros: Ros, answer: list[dict[str, Any]], words: str
 ) -> None:
     guardian.react = lambda what, **_: STARTED if what == "start" else answer if what == "call" else []

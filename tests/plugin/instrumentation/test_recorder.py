@@ -46,7 +46,7 @@ def test_events_are_in_order_with_their_flow_values(threads):
     assert trace.thread is None
 
 
-def test_numbers_keep_their_signs_if_the_episode_was_planned_so():
+def test_numbers_keep_their_signs_if_the_plan_of_the_episode_requests_signs():
     recorder = Recorder()
     program(recorder)["work"]([-0.5, -2, math.nan])
     recorder.reward(1.0)

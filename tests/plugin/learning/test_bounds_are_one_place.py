@@ -76,7 +76,7 @@ def computed(source: str) -> Iterator[str]:
         "error = sqrt(variance(values) / len(values))",
     ],
 )
-def test_the_check_detects_an_interval_computed_elsewhere(source: str) -> None:
+def test_the_check_detects_an_interval_that_is_computed_outside_the_module_bounds(source: str) -> None:
     assert [*computed(source)]
 
 

@@ -79,7 +79,9 @@ def episodes(*visited: list[Cell], reward: float = 1.0, cells: tuple[Cell, ...] 
         ({"p_failures": 0.04, "success": (0.5, 0.9), "p_drift": 0.04}, "drifted"),
     ],
 )
-def test_a_verdict_follows_from_its_numbers(change: dict[str, float], expected: str) -> None:
+def test_a_verdict_follows_from_its_p_values_losses_and_tolerances(
+    change: dict[str, float], expected: str
+) -> None:
     assert judged(replace(VERDICT, **change), 0.05).result == expected  # type: ignore[arg-type]
 
 
@@ -257,7 +259,7 @@ def test_p_values_and_confidence_are_adjusted_for_several_checks() -> None:
         ("drifted", Region(((1,),)), False),
     ],
 )
-def test_a_check_is_decisive_only_if_it_finds_a_loss_and_its_region(
+def test_a_check_ends_the_comparison_only_if_it_finds_a_loss_and_its_region(
     result: Any, region: Region, expected: bool
 ) -> None:
     assert certain(Difference(replace(VERDICT, result=result), region, {})) is expected
@@ -290,7 +292,7 @@ def test_a_recording_states_bounds_on_success_mean_and_quantile() -> None:
 GOOD, BAD, UNKNOWN = Judged("g", 0.5), Judged("g", -0.25, 3.5), Judged("g", nan)
 
 
-def test_a_formula_counts_only_the_episodes_that_judged_it() -> None:
+def test_a_formula_counts_only_episodes_in_which_it_was_judged() -> None:
     several = stacked([[GOOD], [BAD], [UNKNOWN], [], [Judged("g", -0.75, 2.5), Judged("a", 1.0)]])
     assert several is not None
     assert several.formulas == ("a", "g")

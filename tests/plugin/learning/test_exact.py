@@ -115,7 +115,7 @@ def test_slices_sum_the_cells_of_the_region_that_both_worlds_visited() -> None:
 
 
 @pytest.mark.parametrize("dense", [True, False])
-def test_the_ridge_shrinks_tiles_towards_zero_by_the_expected_amount(
+def test_the_ridge_shrinks_the_weights_of_tiles_towards_zero_by_the_expected_amount(
     dense: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if not dense:

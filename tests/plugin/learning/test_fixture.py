@@ -160,7 +160,7 @@ def test_the_digest_detects_a_changed_column(tmp_path: Path) -> None:
         load(path)
 
 
-def test_other_archives_and_pickles_are_refused(tmp_path: Path) -> None:
+def test_archives_of_other_programs_and_pickled_files_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.npz"
     np.savez(path, other=np.arange(3))
     with pytest.raises(FixtureError, match="damaged or is not a recording"):

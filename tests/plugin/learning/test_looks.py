@@ -30,7 +30,7 @@ def test_the_checks_spend_the_whole_alpha_and_the_last_one_has_all_episodes(
     assert len(plan) <= looks
 
 
-def test_forty_episodes_are_checked_after_ten_and_twenty() -> None:
+def test_a_comparison_of_forty_episodes_is_checked_after_ten_and_after_twenty() -> None:
     assert [look.episodes for look in planned(40, 3)] == [10, 20, 40]
 
 

@@ -72,7 +72,9 @@ def test_the_seed_decides_how_ties_are_broken(world: Path, tmp_path: Path) -> No
     assert not np.array_equal(first.monitor.processes.stake, second.monitor.processes.stake)
 
 
-def test_a_state_with_another_recording_alpha_or_seed_is_refused(world: Path, tmp_path: Path) -> None:
+def test_a_saved_state_is_refused_if_the_recording_or_alpha_or_the_seed_differs(
+    world: Path, tmp_path: Path
+) -> None:
     read(begun(world, tmp_path / "s.npz"))
     for changes, says in (({"alpha": 0.1}, "begun with --alpha 0.05"), ({"seed": 3}, "begun with --seed 0")):
         with pytest.raises(MonitorError, match=says):
@@ -113,7 +115,7 @@ def test_two_watches_cannot_share_a_state(tmp_path: Path) -> None:
         pass
 
 
-def test_a_killed_watch_continues_to_the_same_bytes(world: Path, tmp_path: Path) -> None:
+def test_a_watch_that_is_killed_and_restarted_saves_the_same_bytes(world: Path, tmp_path: Path) -> None:
     """After `kill -9` at any time while the log grows, the state may lack the last missions but is valid."""
     path, whole = tmp_path / "m.log", (world / "a.log").read_bytes()
     command = [

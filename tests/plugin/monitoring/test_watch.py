@@ -30,7 +30,9 @@ def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_missions_as_recorded_raise_no_alarm(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_missions_in_the_recorded_world_raise_no_alarm(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     log(root / "m.log", walks(200, 2))
     assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 0
     out = capsys.readouterr().out
@@ -174,7 +176,7 @@ def test_the_watch_follows_a_growing_log_until_a_signal(root: Path, number: sign
     validate(json.loads((root / "w.json").read_text()), dashboard.schema())
 
 
-def test_until_alarm_exits_at_the_first_alarm(root: Path) -> None:
+def test_with_until_alarm_the_watch_exits_at_the_first_alarm(root: Path) -> None:
     log(root / "m.log", walks(60, 3, drift=1.0))
     process = started(root, "--until-alarm")
     out, err = process.communicate(timeout=60)

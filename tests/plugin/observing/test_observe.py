@@ -132,7 +132,7 @@ def test_a_node_that_cannot_be_observed_is_reported_in_one_sentence(
     ros.close()
 
 
-def test_a_log_needs_online_mode(pytester: pytest.Pytester) -> None:
+def test_the_flag_for_a_log_needs_online_mode(pytester: pytest.Pytester) -> None:
     pytester.makepyfile("def test_nothing(): pass")
     for flags, says in (
         (["--tarl-log=x"], "*--tarl-log needs --tarl-online*"),
@@ -141,7 +141,9 @@ def test_a_log_needs_online_mode(pytester: pytest.Pytester) -> None:
         pytester.runpytest_inprocess(*flags).stderr.fnmatch_lines([says])
 
 
-def test_observing_needs_a_recording(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_node_can_be_observed_only_with_a_recording(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "keeper.py").write_text(NODE)
     with pytest.raises(LogError, match="Choose one with --fixture"):

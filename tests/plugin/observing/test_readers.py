@@ -70,7 +70,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("field", "messages"), CASES, ids=lambda case: str(case)[:9])
-def test_fields_are_read_as_in_a_test(field: Any, messages: list[Any]) -> None:
+def test_observed_fields_are_read_as_in_a_test(field: Any, messages: list[Any]) -> None:
     read = reader(field)
     for one in [*messages, *messages]:
         found, wanted = outcome(read, one), outcome(lambda each: reading(each, field), one)

@@ -177,7 +177,9 @@ def unhelpful(_: Candidate, __: int) -> Outcome:
     return Outcome(1.0, passed=False)
 
 
-def test_both_worlds_run_with_the_seeds_of_losing_missions_and_are_charged(tmp_path: Path) -> None:
+def test_seeds_of_missions_with_a_loss_run_in_both_worlds_and_count_towards_the_budget(
+    tmp_path: Path,
+) -> None:
     order, rollout = missions(tmp_path)
     trials = Trials(unhelpful, 100)
     found = signs(order, trials)
@@ -191,7 +193,7 @@ def test_both_worlds_run_with_the_seeds_of_losing_missions_and_are_charged(tmp_p
     assert found.strength("elsewhere", ("spikes",)) == 0.0
 
 
-def test_without_episodes_or_without_a_drift_there_are_no_signs(tmp_path: Path) -> None:
+def test_without_episodes_or_without_a_drift_no_symptoms_are_measured(tmp_path: Path) -> None:
     order, rollout = missions(tmp_path)
     assert signs(order, Trials(unhelpful, 1)) == Signs()
     order.drift = None
@@ -237,7 +239,9 @@ def _quietly(structures: Structures) -> list[Candidate]:
         return []
 
 
-def test_early_changes_wait_for_the_constants_run_once_and_leave_their_budget(tmp_path: Path) -> None:
+def test_early_changes_wait_until_constants_were_tried_then_run_a_single_time_and_keep_the_budget_of_constants(
+    tmp_path: Path,
+) -> None:
     order, rollout = missions(tmp_path)
     trials = Trials(unhelpful, 200)
     early = Early(order, (ALWAYS,), trials)

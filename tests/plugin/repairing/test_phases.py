@@ -168,7 +168,7 @@ def test_a_ranking_replaces_effects_if_it_has_any(monkeypatch: pytest.MonkeyPatc
         (False, True, "not shown", "not shown"),
     ],
 )
-def test_if_no_candidate_was_tested_the_reason_states_why_the_search_ended(
+def test_if_no_candidate_was_tested_the_reason_for_refusal_states_why_the_search_ended(
     interrupted: bool, late: bool, reason: Any, expected: str
 ) -> None:
     examiner: Any = Examiner(refused=Refused(None, reason))

@@ -50,7 +50,7 @@ def test_each_row_of_a_figure_shows_its_regions_as_intervals_of_the_position(shu
     assert len(false["paper"]) == 1
 
 
-def test_each_row_is_a_value_of_the_category_that_explains_most_of_the_region(two_lists):
+def test_each_row_of_a_figure_shows_a_value_of_the_category_that_explains_most_of_the_region(two_lists):
     assert [two_lists.sensors[d].name for d in (plane(two_lists).position, plane(two_lists).split)] == [
         "x",
         "light",

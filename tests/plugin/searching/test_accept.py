@@ -154,7 +154,7 @@ def test_totals_are_compared_seed_by_seed() -> None:
         assert not accept(varying(0.6), None, varying(0.0), seeds(at), reference, RISK).accepted
 
 
-def test_the_reason_is_not_shown_if_the_test_remains_undecided() -> None:
+def test_the_reason_for_refusal_is_not_shown_if_the_test_remains_undecided() -> None:
     found = judged(world(DESIGNED - 0.9 * MARGIN, 0.01))
     assert found.reason == "not shown"
 

@@ -25,7 +25,7 @@ def asked(
     return confirmed(CANDIDATE, Trials(run, 100), Goal(pairs, near, enough, 0.0), first), ran
 
 
-def test_the_seeds_follow_the_first_one_cyclically() -> None:
+def test_the_seeds_of_a_confirmation_follow_the_first_seed_cyclically() -> None:
     assert asked([9.0] * 9) == (True, [1, 2, 3, 4, 5])
     assert asked([9.0] * 9, 6) == (True, [7, 8, 0, 1, 2])
     assert asked([9.0] * 3, 1) == (True, [2, 0])
@@ -41,7 +41,7 @@ def test_a_candidate_must_earn_enough_on_average(total: float, enough: bool) -> 
     assert asked([0.0, *[total] * 5])[0] is enough
 
 
-def test_one_miss_is_tolerated_and_the_second_ends_the_confirmation() -> None:
+def test_a_confirmation_tolerates_one_miss_and_ends_at_the_second_miss() -> None:
     assert asked([9.0, 0.0, 9.0, 9.0, 9.0, 9.0]) == (True, [1, 2, 3, 4, 5])
     assert asked([9.0, 0.0, 9.0, 0.0, 9.0, 9.0]) == (False, [1, 2, 3])
 

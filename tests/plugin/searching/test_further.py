@@ -107,7 +107,7 @@ def test_an_offset_of_a_literal_zero_is_refined_half_as_often() -> None:
     assert trials.spent < 40
 
 
-def test_before_a_combination_under_a_guard_its_refused_constants_count_again() -> None:
+def test_constants_refused_under_a_guard_may_be_combined_under_the_same_guard() -> None:
     search = Sweep(GAINS[:2], mutations, (ALWAYS, WET), world(lambda *_: 0.0), GOAL)
     first, second = search.units
     search.refused = {(first, ALWAYS), (second, ALWAYS), (first, WET)}

@@ -184,7 +184,7 @@ def test_an_operand_that_cannot_be_written_is_skipped() -> None:
     assert str(LIMIT.site) not in search.effects()
 
 
-def test_a_label_contains_line_and_change() -> None:
+def test_the_label_of_a_candidate_contains_line_and_change() -> None:
     mutation = mutations(GAIN, 2.2)
     assert mutation is not None
     assert label(Candidate((mutation,), ALWAYS)) == "line 3: 2.0 → 4.4"

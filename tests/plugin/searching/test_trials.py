@@ -93,7 +93,7 @@ def test_episodes_in_both_worlds_spend_the_budget() -> None:
     assert ran.spent == 2
 
 
-def test_only_unknown_episodes_within_the_budget_are_announced() -> None:
+def test_only_episodes_without_a_result_that_fit_the_budget_are_announced() -> None:
     asked: list[list[tuple[Candidate, int]]] = []
     ran = Trials(lambda *_: Outcome(0.0, True), 3, foresee=lambda wanted: asked.append([*wanted]))
     ran(ONE, 0)

@@ -47,13 +47,13 @@ def test_all_uses_are_changed_before_a_single_one() -> None:
     assert trials.labels[0] == label(found)
 
 
-def test_a_use_is_changed_alone_if_the_effects_of_all_cancel() -> None:
+def test_a_single_use_is_changed_if_the_effects_of_all_uses_cancel_out() -> None:
     _, found, _ = searched({SECOND}, {FIRST})
     assert found is not None
     assert [one.operand for one in found.mutations] == [SECOND]
 
 
-def test_a_use_that_does_not_matter_gets_only_its_own_gain() -> None:
+def test_a_use_without_an_effect_is_credited_only_with_its_own_gain() -> None:
     sweep, found, _ = searched({SECOND}, set())
     assert found is not None
     effects = sweep.effects()
@@ -61,7 +61,7 @@ def test_a_use_that_does_not_matter_gets_only_its_own_gain() -> None:
     assert effects[str(FIRST.site)][0].effect == 0.0
 
 
-def test_each_use_gets_the_gain_of_all_if_none_suffices_alone() -> None:
+def test_each_use_is_credited_with_the_gain_of_all_uses_if_none_suffices_alone() -> None:
     whole, first, second = Unit((FIRST, SECOND)), Unit((FIRST,)), Unit((SECOND,))
     found = best_effects([(whole, {2.2: 9.0}), (first, {2.2: 1.0}), (second, {2.2: 2.0})], mutations)
     assert {each.effect for effects in found.values() for each in effects} == {9.0}
@@ -73,7 +73,7 @@ def test_a_use_with_a_small_gain_is_not_credited_with_what_an_untried_use_may_br
     assert (found[str(FIRST.site)][0].effect, found[str(SECOND.site)][0].effect) == (1.0, 9.0)
 
 
-def test_uses_that_are_not_searched_change_as_well_and_scales_stay_apart() -> None:
+def test_uses_outside_the_search_change_with_the_others_and_units_on_a_scale_stay_separate() -> None:
     plain = [*units([FIRST, *OTHERS, SECOND]), Unit((SECOND,), SHARE)]
     united, parts = uses_apart(plain, units([OUTSIDE, constant(30, "ELSEWHERE", 1.0)]))
     whole = Unit((FIRST, SECOND, OUTSIDE))

@@ -64,7 +64,7 @@ def test_a_repair_moves_the_boundary_and_can_be_applied(
     assert "GAIN = 2.0" not in (tank.path / "keeper.py").read_text("utf-8")
 
 
-def test_a_repair_of_a_boundary_sets_the_drift_of_episodes_of_its_test_without_a_point() -> None:
+def test_a_repair_of_a_boundary_sets_the_drift_of_those_episodes_of_its_test_that_have_no_point() -> None:
     simulated = Simulated(lambda point, _: (True, float(point["mud"])))
     placed = Placed(
         simulated, "world", lambda seed: {"mud": float(seed)}, {Path("a.py"): "1", Path("b.py"): "2"}
@@ -79,7 +79,7 @@ def test_a_repair_of_a_boundary_sets_the_drift_of_episodes_of_its_test_without_a
     assert simulated.plans[0].overlay == {Path("a.py"): "1", Path("b.py"): "3"}
 
 
-def test_the_ranges_to_repair_begin_at_the_failure_and_options_stay() -> None:
+def test_the_ranges_to_repair_begin_at_the_failure_and_options_keep_their_failing_value() -> None:
     space = space_of(
         mud=Drift.range(0.0, 1.0, nominal=1.0),
         slope=Drift.range(-0.5, 0.5, nominal=0.0),

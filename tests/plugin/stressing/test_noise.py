@@ -31,7 +31,7 @@ def steep(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
     return True, 10.0 - lost * (1.0 + 0.5 * float(draws.normal())) + 0.02 * float(draws.normal())
 
 
-def test_losses_are_cut_off_at_the_limits_of_the_model() -> None:
+def test_losses_beyond_the_limits_of_the_model_count_as_the_limits() -> None:
     assert cut_off([-9.0, 0.5, 40.0]) == pytest.approx([-1.5, 0.5, 2.5])
 
 

@@ -86,7 +86,7 @@ def test_chains_rarely_confirm_a_drift_with_just_the_guaranteed_rate(alike: floa
     assert wrong <= risk * runs + 3.0 * (risk * (1.0 - risk) * runs) ** 0.5
 
 
-def test_further_drifts_take_few_episodes_if_episodes_that_fail_there_failed_before() -> None:
+def test_further_drifts_take_few_episodes_if_they_fail_on_the_seeds_that_failed_before() -> None:
     def spent(alike: float) -> int:
         every = [Episodes(seed, alike) for seed in range(20)]
         whole = [one for one in every if confirmed(one, (0.6, 0.36, 0.34), 0.05) == [0.6, 0.36, 0.34]]
@@ -106,7 +106,7 @@ def test_the_model_learns_a_rate_that_the_order_of_the_seeds_does_not_bias() -> 
         assert np.mean(shares) == pytest.approx(0.3, abs=0.06)
 
 
-def test_the_risks_of_all_looks_add_up_and_each_look_has_one() -> None:
+def test_each_look_has_a_risk_and_the_risks_of_all_looks_add_up_to_the_whole_risk() -> None:
     assert sum(SPENT) == pytest.approx(1.0)
     assert len(SPENT) == len(LOOKS)
     assert list(LOOKS) == sorted(LOOKS)
