@@ -194,7 +194,9 @@ TWO_PARTS = """
     ("written", "found"),
     [("self.x = msg.data\nself.y = 2.0 * msg.data", 2), ("self.x = msg.data", 0)],
 )
-def test_values_that_are_written_under_one_lock_must_be_read_under_one_lock(written, found):
+def test_reading_several_values_without_the_lock_is_reported_if_a_callback_writes_them_under_one_lock(
+    written, found
+):
     body = "\n".join(f"{' ' * 16}{line}" for line in written.split("\n"))
     assert len(lines("TARL201", TWO_PARTS.format(written=body))) == found
 

@@ -92,7 +92,7 @@ def obj(store):
     return recency.intern(linked("x = 1\n"), "sequence", "a")
 
 
-def test_a_read_counts_for_a_call_only_if_the_call_has_not_stored_to_that_key_before(store, obj):
+def test_a_read_counts_for_a_call_only_if_no_store_of_the_call_to_that_key_precedes_it(store, obj):
     store.get((obj, "x"))
     store.put((obj, "x"), Value(DATA))
     store.put((obj, "y"), Value(DATA))
@@ -215,7 +215,7 @@ def test_merging_the_values_of_a_field_adds_no_steps_to_flows_of_other_sources(a
         assert f"def on_{name[2:]}" in "".join(s.code for s in flow.steps)
 
 
-def test_values_added_to_a_field_whose_values_are_merged_do_not_change_its_node():
+def test_work_grows_linearly_with_the_values_that_are_added_to_a_field_whose_values_are_merged():
     totals = [linked(many(number)).total for number in (MANY, 2 * MANY)]
     assert totals[1] < 2.3 * totals[0]
 

@@ -110,7 +110,7 @@ def test_a_finding_that_fails_the_run_is_an_error_whatever_its_own_level():
     assert [level(code, result) for code in ("TARL101", "TARL102", "TARL201")] == ["error", "note", "warning"]
 
 
-def test_findings_with_equal_fingerprints_are_numbered():
+def test_findings_with_equal_fingerprints_get_consecutive_numbers():
     some = [
         finding(fingerprint="f"),
         finding(fingerprint="g"),

@@ -126,7 +126,7 @@ def test_the_search_for_chains_is_bounded(monkeypatch):
     assert (len(found), more) == (1, False)
 
 
-def test_a_chain_is_as_strong_as_its_weakest_hop():
+def test_the_strength_of_a_chain_is_that_of_its_weakest_hop():
     def kind(*kinds: str) -> str:
         hops = [hop(f"/{n}", f"/{n + 1}", one) for n, one in enumerate(kinds)]
         (chain,), _ = chains(hops)

@@ -26,7 +26,7 @@ SAID = "pyproject.toml: 'sources' names 'robot.nothing', which no file mentions:
         ("", False),
     ],
 )
-def test_a_setting_matches_the_definition_of_its_name_or_a_use_that_names_its_module(text, met):
+def test_a_name_in_the_settings_matches_its_definition_or_a_use_that_names_its_module(text, met):
     assert bool(unmatched(Config(sources=("robot.bus.listen",)), [text])) is not met
 
 

@@ -73,7 +73,7 @@ def reference(tank: pytest.Pytester) -> bytes:
 
 
 @pytest.mark.parametrize("seed", range(TIMES))
-def test_a_recording_is_the_same_in_any_environment(
+def test_a_recording_does_not_depend_on_python_options_environment_variables_and_umask(
     tank: pytest.Pytester, reference: bytes, seed: int
 ) -> None:
     flags, options, variables, umask = drawn(seed)

@@ -60,7 +60,7 @@ def test_paths_are_relative_to_the_ini_file(pytester: pytest.Pytester) -> None:
     assert given["log"] == str(pytester.path / "logs" / "missions.log")
 
 
-def test_options_of_another_mode_are_ignored(pytester: pytest.Pytester) -> None:
+def test_ini_options_of_another_mode_are_ignored(pytester: pytest.Pytester) -> None:
     lines = "tarl_drift = mud\ntarl_search = sweep\ntarl_strict = true\ntarl_holm = true"
     recorded = read(pytester, lines, "--tarl-record")
     assert (recorded["drift"], recorded["search"], recorded["strict"]) == ("mud", None, False)
@@ -71,7 +71,9 @@ def test_options_of_another_mode_are_ignored(pytester: pytest.Pytester) -> None:
 @pytest.mark.parametrize(
     ("lines", "asked"), [("tarl_online = true", True), ("tarl_drift = mud", False), ("", False)]
 )
-def test_only_a_mode_activates_the_plugin(pytester: pytest.Pytester, lines: str, *, asked: bool) -> None:
+def test_only_an_ini_option_that_sets_a_mode_activates_the_plugin(
+    pytester: pytest.Pytester, lines: str, *, asked: bool
+) -> None:
     assert ini.mode_asked(configured(pytester, lines)) is asked
     ended = pytester.runpytest("-q", "-p", "no:asyncio")
     assert ("1 deselected" if asked else "1 passed") in ended.stdout.str()

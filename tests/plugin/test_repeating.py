@@ -53,7 +53,7 @@ def test_exit_in_a_test_ends_the_run(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*Exit: enough*"])
 
 
-def test_an_error_in_teardown_is_not_a_failed_mission(tank: pytest.Pytester) -> None:
+def test_an_error_in_teardown_does_not_count_as_a_failed_mission(tank: pytest.Pytester) -> None:
     tank.makeconftest(
         """
         import pytest

@@ -47,7 +47,7 @@ def plans(*seeds: int) -> Iterator[tuple[int, EpisodePlan]]:
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])
-def test_results_do_not_depend_on_what_was_started_ahead(workers: int) -> None:
+def test_results_do_not_depend_on_which_episodes_were_started_ahead(workers: int) -> None:
     ahead: Any = Ahead(FakeExecutor(workers))
     got = []
     for seed in (3, 1, 4, 1, 5):

@@ -111,7 +111,7 @@ def test_a_skip_in_an_episode_skips_the_test(tank: pytest.Pytester) -> None:
     assert not (tank.path / ".tarl" / "utility").exists()
 
 
-def test_a_call_to_xfail_is_a_failed_mission(tank: pytest.Pytester) -> None:
+def test_a_call_to_xfail_counts_as_a_failed_mission(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", HEAD, f'{HEAD}    if tarl.rng("luck").random() < 0.5: pytest.xfail("leaks")\n')
     told = tank.runpytest(*RECORD)
     told.assert_outcomes(failed=1, deselected=1)

@@ -110,7 +110,7 @@ def test_a_file_of_a_package_that_runs_as_a_script_may_import_files_beside_it():
     assert found("time", File("p/node.py", "p.node"), *files) == "", "the standard library has this name"
 
 
-def test_packages_of_ros_are_never_read_from_files():
+def test_packages_of_ros_are_never_analysed_from_source_files():
     files = File("rospy/__init__.py", "rospy", is_package=True), File("rclpy/node.py", "rclpy.node")
     assert found("rospy", File("a.py", "a"), *files) == ""
     assert found("rclpy.node", File("a.py", "a"), *files) == ""

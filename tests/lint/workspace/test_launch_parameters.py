@@ -20,7 +20,7 @@ def values(*settings: Setting, node: str = "/n") -> dict[str, Any]:
     return {one.name: one.value for one in stated(settings, node)}
 
 
-def test_a_value_or_each_entry_of_yaml_gets_the_name_in_its_setting():
+def test_a_value_or_each_entry_of_a_yaml_mapping_gets_the_name_that_its_setting_states():
     assert values(Setting("~a", HERE, 1), Setting("/b", HERE, "x"), Setting("~c", HERE, yaml="[1, 2]")) == {
         "~a": 1, "/b": "x", "~c": [1, 2],
     }  # fmt: skip

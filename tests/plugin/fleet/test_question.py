@@ -146,7 +146,7 @@ def test_tarl_fleet_and_the_comparison_of_a_log_give_the_same_verdict(folder: Pa
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_the_answer_does_not_depend_on_files_copies_order_portions_and_threads(
+def test_the_answer_does_not_depend_on_files_copies_order_threads_and_the_missions_read_at_a_time(
     folder: Path, found: Answer, seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     random = Random(seed)

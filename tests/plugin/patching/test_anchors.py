@@ -66,7 +66,9 @@ rospy.spin()
     ],
     ids=["class", "function", "script"],
 )
-def test_the_first_place_is_the_call_that_starts_the_node(text: str, beside: str, node: str) -> None:
+def test_the_first_possible_place_of_a_subscription_is_the_call_that_starts_the_node(
+    text: str, beside: str, node: str
+) -> None:
     analysis: Any = SimpleNamespace(flows=[], sources={"pilot.py": text})
     site: Any = None
     first, *_ = anchors(analysis, site, "pilot.py")

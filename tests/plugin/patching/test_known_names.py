@@ -135,7 +135,7 @@ def test_names_are_found_in_every_kind_of_binding(source: Document) -> None:
         ("w", "INNER", False),
     ],
 )
-def test_a_name_is_bound_if_it_is_local_or_given_at_import(
+def test_a_name_counts_as_bound_if_it_is_local_or_assigned_at_import(
     source: Document, code: str, at: str, bound: bool
 ) -> None:
     assert is_bound(source, place(source, at), code) is bound

@@ -27,7 +27,7 @@ def totals(gain: float, nominal_gain: float) -> dict[str, tuple[float, ...]]:
     }
 
 
-def test_a_repair_that_only_undoes_the_drift_gets_no_note() -> None:
+def test_a_repair_that_only_compensates_the_drift_gets_no_note() -> None:
     assert exceeding(compared(), totals(0.0, 0.0)) == []
     assert exceeding(compared(), totals(0.08, 0.08)) == []  # within the tolerance
     assert (

@@ -262,7 +262,7 @@ def test_a_template_states_whether_a_larger_factor_weakens_its_parameter(
     assert structures.weaker(one, factor) is expected
 
 
-def test_the_examination_of_a_candidate_may_exceed_the_episodes_of_its_group_of_templates() -> None:
+def test_examining_a_candidate_may_take_more_episodes_than_its_group_of_templates_has() -> None:
     structures = Structures.__new__(Structures)
     structures.trials = Trials(lambda *_: Outcome(1.0, True), budget=10, reserve=4)
     steps = structures._beyond_its_share(ONE, whole=30)

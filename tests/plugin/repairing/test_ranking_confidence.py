@@ -69,7 +69,7 @@ def test_lines_repaired_together_are_reported_together() -> None:
     )
 
 
-def test_a_ranking_says_if_it_is_incomplete_or_without_a_repair() -> None:
+def test_a_ranking_states_that_it_is_incomplete_or_that_no_repair_was_found() -> None:
     told = ranking_confidence(ORDER, EFFECTS, None, ranked(4))
     assert told.startswith("no accepted repair confirms the first line; ")
     assert told.endswith("the budget ended before all were ranked")

@@ -158,7 +158,7 @@ def factors(of: Candidate | None) -> list[float]:
     return [factor(one) or math.nan for one in of.mutations]
 
 
-def test_a_bisection_halves_the_exponents_until_a_result_gives_no_direction() -> None:
+def test_a_bisection_halves_the_exponents_until_no_result_shows_which_way_to_go() -> None:
     both = Candidate((*scaled(16.0).mutations, *scaled(1 / 16.0, of=OTHER).mutations), ALWAYS)
     between = Between(both, mutations)
     assert factors(between.middle()) == pytest.approx([4.0, 0.25], rel=0.01)
@@ -196,7 +196,7 @@ def test_a_stronger_candidate_has_its_factors_raised_to_a_power() -> None:
         assert stronger(scaled(by), 2.0, mutations) is None
 
 
-def test_a_value_is_moved_if_it_belongs_to_one_site() -> None:
+def test_a_value_is_moved_only_if_it_belongs_to_a_single_site() -> None:
     assert factors(moved(scaled(2.0), 1.5, mutations)) == [3.0]
     beside = replace(OTHER, site=GAIN.site)
     both = Candidate((*scaled(2.0).mutations, *scaled(0.5, of=beside).mutations), ALWAYS)

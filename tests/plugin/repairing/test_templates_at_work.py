@@ -230,7 +230,7 @@ def test_the_found_template_has_fitted_parameters_and_its_patch_runs(
 
 @pytest.mark.parametrize("name", ["limit", "low_pass", "rate_limit", "integral"])
 @pytest.mark.parametrize("body", BODIES)
-def test_a_template_is_found_for_values_from_parameters_fields_and_calls(
+def test_a_template_is_found_whatever_expression_computes_the_value(
     name: str, body: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     world = World(name, tmp_path, BODIES[body])

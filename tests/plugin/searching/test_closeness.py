@@ -53,7 +53,7 @@ def test_plainer_alternatives_include_only_constants_changed_on_the_same_scale()
     assert calls_of(getter, [getter, Unit((call,)), Unit((call,), SHARE)]) == [Unit((call,))]
 
 
-def test_rivals_are_named_constants_of_the_same_function_that_affect_missions() -> None:
+def test_rivals_are_those_named_constants_of_the_same_function_that_affect_missions() -> None:
     gains = Gains(0.1)
     for at, gain in ((LEAK, 9.0), (POWER, 0.3), (ROOM, 0.0), (ELSEWHERE, 1.0)):
         for factor in (2.2, 0.4):
@@ -65,7 +65,9 @@ def test_rivals_are_named_constants_of_the_same_function_that_affect_missions() 
 
 
 @pytest.mark.parametrize(("late", "first"), [(True, POWER), (False, LEAK)])
-def test_the_constant_with_which_missions_run_as_designed_comes_first(late: bool, first: Operand) -> None:
+def test_the_constant_whose_change_makes_missions_run_as_designed_comes_first(
+    late: bool, first: Operand
+) -> None:
     def factor(mutation: Mutation, of: Operand) -> float:
         return float(mutation.value) if mutation.operand == of else 1.0
 

@@ -41,7 +41,7 @@ def gains_of(*entries: tuple[Unit, float, float]) -> Gains:
         ([], False),
     ],
 )
-def test_the_best_gain_is_far_if_no_smaller_change_gains_about_as_much(
+def test_the_best_change_counts_as_far_if_no_smaller_change_gains_about_as_much(
     entries: list[tuple[int, float, float]], far: bool
 ) -> None:
     table = gains_of(*((UNITS[at], factor, gain) for at, factor, gain in entries))
@@ -49,7 +49,7 @@ def test_the_best_gain_is_far_if_no_smaller_change_gains_about_as_much(
 
 
 @pytest.mark.parametrize("count", [1, 3, 8])
-def test_few_constants_that_matter_get_many_inward_steps_and_many_get_few(count: int) -> None:
+def test_inward_steps_are_many_if_few_constants_matter_and_few_if_many_do(count: int) -> None:
     table = gains_of(*((unit, 5.0, -1.0) for unit in UNITS[:count]))
     matter, steps = inward(UNITS, table)
     assert matter == list(UNITS[:count])
@@ -118,7 +118,9 @@ def test_a_small_change_is_found_although_five_times_another_constant_nearly_suf
 
 
 @pytest.mark.parametrize(("factor", "far"), [(1.2, False), (0.5, True), (3.0, True)])
-def test_an_offset_is_far_if_it_changes_the_constant_by_a_large_factor(factor: float, far: bool) -> None:
+def test_an_offset_counts_as_far_if_it_changes_the_constant_by_a_large_factor(
+    factor: float, far: bool
+) -> None:
     """The steps of an offset of 0.1 in a sum of numbers around 1 are much larger than the offset."""
     unit = Unit(UNITS[0].operands, offset(1.0))
     value = float(UNITS[0].operands[0].value or 0.0)

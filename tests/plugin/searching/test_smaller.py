@@ -63,7 +63,7 @@ def order(search: Sweep, many: int) -> list[Operand]:
     return [next(found).mutations[0].operand for _ in range(many)]
 
 
-def test_a_sixth_less_of_another_constant_comes_before_a_doubled_one() -> None:
+def test_reducing_another_constant_by_a_sixth_comes_before_doubling_the_constant_found() -> None:
     windows = {HOTTEST: (2.0, 2.4), TARGET: (0.8, 0.85)}
     assert order(searched((TARGET, TAU, HOTTEST), windows), 2) == [TARGET, HOTTEST]
     assert order(searched((HOTTEST, TAU, TARGET), windows), 2) == [TARGET, HOTTEST]  # not tried before
@@ -88,7 +88,7 @@ def test_the_search_for_smaller_changes_takes_few_episodes_if_there_is_none() ->
     assert search.trials.spent == confirming + EPISODES + halfway + search.trials.beside
 
 
-def test_the_value_halfway_to_the_old_one_comes_first_if_it_restores_as_much() -> None:
+def test_the_value_halfway_to_the_original_one_comes_first_if_it_restores_as_much_reward() -> None:
     found = searched((HOTTEST,), {HOTTEST: (1.35, 2.4)}).candidates()
     assert [next(found).mutations[0].value for _ in range(2)] == [1.483, 2.2]
     for low in (1.6, 1.45):  # at 1.45, the value halfway lies at the edge of the good range
@@ -96,7 +96,7 @@ def test_the_value_halfway_to_the_old_one_comes_first_if_it_restores_as_much() -
         assert next(only).mutations[0].value == 2.2
 
 
-def test_the_value_halfway_to_the_old_one_does_not_come_first_if_it_earns_less() -> None:
+def test_the_value_halfway_to_the_original_one_does_not_come_first_if_it_earns_less() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         (change,) = candidate.mutations
         value = change.value
@@ -107,7 +107,7 @@ def test_the_value_halfway_to_the_old_one_does_not_come_first_if_it_earns_less()
     assert next(found).mutations[0].value == 2.2
 
 
-def test_no_value_is_halfway_if_one_between_was_tried_or_the_constant_has_no_scale() -> None:
+def test_no_halfway_value_is_proposed_if_one_between_was_tried_or_the_constant_has_no_scale() -> None:
     unit = Unit((HOTTEST,))
     assert milder(unit, 0.4, {1.0: 0.0, 0.4: 9.0, 2.2: 1.0}) == 0.632
     assert milder(unit, 0.15, {1.0: 0.0, 0.15: 9.0, 0.4: 1.0}) is None
@@ -136,7 +136,7 @@ def test_the_size_of_a_change_is_the_logarithm_of_the_ratio_of_its_values() -> N
     assert change_size(Unit((share,)), -1.0) == change_size(Unit((named(3, "START", 0.0),)), 2.2) == math.inf
 
 
-def test_a_small_step_that_earns_nearly_enough_is_moved_a_little() -> None:
+def test_a_small_step_that_earns_nearly_enough_is_changed_slightly() -> None:
     """Friction is wrong by 29 %: a step of 22 % earns a bit too little, and one of 33 % misses."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
@@ -153,7 +153,7 @@ def test_a_small_step_that_earns_nearly_enough_is_moved_a_little() -> None:
     assert change.value == pytest.approx(1.22 * 1.06, rel=0.002)
 
 
-def test_a_confirmed_change_that_is_not_preferred_follows_the_change_found() -> None:
+def test_a_confirmed_change_that_is_not_preferred_is_proposed_after_the_change_found() -> None:
     windows = {HOTTEST: (2.0, 2.4), TARGET: (0.8, 0.85)}
     late = searched((TARGET, TAU, HOTTEST), windows, {TARGET: LATE})
     assert order(late, 2) == [HOTTEST, TARGET]

@@ -130,7 +130,7 @@ def test_values_at_which_the_guarantee_fails_are_rarely_declared_to_hold() -> No
     assert shown <= 4  # exceeded with probability 0.003 if each is shown at 5 %
 
 
-def test_only_the_far_end_of_a_boundary_is_printed_if_the_budget_ends_before_the_near_end() -> None:
+def test_if_the_budget_ends_before_the_near_end_of_a_boundary_is_found_only_the_far_end_is_printed() -> None:
     found = stressed(own_limits(0.4, 0.005), SPACE, budget=130)
     (size,) = (sentences for name, sentences in words.directions(found) if name == "size")
     assert "(boundary not beyond 0.4" in size[0]

@@ -116,7 +116,7 @@ def model(samples: list[tuple[float, float]], failed: int = 0) -> prediction.Pre
     return prediction.Prediction(coordinates, GIVEN, tried, prediction.Shown(0.1, 0.5), 0.01, 0.005)
 
 
-def test_a_prediction_returns_the_losses_where_drifts_were_tried_and_less_on_the_way_to_nominal() -> None:
+def test_a_model_predicts_the_measured_losses_at_tried_drifts_and_smaller_losses_nearer_to_nominal() -> None:
     found = model([(0.2, 0.4), (0.4, 0.8), (0.8, 1.6)])
     margins = found.margins(np.array([[0.0, 0.0], [-0.2, 0.0], [-0.4, 0.0], [-0.8, 0.0], [-0.6, 0.0]]))
     assert margins == pytest.approx([1.0, 0.6, 0.2, -0.6, -0.2], abs=0.03)
@@ -138,7 +138,7 @@ def test_the_shortest_failing_vector_is_the_one_whose_loss_is_just_detectable() 
     assert np.linalg.norm(cautious) > np.linalg.norm(vector)
 
 
-def test_a_drift_with_failing_episodes_fails_for_any_reward() -> None:
+def test_a_drift_whose_episodes_fail_violates_the_guarantee_whatever_its_reward() -> None:
     vectors = np.array([[-0.4, 0.0]])
     assert model([(0.4, 0.0)]).failing(vectors)[0] < 0.01
     assert model([(0.4, 0.0)], failed=30).failing(vectors)[0] > 0.9

@@ -129,7 +129,7 @@ def test_an_exception_under_a_generated_drift_is_raised_once() -> None:
     assert len(calls) == 1
 
 
-def test_the_evolution_strategy_does_not_use_the_global_random_generator() -> None:
+def test_the_evolution_strategy_neither_uses_nor_changes_the_global_random_generator() -> None:
     """Nodes may draw from the global generator in the process of the search, but not in workers."""
     reached: list[list[float]] = []
     for state in (1, 2):

@@ -125,7 +125,7 @@ def test_unlucky_seeds_explain_failures_that_all_drifts_on_them_have() -> None:
     assert RateField(prior, 9.0, even, episodes, -5.0, steep, 4.0 * used @ used.T).evidence < steep.evidence
 
 
-def test_a_failure_that_is_left_out_does_not_hide_farther_ones_once_it_is_no_longer_the_nearest() -> None:
+def test_a_failure_that_is_left_out_does_not_hide_farther_ones_after_a_nearer_failure_is_found() -> None:
     evaluator = evaluator_of(lambda point, _: (point["a"] < 0.45, 1.0), SQUARE)
     together = Together(0.5, [])
     assert together.confirm([at(0.53, 0.1), at(0.51, 0.1)], evaluator)

@@ -71,7 +71,7 @@ def test_rays_lead_to_each_end_and_option_except_the_nominal_one() -> None:
     assert (mud.value(0.25), mud.length, flat.length, down.length) == (3.0, 1.0, 0.5, 1.0)
 
 
-def test_a_ray_joined_from_two_directions_passes_through_the_sum_of_their_points() -> None:
+def test_a_ray_that_combines_two_directions_passes_through_the_sum_of_their_points() -> None:
     both = joined([(MUD, 0.5), (STEEP, 0.5)])
     assert both.farthest == {"mud": 2.0, "slope": 0.5, "camera": 0.0}
     assert (both.names, both.length) == (("mud", "slope"), pytest.approx(sqrt(0.25 + 0.0625)))

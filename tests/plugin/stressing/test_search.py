@@ -266,7 +266,7 @@ def test_a_time_limit_ends_the_search_and_says_how_to_repeat_it(monkeypatch: pyt
 
 
 @pytest.mark.parametrize("budget", [43, 50, 51, 58])
-def test_a_budget_that_ends_between_a_drift_and_its_nominal_pairs_leaves_a_margin(budget: int) -> None:
+def test_a_margin_exists_even_if_the_budget_ends_before_the_nominal_episodes_of_a_drift(budget: int) -> None:
     space = space_of(mud=MUD, slope=SLOPE)
     evaluator = evaluator_of(lambda _, draws: noisy(10.0, draws, 0.5), space, budget=budget)
     point = {"mud": 0.5, "slope": 0.1}
