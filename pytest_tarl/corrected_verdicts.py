@@ -43,8 +43,8 @@ def _hopeless(comparison: Comparison, tests: int, alpha: float) -> Iterator[str]
         yield (
             f"This test cannot reach significance: with {online} deployed and {offline} recorded episodes, the "
             f"smallest possible p-value is {least:.2g}, or {min(1.0, tests * least):.2g} corrected for {tests} "
-            f"comparisons, not below {alpha:g}. Run --tarl-holm on fewer tests, raise --tarl-episodes, or raise "
-            "--tarl-alpha."
+            f"comparisons, which is not below {alpha:g}. Run --tarl-holm on fewer tests, raise --tarl-episodes, or "
+            "raise --tarl-alpha."
         )
 
 

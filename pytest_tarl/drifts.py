@@ -83,8 +83,8 @@ class Drift:
         lasting = [name for name, one in directions.items() if isinstance(one, Drift) and one.permanent]
         if lasting:
             raise SettingsError(
-                f"Drift.space: {lasting[0]!r} is permanent, but a space has no single world to keep: remove "
-                "permanent=True, or declare the changed value as a drift of its own."
+                f"Drift.space: {lasting[0]!r} is permanent, but a space has no single world that the design could "
+                "adopt: remove permanent=True, or declare the changed value as a drift of its own."
             )
         return cls(spaces.space(parts))
 

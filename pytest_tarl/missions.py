@@ -318,7 +318,10 @@ class Mission:
             try:
                 fixture = fixtures.load(path)
             except FixtureError as problem:
-                yield f"{problem.what} If its test runs the same node, the repair was not checked against it"
+                yield (
+                    f"{problem.what} If the test of this recording runs the same node, the repair was not checked "
+                    "on that test"
+                )
                 continue
             sites = {site.path for one in fixture.lists for site in one.sites}
             if fixture.test not in run and sites & edited:

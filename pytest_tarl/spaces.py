@@ -157,7 +157,7 @@ def space(parts: Mapping[str, Any]) -> Space:
     for name, part in parts.items():
         if isinstance(part, Span) and part.nominal is None:
             raise SettingsError(
-                f"Drift.space: {name!r} has no nominal value, which recordings use: write "
+                f"Drift.space: {name!r} has no nominal value, at which recordings are made: write "
                 f"Drift.range({part.low:g}, {part.high:g}, nominal=…)."
             )
         if isinstance(part, Span | Choice):

@@ -230,7 +230,7 @@ def _add_policy(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--fail-on",
         choices=FAIL_ON,
-        help="exit with 1 never, on new hazards, also on new explicit flows (default), or also on new implicit ones",
+        help="which new findings give exit code 1: none, hazards, hazards and explicit flows (default), or all",
     )
     group.add_argument(
         "--exit-zero", action="store_true", help="exit with 0 even if there are findings; overrides --fail-on"

@@ -48,7 +48,8 @@ class Bag:
         except _unreadable() as problem:
             seconds = (last - self.start) / 1e9
             self.notes.append(
-                f"{self.path.name} cannot be read after {seconds:.1f} s ({problem}); earlier messages count."
+                f"{self.path.name} cannot be read after {seconds:.1f} s ({problem}); "
+                "only the messages before that are used."
             )
 
     def decode(self, topic: str, data: bytes) -> Any:
@@ -198,7 +199,7 @@ def _salvaged(path: Path, kind: Kind, reason: str) -> Bag:
             sorted((one for one in _walked(files) if isinstance(one, Recorded)), key=lambda one: one.time)
         ),
         min(times),
-        [f"{path.name} was cut off: its first {span:.1f} s with {len(times)} messages count."],
+        [f"{path.name} was cut off: only its first {span:.1f} s with {len(times)} messages are used."],
     )
 
 

@@ -30,7 +30,7 @@ def add_merge(commands: argparse._SubParsersAction[Parser]) -> None:
         "--fixture",
         type=Path,
         metavar="FILE",
-        help="recording whose sensors and statements are used; its episodes do not count (default: the first FILE)",
+        help="recording that gives the sensors and statements; its episodes are not merged (default: the first FILE)",
     )
     merge.set_defaults(run=_merge)
 
@@ -187,7 +187,7 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
         "--cluster",
         default="",
         metavar="ADDRESS",
-        help="judge on the workers of this Dask scheduler, which read the data set, such as tcp://192.0.2.1:8786",
+        help="judge on the workers of this Dask scheduler, such as tcp://192.0.2.1:8786; they read the data set",
     )
     flag(
         "--workers",

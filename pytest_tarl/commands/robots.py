@@ -63,10 +63,13 @@ def add_observe(commands: argparse._SubParsersAction[Parser]) -> None:
         "--mission-topic",
         default="",
         metavar="TOPIC[:TYPE]",
-        help="topic with begin, succeeded, failed (std_msgs/String)",
+        help="topic that carries the words begin, succeeded, failed (std_msgs/String)",
     )
     flag(
-        "--idle", type=float, metavar="SECONDS", help="end a mission when nothing was published for this time"
+        "--idle",
+        type=float,
+        metavar="SECONDS",
+        help="end a mission when the node has published nothing for this time",
     )
     observe.set_defaults(run=_observe)
 

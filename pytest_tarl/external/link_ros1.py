@@ -191,7 +191,9 @@ def _class(kind: str) -> Any:
 
     found = roslib.message.get_message_class(kind)
     if found is None:
-        raise LookupError(f"The simulator uses {kind}, whose package is not installed beside rospy.")
+        raise LookupError(
+            f"The simulator uses the type {kind}, but its package is not installed beside rospy."
+        )
     return found
 
 
@@ -200,7 +202,9 @@ def _service_class(kind: str) -> Any:
 
     found = roslib.message.get_service_class(kind)
     if found is None:
-        raise LookupError(f"The simulator uses {kind}, whose package is not installed beside rospy.")
+        raise LookupError(
+            f"The simulator uses the type {kind}, but its package is not installed beside rospy."
+        )
     return found
 
 

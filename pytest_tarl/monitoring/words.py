@@ -89,7 +89,7 @@ def led(score: Score, words: Vocabulary) -> str:
 def promise(status: Status) -> str:
     """Describe the probability of a false alarm."""
     tested = [bound for bound, evidence in status.bounds if evidence is not None]
-    text = f"probability of a false alarm, ever: at most {_percent(status.alpha)} (alpha)"
+    text = f"probability that this watch ever raises a false alarm: at most {_percent(status.alpha)} (alpha)"
     if not tested:
         return text
     each = " and ".join(_percent(1.0 - bound.confidence) for bound in tested)

@@ -40,7 +40,7 @@ def nothing_lost(path: str, original: str, patched: str, changed: Collection[int
     for piece in wanted:
         # `in` advances the iterator up to the piece, so the pieces must occur in the same order
         if piece not in kept:
-            raise RepairError(f"The repair of {path} would lose `{piece}`, so no patch is written.")
+            raise RepairError(f"The repair of {path} would remove `{piece}`, so no patch is written.")
 
 
 def _pieces(node: libcst.CSTNode, module: libcst.Module) -> Iterator[tuple[libcst.CSTNode, str]]:

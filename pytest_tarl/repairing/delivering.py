@@ -118,7 +118,7 @@ def partial(mutants: Mutants, found: Best) -> Partial | None:
         f"{patch.TITLE}{__version__}: partial, {words.one_line(what)}",
         f"partial: {repair_words.partial_words(made, order.comparison)}",
         f"test: {order.fixture.test}",
-        f"drift: {words.one_line(order.drift or 'none is named; the test itself runs in the changed world')}",
+        f"drift: {words.one_line(order.drift or 'no drift is named; the test itself runs in the changed world')}",
         f"seed: {order.options.seed}",
         f"designed: {amounts.average(totals['offline'])}",
         f"drifted: {amounts.average(totals['online'])}",
@@ -197,7 +197,7 @@ def _evidence(
     return [
         f"{patch.TITLE}{__version__}: {words.one_line(change)}",
         f"test: {order.fixture.test}",
-        f"drift: {words.one_line(order.drift or 'none is named; the test itself runs in the changed world')}",
+        f"drift: {words.one_line(order.drift or 'no drift is named; the test itself runs in the changed world')}",
         f"seed: {order.options.seed}",
         f"designed: {amounts.average(totals['offline'])}",
         f"drifted: {amounts.average(totals['online'])}",

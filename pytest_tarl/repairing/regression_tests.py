@@ -94,7 +94,7 @@ def _compared(
     if mutants.order.permanent and neighbour.drift is None:
         return (
             False,
-            f"{told}; it does not declare the drift, so this is its old world, in which losses are allowed",
+            f"{told}; it does not declare the drift, so it ran in the old world, in which losses are allowed",
         )
     return failed > 0 or now < usually - neighbour.margin, told
 

@@ -46,9 +46,9 @@ def map_words(stress: Stress) -> str:
     ]
     counts = {one: answers.count(one) / len(answers) for one in COLOURS}
     return (
-        f"Predicted margin over {found.names[0]} and {found.names[1]}, the other directions nominal: the guarantee "
-        f"holds in {counts['holds']:.0%} of the area, fails in {counts['fails']:.0%}, and is undecided in "
-        f"{counts['unsure']:.0%}, where the boundary lies."
+        f"Predicted margin over {found.names[0]} and {found.names[1]}, with the other directions at their nominal "
+        f"values: the guarantee holds in {counts['holds']:.0%} of the area, fails in {counts['fails']:.0%}, and is "
+        f"undecided in {counts['unsure']:.0%}, where the boundary lies."
     ).replace("%", " %")
 
 

@@ -38,8 +38,9 @@ td, th { padding: .1rem .8rem .1rem 0; text-align: right } .broken { color: #b32
 @media (prefers-color-scheme: dark) { body { background: #14171f; color: #e6e9f0 } text { fill: #aab2c5 } }
 """
 LEGEND = (
-    "Each curve shows the margin over the values of a direction: 1 as designed, 0 where the guarantee is just met. "
-    "Green values hold, red ones fail, brown ones are undecided. A boundary lies in the shaded part."
+    "Each curve shows the margin over the values of a direction: it is 1 as designed and 0 where the guarantee is just "
+    "met. The guarantee holds at green values and fails at red ones; brown ones are undecided. Each boundary lies in a "
+    "shaded part."
 )
 COLOURS = {"fails": "#b3261e", "holds": "#1f7a4d", "open": "#8a6d00"}
 

@@ -68,6 +68,6 @@ def tornado_words(stress: Stress) -> str:
         parts.append(f"{name}: {', '.join(ends)}")
     told = "; ".join(parts)
     return (
-        "Largest loss of margin over each direction alone; at 1, the dashed line, the guarantee is just met. "
-        f"{told}."
+        "Largest loss of margin if only one direction changes; at a loss of 1, the dashed line, the guarantee is "
+        f"just met. {told}."
     )

@@ -94,7 +94,8 @@ def together(stress: Stress) -> Iterator[str]:
         yield f"{len(found) - MOST_SHOWN} more failing combinations are in the JSON result."
     if stress.nearer is not None:
         where = of_point(stress.space, stress.nearer.point)
-        yield f"Probably already fails with {where} (distance {stress.nearer.distance:.2g}); this is not confirmed."
+        distance = f"{stress.nearer.distance:.2g}"
+        yield f"The guarantee probably already fails with {where} (distance {distance}); this is not confirmed."
     elif not found and stress.tried:
         yield f"No combination was found that fails although each of its changes alone passes ({stress.tried} tried)."
 
@@ -109,7 +110,7 @@ def _alone(stress: Stress, one: Failure) -> str:
         reached = moved / way if isinstance(extent, Span) else float(moved == way)
         if reached > 0.0 and (not curve.swept or any(t <= reached + ROUNDING for t in curve.failing)):
             return ""
-    return ", although each alone holds"
+    return ", although the guarantee holds with each change alone"
 
 
 def sobol_words(stress: Stress) -> Iterator[str]:
@@ -270,7 +271,7 @@ def _side(name: str, curve: Curve) -> str:
 
 
 def _uncertainty(ray: Ray, boundary: Boundary) -> str:
-    monotone = "monotone: checked" if boundary.monotone else "not monotone: it holds again beyond"
+    monotone = "monotone: checked" if boundary.monotone else "not monotone: the guarantee holds again beyond"
     if boundary.near is None:
         return f"boundary not beyond {_number(ray, boundary.far)}, {monotone}"
     low, high = sorted((ray.value(boundary.near), ray.value(boundary.far)))

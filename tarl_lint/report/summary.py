@@ -177,7 +177,7 @@ def vanished(result: Result, view: View) -> Iterator[Line]:
     """Yield the accepted findings that are gone."""
     if not result.vanished or not result.baseline:
         return
-    yield ((f"Gone, but accepted in {shown(result.baseline)}:", "strong"),)
+    yield ((f"Accepted but no longer found, in {shown(result.baseline)}:", "strong"),)
     for entry in result.vanished[:_SHOWN]:
         yield ((f"  {in_words(entry, view.glyphs.arrow)}", ""),)
     if len(result.vanished) > _SHOWN:

@@ -253,7 +253,8 @@ def _examine(
         what = f"{type(error).__name__}: {error}".rstrip(": ")
         raise AnalysisBug(
             f"tarl-lint has a bug and could not finish ({what}, {Path(last.filename).name}:{last.lineno}). "
-            "Please report it with the traceback from TARL_DEBUG=1; meanwhile, --exclude may help."
+            "Please report it with the traceback from TARL_DEBUG=1; until it is fixed, --exclude may "
+            "leave out the cause."
         ) from None
 
 

@@ -80,7 +80,7 @@ def test_accepted_flows_fail_the_run_only_if_the_baseline_is_ignored(node, capsy
     node.write_text("x = 1\n")
     code, out, err = lint(capsys)
     assert code == 0
-    assert "Gone, but accepted in tarl-flows.json:\n  odom → progress, explicit" in out
+    assert "Accepted but no longer found, in tarl-flows.json:\n  odom → progress, explicit" in out
     code, out, err = lint(capsys, "--format", "json")
     assert json.loads(out)["diagnostics"] == []
     assert "odom → progress" in err

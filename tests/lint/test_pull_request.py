@@ -105,7 +105,7 @@ def test_vanished_findings_are_listed_until_the_baseline_is_rewritten(node, caps
     node.write_text(NODE.replace("0.8 * delta", "min(0.5, 0.8 * delta)").replace("rospy.Subscriber", "print"))
     code, out = linted(capsys)
     assert code == 0
-    assert "Gone, but accepted in tarl-flows.json:\n" in out
+    assert "Accepted but no longer found, in tarl-flows.json:\n" in out
     assert (
         "  /odom → /cmd_vel, explicit, received by Follower.on_odom, published in Follower.follow (follower)\n"
         in out

@@ -181,7 +181,7 @@ def test_at_most_twenty_vanished_findings_are_named(example):
     assert list(summary.vanished(Result(vanished=gone), View())) == []
     assert list(summary.vanished(Result(baseline=BASE), View())) == []
     lines = [plain(line) for line in summary.vanished(Result(vanished=gone, baseline=BASE), View())]
-    assert lines[0] == "Gone, but accepted in tarl-flows.json:"
+    assert lines[0] == "Accepted but no longer found, in tarl-flows.json:"
     assert lines[-4:] == [lines[1], "  and 1 more", "  Run --write-baseline to remove them.", ""]
     lines = [plain(line) for line in summary.vanished(Result(vanished=gone[1:], baseline=BASE), View())]
     assert len(lines) == 23

@@ -79,7 +79,9 @@ def test_a_truncated_bag_is_used_up_to_the_damage_with_a_note(
     content = long.read_bytes()
     long.write_bytes(content[: int(len(content) * share)])
     told = online(deployed, bag, long)
-    assert re.search(rf"long{ending} was cut off: its first [0-9.]+ s with \d+ messages count\.", said(told))
+    assert re.search(
+        rf"long{ending} was cut off: only its first [0-9.]+ s with \d+ messages are used\.", said(told)
+    )
     assert result(deployed)["episodes"]["online"] == 2
 
 
@@ -88,7 +90,7 @@ def test_a_recording_without_its_metadata_is_read_from_its_files(deployed: pytes
     (folder / "metadata.yaml").unlink()
     told = online(deployed, folder)
     told.assert_outcomes(passed=1, deselected=1)
-    told.stdout.fnmatch_lines(["*killed was cut off: its first * s with 50 messages count*"])
+    told.stdout.fnmatch_lines(["*killed was cut off: only its first * s with 50 messages are used*"])
 
 
 def test_an_unreadable_bag_is_skipped(deployed: pytest.Pytester) -> None:

@@ -80,7 +80,7 @@
     const bar = `linear-gradient(90deg, rgba(${WORSE}, .85), rgba(${WORSE}, 0), rgba(${BETTER}, 0), rgba(${BETTER}, .85))`;
     at("scale").replaceChildren(
       element("span", { class: "key" }, element("span", { class: "bar", style: `background: ${bar}` }),
-        element("span", { class: "ends" }, element("b", {}, `−${number(reach)}`), element("span", {}, "mean reward against recorded"), element("b", {}, `+${number(reach)}`))),
+        element("span", { class: "ends" }, element("b", {}, `−${number(reach)}`), element("span", {}, "mean reward minus recorded reward"), element("b", {}, `+${number(reach)}`))),
       element("span", { class: "key" }, "▼ degraded"), element("span", { class: "key" }, "◆ drifted"), element("span", { class: "key" }, "• changed in time"));
     const worst = page.groups.reduce((least, one) => one.reward < least.reward ? one : least, page.groups[0]);
     showGroup(page.groups.find(one => one.found) ?? worst);
@@ -198,11 +198,11 @@
       element("td", { class: "number" }, number(cell.mean)), element("td", { class: "number" }, `± ${number(cell.error)}`)));
     card.replaceChildren(
       element("h3", {}, robots.name[n]),
-      element("p", {}, `${robots.passed[n].toLocaleString("en")} of ${plural(robots.missions[n], "mission")} passed. Evidence that missions differ: ${evidence(robots.world[n])}; that they are below a recorded bound: ${evidence(robots.bound[n])}. `,
+      element("p", {}, `${robots.passed[n].toLocaleString("en")} of ${plural(robots.missions[n], "mission")} passed. Evidence that its missions differ from the recording: ${evidence(robots.world[n])}; evidence that they are below a recorded bound: ${evidence(robots.bound[n])}. `,
         one ? `Named${one.mission ? `; changed before mission ${one.mission} (${day(one.time)})` : ""}. ${one.where ? `Where: ${one.where}.` : ""}` : "Not named."),
-      ...(one?.like?.length ? [element("p", {}, "Drifts alike: ", ...one.like.flatMap(name => [element("a", { href: `#robot=${encodeURIComponent(name)}` }, name), " "]))] : []),
+      ...(one?.like?.length ? [element("p", {}, "Robots with similar drifts: ", ...one.like.flatMap(name => [element("a", { href: `#robot=${encodeURIComponent(name)}` }, name), " "]))] : []),
       ...(rows.length ? [element("table", { class: "plain narrow" }, element("thead", {}, element("tr", {}, element("th", {}, "Cell"), element("th", { class: "number" }, "Reward per step, minus recorded"), element("th", { class: "number" }, "Standard error"))), element("tbody", {}, ...rows))] : []),
-      element("p", { class: "label" }, "Its missions: ", element("code", {}, `${page.command} --robot ${quoted(robots.name[n])} --html ${quoted(`${robots.name[n]}.html`)}`)));
+      element("p", { class: "label" }, "To show its missions: ", element("code", {}, `${page.command} --robot ${quoted(robots.name[n])} --html ${quoted(`${robots.name[n]}.html`)}`)));
     card.scrollIntoView({ block: "nearest" });
   }
 

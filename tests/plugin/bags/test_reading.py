@@ -62,7 +62,7 @@ def test_messages_before_the_damage_are_used_with_a_note(tmp_path: Path) -> None
 
     bag = Bag(tmp_path / "a.bag", "ros1", {}, source, START)
     assert len(list(bag.messages())) == 2
-    assert bag.notes == ["a.bag cannot be read after 2.5 s (torn); earlier messages count."]
+    assert bag.notes == ["a.bag cannot be read after 2.5 s (torn); only the messages before that are used."]
 
 
 def test_damage_before_the_first_message_is_noted(tmp_path: Path) -> None:
@@ -72,7 +72,7 @@ def test_damage_before_the_first_message_is_noted(tmp_path: Path) -> None:
 
     bag = Bag(tmp_path / "a.bag", "ros1", {}, source, START)
     assert list(bag.messages()) == []
-    assert bag.notes == ["a.bag cannot be read after 0.0 s (gone); earlier messages count."]
+    assert bag.notes == ["a.bag cannot be read after 0.0 s (gone); only the messages before that are used."]
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_the_note_on_a_truncated_bag_states_its_duration_and_number_of_messages(
     folder = write_bag(tmp_path / "run", iter(STEPS))
     (folder / "metadata.yaml").unlink()
     bag = opened(folder)
-    assert bag.notes == ["run was cut off: its first 2.0 s with 3 messages count."]
+    assert bag.notes == ["run was cut off: only its first 2.0 s with 3 messages are used."]
     assert (bag.start, sorted(bag.channels)) == (START, ["/gauge", "/level"])
     assert [one.time - START for one in bag.messages()] == [0, 5 * 10**8, 2 * 10**9]
 

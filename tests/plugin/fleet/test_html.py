@@ -157,7 +157,7 @@ def test_each_of_ten_thousand_robots_has_a_square_and_can_be_found(seen: Seen) -
     assert len(seen.found["rows"]) == 20
     assert seen.found["searched"] == ["<b>201"]
     assert seen.found["count"] == "1 of 10,000 robots"
-    assert "Drifts alike: <b>200" in seen.found["card"]
+    assert "Robots with similar drifts: <b>200" in seen.found["card"]
     assert "--robot '<b>201' --html '<b>201.html'" in seen.found["card"]
     assert seen.found["dot"].startswith("<b>200")
     width, height = seen.found["dots"]

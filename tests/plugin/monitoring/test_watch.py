@@ -38,7 +38,10 @@ def test_missions_in_the_recorded_world_raise_no_alarm(
     out = capsys.readouterr().out
     assert "200 missions, 200 passed (100 %)" in out
     assert "at least 96.3 % of missions pass (95 % confidence): evidence" in out
-    assert "probability of a false alarm, ever: at most 5 % (alpha); 10 % including the 5 % risk" in out
+    assert (
+        "probability that this watch ever raises a false alarm: at most 5 % (alpha); 10 % including the 5 % risk"
+        in out
+    )
     assert "ALARM" not in out
     assert "where" not in out
     assert (root / ".tarl/watch/f.npz").exists()
@@ -114,7 +117,7 @@ def test_a_recording_in_which_every_mission_failed_has_no_bound(
     assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1  # only recorded ones fail
     out = capsys.readouterr().out
     assert "at least 0 % of missions pass (95 % confidence): nothing to test" in out
-    assert "a false alarm, ever: at most 5 % (alpha)\n" in out
+    assert "ever raises a false alarm: at most 5 % (alpha)\n" in out
 
 
 def test_missions_without_rewards_or_steps_are_reported(
@@ -228,7 +231,7 @@ def test_a_recording_of_equal_episodes_has_no_bound(root: Path, capsys: pytest.C
     assert main(["watch", "m.log", "--fixture", "g.npz", "--once"]) == 0
     out = capsys.readouterr().out
     assert "episodes of the recording are equal, so it has no bound to test" in out
-    assert "a false alarm, ever: at most 5 % (alpha)\n" in out
+    assert "ever raises a false alarm: at most 5 % (alpha)\n" in out
 
 
 def test_bounds_are_printed_before_the_first_mission(root: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -57,8 +57,8 @@ def test_a_watch_without_an_alarm_prints_evidence_and_error_rate() -> None:
         "  bound   at least 90 % of missions pass (95 % confidence): evidence 1, alarm at 20",
         "  world   missions as recorded: evidence 1, alarm at 20",
         (
-            "  error   probability of a false alarm, ever: at most 5 % (alpha); 10 % including the 5 % risk that the "
-            "bound itself is wrong"
+            "  error   probability that this watch ever raises a false alarm: at most 5 % (alpha); 10 % "
+            "including the 5 % risk that the bound itself is wrong"
         ),
     ]
     assert words.headline(watch(), status()) == (
@@ -130,7 +130,9 @@ def test_bounds_scores_and_guarantees_are_described_in_words() -> None:
     )
     nothing = status(bounds=((SUCCESS, None),))
     assert nothing.error == 0.05
-    assert words.promise(nothing) == "probability of a false alarm, ever: at most 5 % (alpha)"
+    assert (
+        words.promise(nothing) == "probability that this watch ever raises a false alarm: at most 5 % (alpha)"
+    )
 
 
 def test_a_status_has_an_alarm_if_a_bound_is_missed_or_the_world_drifted() -> None:

@@ -32,7 +32,7 @@ def halfway(tank: pytest.Pytester) -> Path:
     assert found["partial"]["designed_low"] <= found["partial"]["designed"]
     assert re.search(r"partial: .*: the drift costs .* regains .* \(at least .*; in the designed world", told)
     (page,) = tank.path.glob(".tarl/report/*.html")
-    assert "Partial, not accepted" in page.read_text()
+    assert "Partial repair, not accepted" in page.read_text()
     assert not list(tank.path.glob(".tarl/patches/*.patch"))
     return tank.path / str(found["partial"]["patch"])
 

@@ -151,7 +151,7 @@ def test_keeps_full(tarl, tarl_drift):
     ("declared", "words"),
     [
         ('{"worn": Drift(0.1, permanent=True)}', "without the repair under the same drift"),
-        ("{}", "so this is its old world, in which losses are allowed"),
+        ("{}", "so it ran in the old world, in which losses are allowed"),
     ],
 )
 def test_other_tests_that_declare_the_drift_run_in_the_new_world(

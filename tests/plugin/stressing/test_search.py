@@ -124,7 +124,7 @@ def test_two_directions_that_fail_only_together_are_found() -> None:
     assert nearest.names == ("mud", "slope")
     # the true distance is 1.2 / √2, or larger because slope ends at 0.5: (0.7, 0.5)
     assert sqrt(0.7**2 + 0.5**2) * 0.98 <= nearest.distance < sqrt(0.7**2 + 0.5**2) * 1.12
-    assert "although each alone holds" in "\n".join(words.together(found))
+    assert "although the guarantee holds with each change alone" in "\n".join(words.together(found))
 
 
 def test_a_combination_whose_direction_fails_alone_is_not_said_to_hold_alone() -> None:
@@ -137,7 +137,9 @@ def test_a_combination_whose_direction_fails_alone_is_not_said_to_hold_alone() -
     assert told == ["Fails with mud=0.3 and slope=0.2 (distance 0.73)."]
     apart = {"mud": 0.6, "slope": 0.3}
     told = list(words.together(replace(found, combinations=(failure(found.space, apart),))))
-    assert told == ["Fails with mud=0.6 and slope=0.3 (distance 0.5), although each alone holds."]
+    assert told == [
+        "Fails with mud=0.6 and slope=0.3 (distance 0.5), although the guarantee holds with each change alone."
+    ]
 
 
 def test_a_corner_of_four_directions_is_found_and_shrunk() -> None:

@@ -93,7 +93,8 @@ def test_a_curve_is_monotone_if_no_point_beyond_its_first_failure_holds() -> Non
         (curve(FLAT, GOOD, confirmed=0.75, held=0.5),
          "No failure found while slope ≥ -0.688 (boundary -0.75 to -0.5 at 90 %, monotone: checked)."),
         (curve(FLAT, {0.5: -1.0, 1.0: 1.0}, confirmed=0.5),
-         "No failure found while slope ≥ -0.25 (boundary not beyond -0.5, not monotone: it holds again beyond)."),
+         ("No failure found while slope ≥ -0.25 "
+          "(boundary not beyond -0.5, not monotone: the guarantee holds again beyond).")),
         (curve(FLAT, GOOD),
          "No failure confirmed while slope ≥ -1; suspicious from slope = -0.75 on."),
         (curve(FLAT, swept=False), "Not examined from 0 to -1."),
@@ -150,8 +151,8 @@ def test_combinations_are_printed_with_the_nearest_first() -> None:
     far, near = combined(mud=1.0, slope=0.5), combined(mud=3.0, camera=1.0)
     whole = [curve(ray, {1.0: 1.0}) for ray in (MUD, FLAT, STEEP, DOWN, LEFT)]
     assert [*words.together(stress(*whole, combinations=(near, far), tried=3))] == [
-        "Fails with mud=1 and slope=0.5 (distance 0.79), although each alone holds.",
-        "Fails with mud=3 and camera='down' (distance 1), although each alone holds.",
+        "Fails with mud=1 and slope=0.5 (distance 0.79), although the guarantee holds with each change alone.",
+        "Fails with mud=3 and camera='down' (distance 1), although the guarantee holds with each change alone.",
     ]
     assert [*words.together(stress(*whole, tried=3))] == [
         "No combination was found that fails although each of its changes alone passes (3 tried)."
@@ -165,8 +166,10 @@ def test_combinations_are_printed_with_the_nearest_first() -> None:
 
 def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_confirmed_ones() -> None:
     near, nearer = combined(mud=3.0, slope=0.5), combined(mud=3.6, slope=0.25)  # distances 0.35 and 0.16
-    told = "Probably already fails with mud=3.6 and slope=0.25 (distance 0.16); this is not confirmed."
-    confirmed_one = "Fails with mud=3 and slope=0.5 (distance 0.35), although each alone holds."
+    told = "The guarantee probably already fails with mud=3.6 and slope=0.25 (distance 0.16); this is not confirmed."
+    confirmed_one = (
+        "Fails with mud=3 and slope=0.5 (distance 0.35), although the guarantee holds with each change alone."
+    )
     assert [*words.together(stress(expected=(nearer, near), tried=3))] == [told]
     assert [*words.together(stress(combinations=(near,), expected=(nearer, near)))] == [confirmed_one, told]
     assert [*words.together(stress(combinations=(near,), expected=(near,)))] == [confirmed_one]
@@ -193,7 +196,7 @@ def test_each_direction_is_said_to_hold_alone_only_if_no_smaller_failure_was_fou
     one = combined(mud=1.0, slope=0.5)
     others = [curve(ray, {1.0: 1.0}) for ray in (MUD, FLAT, STEEP, DOWN, LEFT) if ray is not changed.ray]
     (told,) = words.together(stress(*others, changed, combinations=(one,)))
-    assert told.endswith("although each alone holds.") is alone
+    assert told.endswith("although the guarantee holds with each change alone.") is alone
 
 
 def test_shares_of_the_variance_are_printed_with_the_largest_first() -> None:
