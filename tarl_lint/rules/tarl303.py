@@ -6,7 +6,7 @@ number instead of a profile, the profile is `RELIABLE` and `VOLATILE`. Drivers o
 `qos_profile_sensor_data`, which is `BEST_EFFORT`. A subscription with the number 10 therefore receives nothing from a
 laser scanner (https://github.com/ros2/ros2_documentation/issues/569).
 
-Both profiles must be constant in the code.
+The rule reports a connection only if both profiles are constant in the code.
 """
 
 from __future__ import annotations

@@ -136,7 +136,7 @@ def test_a_topic_is_received_once_its_type_is_known(linked: Linked) -> None:
     master.publishing.append(("/new", ["/sim"]))
     master.kinds["/new"] = "own_msgs/Odd"
     link.subscribe(["/new"])
-    with pytest.raises(LookupError, match="own_msgs/Odd, whose package is not installed"):
+    with pytest.raises(LookupError, match="own_msgs/Odd, but its package is not installed"):
         link.look()
 
 

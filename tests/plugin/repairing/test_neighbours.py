@@ -134,7 +134,7 @@ def test_a_test_with_its_own_drift_is_compared_with_the_unrepaired_node() -> Non
 
 def test_losses_in_the_old_world_of_other_tests_are_allowed_under_a_permanent_drift() -> None:
     found = beside(Mutants([neighbour()], -9.0, permanent=True), guard(7.0, 8.0))  # type: ignore[arg-type]
-    assert (found.lost, "its old world, in which losses are allowed" in found.held[0]) == ((), True)
+    assert (found.lost, "the old world, in which losses are allowed" in found.held[0]) == ((), True)
     under = beside(Mutants([neighbour(drift="mud")], -9.0, permanent=True), guard(7.0, 8.0))  # type: ignore[arg-type]
     assert under.lost
 
