@@ -58,12 +58,12 @@ NO_SIGNS = Signs()
 def signs(order: Order, trials: Trials) -> Signs:
     """Record `PAIRS` mission pairs and return their symptoms; none if the budget or the test does not allow it."""
     if order.drift is None:
-        return Signs()
+        return NO_SIGNS
     seeds = [pair.seed for pair in order.goal.pairs[:PAIRS]]
     try:
         recorded = [_recorded(order, trials, seed) for seed in seeds]
     except (BudgetSpentError, TarlError):
-        return Signs()
+        return NO_SIGNS
     return Signs(dict(_strengths(order, recorded)), tuple(map(_cells, recorded)))
 
 

@@ -50,11 +50,11 @@ class _Group:
 class Structures:
     """A search over templates, cheapest first; for each kind, the best `FIRST` expressions come first.
 
-    Changes that a symptom indicates (`signs`) come before all others. Templates of equal cost form a
-    group. A group gets a part of the episodes, in proportion to its number of parameters. If one of its templates gains
-    much, the group also gets half of the episodes left for the other groups. The statements whose constants gained come
-    first (`effects`, by the statement's id), and the best of them has a group of its own. Changes of a whole command by
-    a gain or an offset come before those without symptoms, because they compensate for an actuator whatever the node
+    Changes that a symptom indicates (`signs`) come before all others. Templates of equal cost form a group. A group
+    gets a part of the episodes, in proportion to its number of parameters. If one of its templates gains much, the
+    group also gets half of the episodes left for the other groups. The statements whose constants gained come first
+    (`effects`, by the statement's id), and the best of them has a group of its own. Changes of a whole command by a
+    gain or an offset come before those without symptoms, because they compensate for an actuator whatever the node
     computes.
     """
 
@@ -198,7 +198,7 @@ class Structures:
         return [operand for operand, form in found.items() if not fixed(form)]
 
     def _telling(self) -> list[Sensor]:
-        """Return the telling sensors, without those that tell only since drifted missions end early."""
+        """Return the telling sensors, without those that tell only because drifted missions end early."""
         return [one for one in telling(self.order) if self.signs.overlap(self.order, one) <= OVERLAP]
 
     def _told(

@@ -103,9 +103,10 @@ def uses_apart(
     for whole in whole_constants((*plain, *others), scope):
         mine = {*whole.operands}
         uses = [unit for unit in plain if unit.chart == whole.chart and mine.issuperset(unit.operands)]
-        if uses:
-            united.append(whole if whole.operands != uses[0].operands else uses[0])
-        if uses and whole.operands != uses[0].operands:
+        if uses and whole.operands == uses[0].operands:
+            united.append(uses[0])
+        elif uses:
+            united.append(whole)
             parts[whole] = tuple(uses)
     return tuple(united), parts
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 
 import pytest
@@ -183,10 +182,7 @@ def test_a_template_repairs_exchanged_axes_by_swapping_the_axes(pytester: pytest
     pytester.makeini("[pytest]\naddopts = -p no:randomly -p no:asyncio -p no:rerunfailures\n")
     pytester.runpytest(*RECORD).assert_outcomes(passed=1)
     done = pytester.runpytest(*REPAIR)
-    told = " ".join(done.stdout.str().split())  # each of the two statements may be named first
-    assert re.search(
-        r"accepted: swap (msg.x and msg.y at follower.py:12|msg.y and msg.x at follower.py:13)", told
-    )
+    assert "accepted: swap msg.y and msg.x at follower.py:13" in " ".join(done.stdout.str().split())
     (patch,) = pytester.path.glob(".tarl/patches/*.patch")
     added = [line for line in patch.read_text().splitlines() if line.startswith("+  ")]
     assert added == ["+        cmd.linear.x = msg.y", "+        cmd.linear.y = msg.x"]
