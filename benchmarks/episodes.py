@@ -18,7 +18,8 @@ from pathlib import Path
 import pytest
 
 from pytest_tarl.instrumentation.sites import plan
-from pytest_tarl.repeating import NOTHING, Instruments, ItemRollout, designated, finish
+from pytest_tarl.item_episode import NOTHING, Instruments, designated
+from pytest_tarl.repeating import ItemRollout, finish
 from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.seeds import episode_seeds
 from tarl_lint.api import analyse

@@ -11,9 +11,10 @@ import pytest
 from gate_pools import Mode, Pool
 
 from pytest_tarl import Drift
+from pytest_tarl.item_episode import NOTHING, designated
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.recording import run_episodes
-from pytest_tarl.repeating import NOTHING, ItemRollout, designated, finish
+from pytest_tarl.repeating import ItemRollout, finish
 from pytest_tarl.seeds import episode_seeds
 
 FOLDER = Path(__file__).resolve().parent.parent / "examples"

@@ -30,6 +30,7 @@ from pytest_tarl import seeds
 from pytest_tarl.comparing import run_online
 from pytest_tarl.designation import Designation
 from pytest_tarl.instrumentation.sites import Plan, plan
+from pytest_tarl.item_episode import Instruments, designated
 from pytest_tarl.learning import localize
 from pytest_tarl.learning.drift import compare
 from pytest_tarl.learning.fixture import Fixture
@@ -41,7 +42,7 @@ from pytest_tarl.recording import Recorded, mean_flows, run_episodes, sarsa_tabl
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
+from pytest_tarl.repeating import ItemRollout, finish
 from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.search import Candidate

@@ -10,7 +10,7 @@ from pathlib import Path
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import AnalysisError
 from pytest_tarl.instrumentation.sites import Plan
-from pytest_tarl.repeating import Instruments
+from pytest_tarl.item_episode import Instruments
 from tarl_lint.api import Analysis, analyse
 
 

@@ -18,6 +18,7 @@ from pytest_tarl.designation import Designation
 from pytest_tarl.errors import FixtureError, SettingsError
 from pytest_tarl.files import slug, write_atomically
 from pytest_tarl.instrumentation.sites import Plan, plan
+from pytest_tarl.item_episode import Instruments
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.drift import tolerated
@@ -29,7 +30,6 @@ from pytest_tarl.options import Options
 from pytest_tarl.recording import Progress, Tell, read_values, record
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repairing.request import Neighbour, Order
-from pytest_tarl.repeating import Instruments
 from pytest_tarl.report import guarantees
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges

@@ -65,7 +65,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
     """The interface of a test to its episode: random numbers, ROS, sensors and reward."""
     _require_extra("The fixture `tarl`")
-    from pytest_tarl.repeating import opened
+    from pytest_tarl.item_episode import opened
 
     with opened(request.node) as episode:
         yield episode
@@ -75,7 +75,7 @@ def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
 def tarl_drift(request: pytest.FixtureRequest) -> Any:
     """The drift value of this episode: that of the scenario, or else of the design's permanent drift, or else None."""
     _require_extra("The fixture `tarl_drift`")
-    from pytest_tarl.repeating import drift_value
+    from pytest_tarl.item_episode import drift_value
 
     return drift_value(request.node)
 
@@ -106,7 +106,7 @@ def pytest_runtest_makereport(
         and (item.get_closest_marker("tarl") is not None or _ours(call.excinfo.value))
         and not missing_packages()
     ):
-        from pytest_tarl.repeating import in_the_node, keep_error
+        from pytest_tarl.item_episode import in_the_node, keep_error
 
         keep_error(item, call.excinfo.value, report)
         if item.config.getoption("usepdb", False):

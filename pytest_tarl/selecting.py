@@ -10,8 +10,8 @@ import pytest
 from pytest_tarl.design import AS_WRITTEN
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.extras import missing_stress
+from pytest_tarl.item_episode import designated
 from pytest_tarl.options import Options
-from pytest_tarl.repeating import designated
 from pytest_tarl.scenarios import scenario
 from pytest_tarl.spaces import Space
 

@@ -12,19 +12,11 @@ import pytest
 
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.finished_tests import FinishedTest, passed, started
+from pytest_tarl.item_episode import NOTHING, Instruments, designated
 from pytest_tarl.options import Options
 from pytest_tarl.printable import printable
 from pytest_tarl.progress import ProgressLine
-from pytest_tarl.repeating import (
-    INTERRUPTS,
-    NOTHING,
-    BesideRollout,
-    Instruments,
-    ItemRollout,
-    defer_limit,
-    designated,
-    finish,
-)
+from pytest_tarl.repeating import INTERRUPTS, BesideRollout, ItemRollout, defer_limit, finish
 from pytest_tarl.scenarios import scenario, without_drift
 from pytest_tarl.selecting import check_drift, chosen, how_to_take, is_space, takes, with_space
 from pytest_tarl.sensors import Sensor

@@ -22,7 +22,7 @@ FAUXPY = ("FauxPy SBFL", "FauxPy MBFL")
 EPISODES = 4  # number of episodes of each world
 PATIENCE = 3600  # time limit (s)
 CONFTEST = """\
-from pytest_tarl.repeating import EPISODE, Episode, designated
+from pytest_tarl.item_episode import EPISODE, Episode, designated
 from pytest_tarl.rollout import EpisodePlan
 
 CASES = [(seed, drifted) for drifted in (False, True) for seed in SEEDS]

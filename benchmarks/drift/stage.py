@@ -16,7 +16,8 @@ import pytest
 
 from pytest_tarl.designation import Designation
 from pytest_tarl.instrumentation.sites import Plan, plan
-from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
+from pytest_tarl.item_episode import Instruments, designated
+from pytest_tarl.repeating import ItemRollout, finish
 from tarl_lint.api import Analysis, analyse
 
 HERE = Path(__file__).resolve().parent

@@ -76,7 +76,7 @@ def left_out(log: str, known: Sequence[Formula], requirements: Requirements) -> 
         return ()
     return (
         (
-            f"{log} lacks signals of {', '.join(names)}, which is not judged. Observe again with a recording that "
-            "declares these signals with topics."
+            f"{log} lacks signals of {', '.join(names)}, which is not judged. Declare topics "
+            "for these signals on the marker, record, and observe again."
         ),
     )

@@ -14,8 +14,8 @@ from dataclasses import asdict, dataclass
 from functools import partial
 
 from pytest_tarl.errors import RecordingError
+from pytest_tarl.item_episode import Instruments
 from pytest_tarl.recording import identical
-from pytest_tarl.repeating import Instruments
 from pytest_tarl.resuming.journal import Journal
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Pending, Rollout
 from pytest_tarl.sensors import Sensor, stored

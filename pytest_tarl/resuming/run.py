@@ -12,8 +12,8 @@ from pytest_tarl.design import fixture_path
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.files import advice_on
+from pytest_tarl.item_episode import Instruments
 from pytest_tarl.options import Options
-from pytest_tarl.repeating import Instruments
 from pytest_tarl.resuming.conditions import changed, conditions
 from pytest_tarl.resuming.journal import Journal, TakenError, conditions_of
 from pytest_tarl.resuming.rollout import KeptRollout, scope_of

@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 
 from pytest_tarl.errors import RecordingError, TarlError
+from pytest_tarl.item_episode import Instruments
 from pytest_tarl.options import Options
-from pytest_tarl.repeating import Instruments
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 from pytest_tarl.sensors import Sensor
 from pytest_tarl.workers import protocol

@@ -17,7 +17,8 @@ import pytest
 from _pytest.config import Config
 
 from pytest_tarl.errors import TarlError
-from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
+from pytest_tarl.item_episode import Instruments, designated
+from pytest_tarl.repeating import ItemRollout, finish
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.scenarios import without_drift
 from pytest_tarl.sensors import with_edges

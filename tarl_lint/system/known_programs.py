@@ -15,8 +15,8 @@ from tarl_lint.system.model import Endpoint, Instance, Role
 from tarl_lint.workspace.launch_model import LaunchedNode
 from tarl_lint.workspace.ros_arguments import plain
 
-# subscribed and published topics, separated by spaces; `:` marks images of image_transport, `@` those of cameras,
-# whose `camera_info` is beside the image
+# The subscribed and the published topics, each separated by spaces. `:` marks an image of image_transport; `@` marks
+# an image of a camera, which also has the topic `camera_info`.
 _Names = tuple[str, str]
 
 _CLOUD: Final[_Names] = ("~input", "~output")

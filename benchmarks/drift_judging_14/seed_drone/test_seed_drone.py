@@ -73,7 +73,7 @@ class Field:
             self.gained += 10.0 * (self.x - before) / ROW * (1.0 - min(1.5, (error / BAND) ** 2))
 
     def judge(self):
-        """Return the reward of the step: ground that is sown from the right height."""
+        """Return the reward of the step: the ground sown, weighted by how close the drone is to the right height."""
         if self.outside > 2.0:
             self.failure = f"seeds fall from {self.height():.1f} m"
         elif self.time > TIME_BOUND:

@@ -12,7 +12,7 @@ import pytest
 
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.instrumentation.trace import Trace
-from pytest_tarl.repeating import Instruments
+from pytest_tarl.item_episode import Instruments
 from pytest_tarl.resuming.journal import Journal
 from pytest_tarl.resuming.rollout import KeptRollout, episode_key, scope_of
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun

@@ -11,8 +11,8 @@ import pytest
 
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import RecordingError
+from pytest_tarl.item_episode import NOTHING
 from pytest_tarl.options import Options
-from pytest_tarl.repeating import NOTHING
 from pytest_tarl.resuming import run as run_module
 from pytest_tarl.resuming.journal import Journal
 from pytest_tarl.resuming.rollout import KeptRollout

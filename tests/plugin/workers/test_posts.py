@@ -12,7 +12,7 @@ import pytest
 
 from pytest_tarl import Sensor
 from pytest_tarl.errors import TarlError
-from pytest_tarl.repeating import Instruments
+from pytest_tarl.item_episode import Instruments
 from pytest_tarl.workers import protocol
 from pytest_tarl.workers.executor import OFF, posted
 from pytest_tarl.workers.worker import instruments
