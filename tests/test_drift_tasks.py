@@ -30,6 +30,7 @@ JUDGING = (
     "drift_judging_13",
     "drift_judging_14",
     "drift_judging_15",
+    "drift_judging_16",
     "drift_structure",
 )
 TASKS = sorted(
@@ -241,6 +242,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "two constants",
     ],
+    "drift_judging_16": [
+        "narrow window",
+        "one constant",
+        "permanent",
+        "range",
+        "structure",
+        "structure",
+        "structure",
+        "two constants",
+    ],
 }
 
 
@@ -294,6 +305,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_13",
         "drift_judging_14",
         "drift_judging_15",
+        "drift_judging_16",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
