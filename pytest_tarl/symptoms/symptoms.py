@@ -79,7 +79,7 @@ def offset(pairs: Sequence[Pair]) -> float:
     if not size or any(one.size < FEWEST // 2 or other.size < FEWEST // 2 for one, other in ends):
         return 0.0
     designed, drifted = (fmean(abs(float(each[at].mean())) for each in ends) for at in (0, 1))
-    left = min(designed / (max(_largest(pair.designed.values) for pair in both) or 1.0), 1.0)
+    left = min(designed / max(_largest(pair.designed.values) for pair in both), 1.0)
     one_sided = fmean(_one_sided(other) for _, other in ends)
     return float(one_sided * (1.0 - left) * np.clip((drifted - designed) / (ASIDE * size), 0.0, 1.0))
 
