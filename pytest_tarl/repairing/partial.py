@@ -71,10 +71,10 @@ def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | Non
             if found in watch.seen and lost <= TRADED * watch.gain(found):
                 costly.append(candidate)
             continue
-        if tests.number == MOST:
-            break
         if (helping := tests.helping(candidate)) is not None:
             return helping, tests.spent
+        if tests.number == MOST:
+            break
     for candidate in costly[: MOST - tests.number]:
         if (helping := tests.helping(candidate)) is not None:
             return helping, tests.spent

@@ -14,7 +14,7 @@ from pytest_tarl import Sensor
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.instrumentation.sites import plan
 from pytest_tarl.instrumentation.trace import Trace
-from pytest_tarl.patching.templates import template, templates
+from pytest_tarl.patching.templates import Template, template, templates
 from pytest_tarl.repairing import mission_pairs
 from pytest_tarl.repairing.early import FROM, MOST, Early
 from pytest_tarl.repairing.evident import CHANGES, PLACES, evident
@@ -257,3 +257,108 @@ def test_early_changes_wait_until_constants_were_tried_then_run_a_single_time_an
     spent = trials.spent
     assert list(early.candidates()) == []
     assert trials.spent == spent
+
+
+def flipping(cost: int, on: str = "value", symptom: str = "runaway", name: str = "flip") -> Template:
+    return Template(name, "change the sign", on, cost, "-{x}", symptoms=(symptom,) if symptom else ())
+
+
+def changes(order: Any, known: list[Template], strengths: Mapping[str, Mapping[str, float]]) -> list[str]:
+    """Return the names of the templates and the code of the expressions, in order."""
+    return [operand.code for operand, _ in evident(order, known, list(spots(order)), Signs(strengths))]
+
+
+@pytest.mark.parametrize(("strength", "expected"), [(0.5, ["flip of 0.4 * self.range"]), (0.49, [])])
+def test_a_symptom_of_half_its_strength_indicates_a_change(
+    tmp_path: Path, strength: float, expected: list[str]
+) -> None:
+    order = order_of(tmp_path)
+    assert changes(order, [flipping(1)], {site(order, "speed = 0.4"): {"runaway": strength}}) == expected
+
+
+@pytest.mark.parametrize(
+    ("cheap", "dear", "expected"),
+    [
+        (0.96, 1.0, ["cheap", "dear"]),  # equal if they are rounded to a tenth
+        (0.94, 1.0, ["dear", "cheap"]),
+        (1.0, 0.94, ["cheap", "dear"]),
+    ],
+)
+def test_the_cheaper_of_two_changes_with_about_equal_symptoms_comes_first(
+    tmp_path: Path, cheap: float, dear: float, expected: list[str]
+) -> None:
+    order = order_of(tmp_path)
+    known = [flipping(2, symptom="swing", name="dear"), flipping(1, name="cheap")]
+    found = changes(order, known, {site(order, "speed = 0.4"): {"runaway": cheap, "swing": dear}})
+    assert [one.partition(" ")[0] for one in found] == expected
+
+
+def test_templates_without_a_symptom_or_with_a_sensor_are_not_indicated(tmp_path: Path) -> None:
+    order = order_of(tmp_path)
+    known = [flipping(1, symptom=""), flipping(1, on="sensor"), flipping(1, on="sent by sensor")]
+    assert changes(order, known, {site(order, "speed = 0.4"): {"runaway": 1.0, "": 1.0}}) == []
+
+
+MANY = """\
+import rospy
+from std_msgs.msg import Float64
+
+
+class Keeper:
+    def __init__(self):
+        self.out = rospy.Publisher("/out", Float64, queue_size=1)
+        rospy.Subscriber("/in", Float64, self.on_value)
+
+    def on_value(self, msg):
+        self.range = msg.data
+        a = self.range * 2.0
+        b = a * 3.0
+        c = b + 4.0
+        speed = c - 5.0
+        self.out.publish(Float64(data=min(speed, 1.0)))
+
+
+if __name__ == "__main__":
+    rospy.init_node("keeper")
+    Keeper()
+"""
+
+
+def of_many(folder: Path) -> Any:
+    order = order_of(folder)
+    (folder / "keeper.py").write_text(MANY)
+    order.analysis = analyse([folder / "keeper.py"], root=folder)
+    return order
+
+
+def measured(order: Any, symptom: str) -> dict[str, dict[str, float]]:
+    """Return one symptom at all statements but the publish call, which has no value."""
+    codes = ("self.range", "a = ", "b = ", "c = ", "speed = ")
+    return {site(order, code): {symptom: 1.0} for code in codes}
+
+
+@pytest.mark.parametrize(
+    ("symptom", "expected"),
+    [
+        ("noise", ["msg.data", "self.range * 2.0", "a * 3.0"]),  # received: next to the subscription first
+        ("jumps", ["c - 5.0", "b + 4.0", "a * 3.0"]),  # sent: next to the publish call first
+    ],
+)
+def test_a_template_is_tried_at_three_expressions_on_the_side_where_the_value_is_wrong(
+    tmp_path: Path, symptom: str, expected: list[str]
+) -> None:
+    order = of_many(tmp_path)
+    found = changes(order, [flipping(1, symptom=symptom)], measured(order, symptom))
+    assert [one.removeprefix("flip of ") for one in found] == expected
+
+
+def test_the_argument_of_a_publish_call_has_the_symptoms_of_the_statement_before_it_and_comes_last(
+    tmp_path: Path,
+) -> None:
+    order = of_many(tmp_path)
+    known = [flipping(1, symptom="jumps")]
+    assert changes(order, known, {site(order, "speed = "): {"jumps": 1.0}}) == [
+        "flip of c - 5.0",
+        "flip of min(speed, 1.0)",
+    ]
+    assert changes(order, known, {site(order, "c = "): {"jumps": 1.0}}) == ["flip of b + 4.0"]

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
 
 from pytest_tarl.repairing.name_scopes import name_scope
 from pytest_tarl.searching.units import units, whole_constants
 from tarl_lint.api import analyse
+from tarl_lint.model import Operand, SiteId, Span
 
 NODE = """\
 import math
@@ -60,3 +66,77 @@ def test_uses_are_united_only_where_a_name_means_the_same(tmp_path: Path) -> Non
     assert ("dt", (27,)) in found
     assert ("self.share", (14, 14)) in found
     assert ("self.share", (26,)) in found
+
+
+def scopes(text: str) -> Callable[[str, str], str]:
+    """Return a function that names the scope of an operand's code in a function of a file with this text."""
+    analysis: Any = SimpleNamespace(sources={"node.py": text})
+    scope = name_scope(analysis)
+
+    def of(code: str, qualname: str, path: str = "node.py") -> str:
+        span = Span(path, 1, 1, 1, 2)
+        return scope(Operand(SiteId("node", qualname, "x = 1"), span, code, 1.0, span))
+
+    return of
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "expected"),
+    [
+        ("GAIN = 2.0\n", "GAIN", ""),
+        ("GAIN = 2.0\n", "GAIN * 2", ""),
+        ("GAIN = 2.0\n", "OTHER", "Node.run"),
+        ("GAIN = 2.0\n", "GAINS", "Node.run"),
+        ("GAIN, BIAS = 2.0, 1.0\n", "BIAS", ""),
+        ("if True:\n    GAIN = 2.0\n", "GAIN", ""),
+        ("class Gains:\n    KP = 1.0\n", "KP", ""),
+        ("import gains\n", "gains.KP", ""),
+        ("import robot.gains\n", "robot.gains.KP", ""),
+        ("import robot.gains as g\n", "g.KP", ""),
+        ("import robot.gains as g\n", "robot.gains.KP", "Node.run"),
+        ("from gains import KP\n", "KP", ""),
+        ("from gains import KP as gain\n", "gain", ""),
+        ("from gains import KP as gain\n", "KP", "Node.run"),
+        # a function binds the same name
+        ("GAIN = 2.0\ndef f(GAIN):\n    pass\n", "GAIN", "Node.run"),
+        ("GAIN = 2.0\nasync def f(*GAIN):\n    pass\n", "GAIN", "Node.run"),
+        ("GAIN = 2.0\ndef f():\n    return lambda GAIN: 1\n", "GAIN", "Node.run"),
+        ("GAIN = 2.0\ndef f():\n    if True:\n        GAIN = 3.0\n", "GAIN", "Node.run"),
+        ("GAIN = 2.0\ndef f():\n    import robot as GAIN\n", "GAIN", "Node.run"),
+        ("GAIN = 2.0\ndef f():\n    print(GAIN)\n", "GAIN", ""),
+        ("GAIN = 2.0\n", "0.5", "Node.run"),
+        ("GAIN = 2.0\n", "-GAIN", "Node.run"),
+        ("", "self.kp", "Node"),
+        ("self = 1\n", "self.kp", "Node"),
+        ("selfish = 1\n", "selfish", ""),
+    ],
+)
+def test_the_scope_of_a_name_is_the_file_the_class_or_the_function(
+    text: str, code: str, expected: str
+) -> None:
+    assert scopes(text)(code, "Node.run") == expected
+
+
+def test_the_scope_of_self_is_the_class_at_any_depth() -> None:
+    of = scopes("GAIN = 2.0\n")
+    assert of("self.kp", "Outer.Inner.run") == "Outer.Inner"
+    assert of("self.kp", "run") == ""
+    assert of("kp", "run") == "run"
+
+
+def test_each_file_has_names_of_its_own() -> None:
+    analysis: Any = SimpleNamespace(sources={"one.py": "A = 1\n", "other.py": "B = 1\n"})
+    scope = name_scope(analysis)
+
+    def of(path: str, code: str) -> str:
+        span = Span(path, 1, 1, 1, 2)
+        return scope(Operand(SiteId("node", "run", "x = 1"), span, code, 1.0, span))
+
+    assert [of(path, code) for path in ("one.py", "other.py", "none.py") for code in "AB"] == [
+        "",
+        "run",
+        "run",
+        "",
+        "run",
+        "run",
+    ]

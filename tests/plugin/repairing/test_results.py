@@ -538,7 +538,7 @@ def test_a_partial_gain_is_paired_by_seed_and_alpha_is_divided_among_its_bounds(
         place = ran.setdefault(one, []).append(seed) or len(ran[one])
         return Outcome(10.0 * place + (place if one.mutations else 0), not one.mutations or place > 1)
 
-    ran: dict[Candidate, list[int]] = {}
+    ran: Any = {}
     order = SimpleNamespace(options=SimpleNamespace(seed=3, alpha=0.1))
     mutants: Any = SimpleNamespace(order=order, run=run, foresee=lambda *one: asked.append(one))
     found = partial._gained(mutants, scaled(2.0), "mud", 1)
