@@ -271,7 +271,9 @@ def identical(first: Trace, second: Trace) -> bool:
     """Return whether two traces are identical to the last bit."""
     pairs = [(getattr(first, f.name), getattr(second, f.name)) for f in fields(first)]
     return all(
-        np.array_equal(a, b, equal_nan=True) if isinstance(a, np.ndarray) else _plain(a) == _plain(b)
+        np.array_equal(a, b, equal_nan=True)
+        if isinstance(a, np.ndarray) or isinstance(b, np.ndarray)
+        else _plain(a) == _plain(b)
         for a, b in pairs
     )
 

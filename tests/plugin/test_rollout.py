@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from pytest_tarl.rollout import AHEAD, KEPT, Ahead, EpisodePlan
+from pytest_tarl.rollout import AHEAD, KEPT, Ahead, Deferred, EpisodePlan, in_order
 
 
 @dataclass
@@ -87,3 +87,48 @@ def test_results_are_kept_until_requested_and_unrequested_runs_are_cancelled() -
         ahead.foresee(plans(*range(start, start + 4)))
     assert {2, 3, 12} <= set(executor.cancelled)
     assert len(executor.begun) - len(executor.cancelled) <= KEPT * 2 + 2
+
+
+@pytest.mark.parametrize(("workers", "ahead"), [(1, 0), (2, 4), (3, 6)])
+def test_episodes_are_yielded_in_order_and_begun_ahead_for_several_workers(workers: int, ahead: int) -> None:
+    executor: Any = FakeExecutor(workers)
+    found: Any = in_order(executor, (EpisodePlan(seed) for seed in range(10)))
+    assert executor.begun == []
+    assert next(found).result() == 0
+    assert executor.begun == list(range(1 + ahead))
+    assert [one.result() for one in found] == [*range(1, 10)]
+    assert (executor.begun, executor.cancelled) == ([*range(10)], [])
+
+
+def test_episodes_that_were_begun_and_not_yielded_are_cancelled() -> None:
+    executor: Any = FakeExecutor(2)
+    found: Any = in_order(executor, (EpisodePlan(seed) for seed in range(10)))
+    next(found)
+    next(found)
+    found.close()
+    assert executor.begun == [0, 1, 2, 3, 4, 5]
+    assert executor.cancelled == [2, 3, 4, 5]
+
+
+def test_a_deferred_episode_runs_when_its_result_is_requested() -> None:
+    executor: Any = FakeExecutor(1)
+    one: Any = Deferred(executor, EpisodePlan(7))
+    told: list[Any] = []
+    one.then(told.append)
+    one.then(told.append)
+    assert executor.begun == []
+    assert one.result() == 7
+    assert (executor.begun, told) == ([7], [7, 7])
+    assert one.cancel() is True
+
+
+def test_a_started_episode_runs_once_and_counts_against_the_episodes_ahead() -> None:
+    executor = FakeExecutor(2)
+    ahead: Any = Ahead(executor)
+    ahead.foresee(plans(1, 1, 2))
+    assert executor.begun == [1, 2]
+    assert ahead(1, EpisodePlan(1)) == 1
+    assert executor.begun == [1, 2]
+    assert ahead(5, EpisodePlan(5)) == 5
+    assert executor.begun == [1, 2, 5]
+    assert executor.cancelled == []

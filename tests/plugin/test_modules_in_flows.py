@@ -1,0 +1,114 @@
+"""Modules whose names the statements of flows use, and named files without any recorded statement."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.modules_in_flows import Use, uses
+from pytest_tarl.unrecorded_nodes import silent_files
+
+
+def step(path: str, line: int, code: str) -> Any:
+    return SimpleNamespace(span=SimpleNamespace(path=path, line=line), code=code)
+
+
+def project(root: Path, files: dict[str, str], *sites: Any) -> Any:
+    """Write files; return an analysis of those that have a site."""
+    for name, text in files.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text)
+    shown = dict.fromkeys(one.span.path for one in sites)
+    return SimpleNamespace(sources={path: files[path] for path in shown}, sites=sites)
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "file"),
+    [
+        ("import gains\n", "x = gains.KP", "src/gains.py"),
+        ("import gains as g\n", "x = g.KP", "src/gains.py"),
+        ("import gains as g\n", "x = gains.KP", None),
+        ("import gains\n", "x = again.KP", None),
+        ("from gains import KP\n", "x = KP * 2", "src/gains.py"),
+        ("from gains import KP as k\n", "x = k * 2", "src/gains.py"),
+        ("from gains import KP\n", "x = KPI", None),
+        ("from gains import KP\n", "x = other", None),
+        ("from . import gains\n", "x = gains.KP", "src/gains.py"),
+        ("from .gains import KP\n", "x = KP", "src/gains.py"),
+        ("from .. import shared\n", "x = shared.KP", "shared.py"),
+        ("from ..gains import KP\n", "x = KP", None),
+        ("import robot.limits\n", "x = robot.limits.TOP", "robot/limits.py"),
+        ("from robot import limits\n", "x = limits.TOP", "robot/limits.py"),
+        ("from robot.limits import TOP\n", "x = TOP", "robot/limits.py"),
+        ("import shared\n", "x = shared.KP", "shared.py"),
+        ("import math\n", "x = math.pi", None),
+        ("def f():\n    import gains\n", "x = gains.KP", "src/gains.py"),
+    ],
+)
+def test_a_name_leads_to_the_file_that_it_is_imported_from(
+    tmp_path: Path, text: str, code: str, file: str | None
+) -> None:
+    files = {"src/node.py": text, "src/gains.py": "KP = 1\n", "shared.py": "", "robot/limits.py": "TOP = 1\n"}
+    found = project(tmp_path, files, step("src/node.py", 4, "y = 1"), step("src/node.py", 7, code))
+    expected = [] if file is None else [Use(tmp_path.resolve() / file, "src/node.py", 7)]
+    assert list(uses(found, tmp_path)) == expected
+
+
+def test_the_first_statement_of_the_same_file_counts(tmp_path: Path) -> None:
+    files = {"node.py": "import gains\n", "other.py": "import math\n", "gains.py": ""}
+    sites = (
+        step("other.py", 2, "x = gains.KP"),
+        step("node.py", 5, "x = gains.KP"),
+        step("node.py", 3, "y = gains.KP"),
+    )
+    found = project(tmp_path, files, *sites)
+    assert [one.line for one in uses(found, tmp_path)] == [5]
+
+
+def test_files_above_the_root_are_not_found(tmp_path: Path) -> None:
+    (tmp_path / "gains.py").write_text("")
+    root = tmp_path / "project"
+    found = project(root, {"node.py": "import gains\n"}, step("node.py", 2, "x = gains.KP"))
+    assert list(uses(found, root)) == []
+    found = project(root, {"node.py": "from .. import gains\n"}, step("node.py", 2, "x = gains.KP"))
+    assert list(uses(found, root)) == []
+
+
+def silent(root: Path, names: list[str], found: Any) -> list[str]:
+    return list(silent_files([root / name for name in names], found, root))
+
+
+def test_files_without_a_statement_or_a_used_name_are_named(tmp_path: Path) -> None:
+    files = {"node.py": "import gains\n", "gains.py": "KP = 1\n", "spare.py": "", "params.yaml": ""}
+    found = project(tmp_path, files, step("node.py", 2, "x = gains.KP"))
+    (told,) = silent(tmp_path, [*files], found)
+    assert told.startswith("spare.py is named in nodes, but no flow")
+    assert told.endswith("remove it from nodes, or run `tarl-lint` to see the flows")
+
+
+def test_a_package_without_an_init_file_is_named_as_the_reason(tmp_path: Path) -> None:
+    for text in ("from robot.limits import TOP\n", "import robot.limits\n", "from robot import limits\n"):
+        files = {"node.py": text, "robot/limits.py": "TOP = 1\n"}
+        found = project(tmp_path, files, step("node.py", 2, "x = 1"))
+        (told,) = silent(tmp_path, ["node.py", "robot/limits.py"], found)
+        assert told.startswith("robot/limits.py is named")
+        assert told.endswith(
+            "node.py imports it from robot, which has no __init__.py; add an empty one and record again"
+        )
+        (tmp_path / "robot" / "__init__.py").write_text("")
+        (told,) = silent(tmp_path, ["node.py", "robot/limits.py"], found)
+        assert told.endswith("to see the flows")
+        (tmp_path / "robot" / "__init__.py").unlink()
+    (told,) = silent(tmp_path, ["robot/limits.py"], found)
+    assert told.endswith("to see the flows")
+
+
+def test_a_file_outside_the_root_is_named_by_its_whole_path(tmp_path: Path) -> None:
+    root = tmp_path / "project"
+    found = project(root, {"node.py": ""}, step("node.py", 2, "x = 1"))
+    (tmp_path / "far.py").write_text("")
+    (told,) = silent_files([tmp_path / "far.py"], found, root)
+    assert told.startswith(f"{tmp_path / 'far.py'} is named in nodes")
