@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.mutate import Mutation
-from pytest_tarl.repairing.accepting import Accepted, Examiner
+from pytest_tarl.repairing.accepting import Accepted, Examiner, _narrower
 from pytest_tarl.repairing.ledger import Refused, furthest
 from pytest_tarl.repairing.mutants import ORIGINAL
 from pytest_tarl.searching.accept import Acceptance, Outcome, Reference
@@ -152,6 +152,43 @@ def test_after_a_failure_the_next_candidate_is_tried_and_the_history_gives_the_r
     else:
         assert accepted is None
         assert examiner.refused.candidate is not None
+
+
+def refusal(line_up: Sequence[str], monkeypatch: pytest.MonkeyPatch, **patched: Any) -> tuple[Any, str]:
+    """Return the refused candidate that is reported, and the reason."""
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    field: Any = Field(line_up)
+    examiner = Examiner(field, (ALWAYS,))
+    for name, value in patched.items():
+        monkeypatch.setattr(examiner, name, value)
+    trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+    assert examiner.first(iter(field.candidates), trials) is None
+    refused = examiner.refused
+    at = None if refused.candidate is None else field.candidates.index(refused.candidate)
+    return at, refused.reason
+
+
+def test_the_refused_candidate_is_reported_whatever_it_failed_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert refusal((), monkeypatch) == (None, "no operand helps")
+    assert refusal(("bad at once",), monkeypatch) == (0, "gain too small")
+    assert refusal(("bad as designed",), monkeypatch) == (0, "nominal gets worse")
+    assert refusal(("worse later than the original",), monkeypatch) == (0, "worse than unrepaired")
+    assert refusal(("bad at once", "bad as designed"), monkeypatch) == (1, "nominal gets worse")
+    assert refusal(("good",), monkeypatch, placing=lambda *_: None) == (0, "not at its definition")
+
+
+def test_a_guard_is_narrower_if_it_has_all_conditions_of_another_one_and_more() -> None:
+    wet, dark = (Conjunct(Sensor(name, topic=f"/{name}", field="data"), 1, 1) for name in ("wet", "dark"))
+    one, other, both = Guard((wet,)), Guard((dark,)), Guard((dark, wet))
+    assert _narrower(both, one)
+    assert _narrower(both, other)
+    assert not _narrower(one, one)
+    assert not _narrower(both, Guard((wet, dark)))
+    assert not _narrower(one, other)
+    assert not _narrower(one, both)
+    assert not _narrower(one, ALWAYS)
 
 
 class Window(Field):

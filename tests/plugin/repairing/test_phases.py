@@ -9,20 +9,32 @@ from typing import Any
 
 import pytest
 
-from pytest_tarl.model import Band, OperandEffect
+from pytest_tarl.model import Band, Conjunct, Guard, OperandEffect
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.repairing import repair
 from pytest_tarl.repairing.budget import Purse
 from pytest_tarl.repairing.incumbent import Watch
 from pytest_tarl.repairing.ledger import Refused, Tried
+from pytest_tarl.repairing.mission_pairs import NO_SIGNS, Signs
 from pytest_tarl.repairing.ranges import Ranged
-from pytest_tarl.repairing.repair import _ended, _Findings, _notes, _of_the_range, _rank, _search
+from pytest_tarl.repairing.repair import (
+    _chief,
+    _ended,
+    _Findings,
+    _notes,
+    _of_the_range,
+    _rank,
+    _restructure,
+    _search,
+)
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.sensors import Sensor
 from tests.plugin.searching.test_search import operand
 
+WET = Guard((Conjunct(Sensor("wet", topic="/wet", field="data"), 1, 1),))
 GOAL = Goal((Pair(0, 0.0),), near=9.0, enough=9.0, online=0.0)
 ONE, TWO = (Candidate((Mutation(operand(3, "2.0", 2.0), value),), ALWAYS) for value in (5.0, 1.0))
 EFFECTS = {"site": [OperandEffect("2.0", 2.0, 5.0, 3.0)]}
@@ -134,6 +146,71 @@ def test_a_sweep_leaves_episodes_to_structural_changes(monkeypatch: pytest.Monke
     assert trials.worth is GOAL
     other, _ = searched(monkeypatch, Examiner(), _Findings(), "halving", structure=True)
     assert (other.budget, other.reserve) == (60, 0)
+
+
+def restructured(
+    monkeypatch: pytest.MonkeyPatch, early: Any, late: bool = False, accepts: bool = True, **search: Any
+) -> tuple[Any, Any, Any]:
+    """Run the structural search after a search of constants; return the findings, its arguments and the examiner."""
+    made: list[Any] = []
+
+    class Structure(Search):
+        def __init__(self, _: Any, guards: Any, trials: Any, effects: Any, signs: Any) -> None:
+            super().__init__(trials, **search)
+            made.append((guards, trials, effects, signs))
+
+    monkeypatch.setattr(repair, "Structures", Structure)
+    found = _Findings()
+    found.early, found.effects = early, {"old": []}
+    examiner: Any = Examiner(accepts, turns=1)
+    of = order()
+    purse = Purse(60, late=late)
+    _restructure(mutants(of), examiner, found, Watch(of), (ALWAYS,), purse)
+    assert purse.spent == found.structure
+    return found, made[0], examiner
+
+
+def before() -> Any:
+    """Return structural changes tried within the search, with the outcome of one episode."""
+    trials = Trials(lambda *_: Outcome(3.0, True), 10)
+    trials(ONE, 0)
+    return SimpleNamespace(trials=trials, signs=lambda _: Signs({"here": {}}))
+
+
+def test_a_structural_search_knows_symptoms_and_outcomes_of_the_search_before(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found, (guards, trials, effects, signs), examiner = restructured(monkeypatch, before())
+    assert (guards, effects, signs) == (_chief((ALWAYS,)), {"old": []}, Signs({"here": {}}))
+    assert trials.spent == 0  # the episode is known
+    assert (found.accepted, found.effects, found.method) == (ONE, EFFECTS, "structure")
+    assert [one.method for one in found.curves] == ["structure"]
+    assert examiner.turns == 2  # it may use as many tests as the search before
+
+
+def test_a_structural_search_without_time_or_a_search_before_has_no_symptoms(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert restructured(monkeypatch, before(), late=True)[1][3] == NO_SIGNS
+    found, (_, trials, _, signs), _ = restructured(monkeypatch, None)
+    assert (signs, trials.spent, found.structure) == (NO_SIGNS, 1, 1)
+
+
+def test_a_structural_search_without_success_keeps_the_effects(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, _, _ = restructured(monkeypatch, None, accepts=False)
+    assert (found.accepted, found.effects, found.structure, found.interrupted) == (
+        None,
+        {"old": []},
+        2,
+        False,
+    )
+    found, _, _ = restructured(monkeypatch, None, interrupted=True)
+    assert (found.accepted, found.interrupted, found.structure, len(found.curves)) == (None, True, 1, 1)
+
+
+def test_structural_changes_are_tried_without_a_guard_and_under_the_first_one() -> None:
+    assert _chief((ALWAYS, WET)) == (ALWAYS,)
+    assert _chief((WET, ALWAYS)) == (ALWAYS, WET)
 
 
 class Ranks(Search):
