@@ -1,0 +1,148 @@
+"""How often and how finely the best constant of a search is refined."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.model import Guard
+from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.searching.adjusting import REFINED, ROUNDS, Adjusting
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.search import Candidate, Goal, Pair
+from pytest_tarl.searching.units import Unit
+from tests.plugin.searching.test_alternatives_by_hand import A, B, entered
+from tests.plugin.searching.test_search import operand
+
+
+class Sweeping:
+    """A search that notes the factors it is asked to try; `results` maps factors to gains."""
+
+    def __init__(self, gains: Gains, results: Any = None, **given: Any) -> None:
+        self.gains, self.results = gains, results or {}
+        self.goal = Goal((Pair(7, 0.0),), near=9.0, enough=10.0, online=0.0)
+        self.proposed, self.slack, self.refused = False, 0.1, set[Any]()
+        self.tried: list[float] = []
+        self.expected: list[Any] = []
+        self.trials: Any = None
+        self.mutate = mutations
+        self.given: Any = lambda _: ()
+        self.__dict__ |= given
+
+    def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        self.tried.append(factor)
+        self.gains.enter((unit, guard), factor, self.results.get(factor, 0.0))
+        yield from ()
+
+    def expect(self, tries: Any, pair: int) -> None:
+        self.expected.append((list(tries), pair))
+
+
+def adjusted(gains: Gains, results: Any = None, **given: Any) -> tuple[Adjusting, Any]:
+    search: Any = Sweeping(gains, results, **given)
+    found = Adjusting(search)
+    assert list(found.refine(0)) == []
+    return found, search
+
+
+def test_the_best_constant_is_refined_between_its_neighbours() -> None:
+    found, search = adjusted(entered((A, 2.2, 3.0), (A, 0.4, -1.0), (B, 2.2, 1.0)))
+    assert search.tried == [1.483, 5.06]
+    assert search.expected == [([(A, ALWAYS, 1.483), (A, ALWAYS, 5.06)], 0)]
+    assert found.refined == {(A, ALWAYS): 2}
+
+
+def test_refining_goes_on_while_the_gain_grows_or_is_almost_the_wanted_one() -> None:
+    _, search = adjusted(entered((A, 2.2, 3.0)), {1.483: 4.5})
+    assert len(search.tried) == 4
+    _, search = adjusted(entered((A, 2.2, 3.0)), {1.483: 4.0})  # less than a promising gain
+    assert len(search.tried) == 2
+    _, search = adjusted(entered((A, 2.2, 9.0)), {})
+    assert len(search.tried) == 2 * ROUNDS
+    _, search = adjusted(entered((A, 2.2, 8.9)), {})
+    assert len(search.tried) == 2
+
+
+def test_noise_refused_constants_and_those_refined_enough_are_not_refined() -> None:
+    assert adjusted(entered((A, 2.2, 0.1)))[1].tried == []
+    assert adjusted(Gains(0.1))[1].tried == []
+    refused = entered((A, 2.2, 3.0), (B, 2.2, 1.0))
+    found, search = adjusted(refused, refused={(A, ALWAYS)})
+    assert set(found.refined) == {(B, ALWAYS)}
+    found.refined[B, ALWAYS] = REFINED
+    search.tried.clear()
+    assert list(found.refine(0)) == []
+    assert search.tried == []
+    found.refined[B, ALWAYS] = REFINED - 1
+    assert list(found.refine(0)) == []
+    assert search.tried != []
+
+
+def test_an_offset_is_refined_half_as_often() -> None:
+    offset = Unit((operand(3, "0.0", 0.0),))
+    found, search = adjusted(entered((offset, 2.2, 3.0)), {})
+    search.tried.clear()
+    found.refined[offset, ALWAYS] = REFINED // 2
+    assert list(found.refine(0)) == []
+    assert search.tried == []
+
+
+def test_a_negative_factor_is_refined_only_if_it_was_proposed() -> None:
+    def tried(proposed: bool) -> list[float]:
+        search: Any = Sweeping(entered((A, -2.0, 3.0), (A, 2.2, 1.0)), proposed=proposed)
+        list(Adjusting(search).between((A, ALWAYS), 0))
+        return list(search.tried)
+
+    assert all(one > 0 for one in tried(False))
+    assert all(one < 0 for one in tried(True))
+
+
+def test_the_best_constant_gets_its_exact_value_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+
+    def exactest(unit: Unit, factor: float, guard: Guard, seed: int, *_: Any) -> tuple[float, float]:
+        asked.append((unit, factor, guard, seed))
+        return 2.5, 0.0
+
+    monkeypatch.setattr("pytest_tarl.searching.adjusting.exactest", exactest)
+
+    def exact(gain: float, **given: Any) -> list[float]:
+        search: Any = Sweeping(entered((A, 2.2, gain), (B, 2.2, 1.0)), **given)
+        found = Adjusting(search)
+        list(found.exactly(ALWAYS))
+        first = list(search.tried)
+        list(found.exactly(ALWAYS))
+        assert search.tried == first
+        return first
+
+    assert exact(5.0)[0] == 2.5
+    assert asked == [(A, 2.2, ALWAYS, 7)]
+    assert exact(4.9) == []
+    assert exact(5.0, proposed=True) == []
+
+
+def test_the_fixed_parameters_of_a_promising_proposal_are_varied_once() -> None:
+    climbed: Any = []
+    joining: Any = lambda gains: SimpleNamespace(  # noqa: E731
+        climbed=lambda base, unit: climbed.append((base.parts, unit)) or iter(())
+    )
+
+    def varied(gain: float, **given: Any) -> int:
+        climbed.clear()
+        gains = Gains(0.1, proposed=True)
+        gains.enter((A, ALWAYS), 2.2, gain)
+        every = {"proposed": True, "given": lambda _: B.operands, "joining": joining, **given}
+        search: Any = Sweeping(gains, **every)
+        found = Adjusting(search)
+        list(found.refine(0))
+        list(found.refine(0))
+        return len(climbed)
+
+    assert varied(4.0) == 1
+    assert climbed == [(((A, 2.2),), B)]
+    assert varied(3.9) == 0
+    assert varied(4.0, proposed=False) == 0
