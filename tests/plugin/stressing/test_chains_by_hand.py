@@ -56,6 +56,10 @@ def confirmed(*drifts: Callable[[int], bool]) -> tuple[list[bool], list[list[int
     return shown, ran, episodes.counts, tests
 
 
+def even(row: int) -> bool:
+    return row % 2 == 0
+
+
 def blocks(number: int) -> list[int]:
     return list(range(BLOCK * number))
 
@@ -79,20 +83,17 @@ def test_a_drift_that_never_fails_ends_when_no_failure_can_be_shown_any_more() -
 
 def test_failures_beyond_a_look_do_not_count_for_it() -> None:
     # one failure fewer than needed among the first 16 seeds, and all further seeds pass
-    shown, (ran,), _, __ = confirmed(lambda row: row < LEAST[0] - 1)
-    assert not shown[0]
+    assert not confirmed(lambda row: row < LEAST[0] - 1)[0][0]
     # the missing one follows among the first 32 seeds, which need more failures
     assert LEAST[0] < LEAST[1]
-    shown, _, __, ___ = confirmed(lambda row: row < LEAST[0] - 1 or row == LOOKS[0])
-    assert not shown[0]
-    shown, (ran,), _, __ = confirmed(lambda row: row < LEAST[0])
+    assert not confirmed(lambda row: row < LEAST[0] - 1 or row == LOOKS[0])[0][0]
+    shown, (ran,), *_ = confirmed(lambda row: row < LEAST[0])
     assert shown[0]
     assert ran == blocks(-(-LEAST[0] // BLOCK))
 
 
 def test_the_next_drift_first_runs_seeds_that_failed_then_new_ones_then_those_that_passed() -> None:
-    first = lambda row: row % 2 == 0  # noqa: E731
-    shown, ran, _, tests = confirmed(first, lambda _: False)
+    shown, ran, _, tests = confirmed(even, lambda _: False)
     assert shown == [True, False]
     failed, passed = ([row for row in ran[0] if row % 2 == at] for at in (0, 1))
     new = [row for row in range(LOOKS[-1]) if row not in ran[0]]
@@ -101,10 +102,9 @@ def test_the_next_drift_first_runs_seeds_that_failed_then_new_ones_then_those_th
 
 
 def test_a_drift_that_fails_on_the_same_seeds_is_confirmed_by_these_alone() -> None:
-    same = lambda row: row % 2 == 0  # noqa: E731
-    shown, ran, counts, tests = confirmed(same, same, same)
+    shown, ran, counts, tests = confirmed(even, even, even)
     assert shown == [True] * 3
-    failed = [row for row in ran[0] if same(row)]
+    failed = [row for row in ran[0] if even(row)]
     assert ran[1] == ran[2] == failed[: len(ran[1])]
     assert len(ran[1]) <= len(failed)
     # seeds that did not run count as passed; of those that failed before, all fail again
@@ -114,10 +114,9 @@ def test_a_drift_that_fails_on_the_same_seeds_is_confirmed_by_these_alone() -> N
 
 
 def test_the_estimate_extends_the_share_of_seeds_that_failed_before_to_all_of_them() -> None:
-    first = lambda row: row % 2 == 0  # noqa: E731
-    failed = {row for row in confirmed(first)[1][0] if first(row)}
+    failed = {row for row in confirmed(even)[1][0] if even(row)}
     half = sorted(failed)[1::2]
-    _, ran, counts, __ = confirmed(first, lambda row: row in half)
+    _, ran, counts, __ = confirmed(even, lambda row: row in half)
     again = [row for row in ran[1] if row in failed]
     new = [row for row in ran[1] if row not in ran[0]]
     assert counts[1].failed == pytest.approx(len(failed) * sum(row in half for row in again) / len(again))
@@ -154,7 +153,7 @@ def model_of(by_loss: Sequence[float], by_rate: Sequence[float], luck: float = 0
     )
 
 
-DRIFTS = [{"a": 0.8, "b": 0.6}, {"a": 0.6, "b": 0.45}, {"a": 0.4, "b": 0.3}]
+DRIFTS: list[Any] = [{"a": 0.8, "b": 0.6}, {"a": 0.6, "b": 0.45}, {"a": 0.4, "b": 0.3}]
 
 
 @pytest.mark.parametrize(
@@ -193,7 +192,7 @@ def test_a_chain_is_refined_before_and_after_its_near_end_if_the_same_seeds_fail
 
 
 def test_further_drifts_lie_nearer_than_the_drift_before_the_near_end_and_in_the_space() -> None:
-    close = [{"a": 0.432, "b": 0.324}, {"a": 0.4, "b": 0.3}]  # 1.08 times as far
+    close: list[Any] = [{"a": 0.432, "b": 0.324}, {"a": 0.4, "b": 0.3}]  # 1.08 times as far
     alike = model_of((), (), luck=0.1)
     assert lengths(finer(alike, close))[:3] == pytest.approx([0.54, 0.52, 0.5])
     (edge, *_) = finer(alike, [{"a": 1.0, "b": 0.5}])
