@@ -82,6 +82,7 @@ def test_an_environment_publishes_observations_and_receives_actions_until_it_end
     episode, environment = Episode([None, 0.25, 9.0, 9.0]), Environment()
     ours = world(episode, environment, options={"a": 1})
     begun = ours.observation
+    assert (ours.over, ours.terminated, ours.truncated, ours.reward) == (False, False, False, 0.0)
     rewards = [ours.step() for _ in range(4)]
     assert environment.taken == [0.0, 0.25, 0.5, 0.5]  # idle, inside, clipped twice
     assert episode.heard[:2] == [("/x", f"x={begun:.3f}")] * 2
@@ -91,6 +92,18 @@ def test_an_environment_publishes_observations_and_receives_actions_until_it_end
     assert episode.time == pytest.approx(0.4)
     episode.ends[0]()
     assert environment.closed
+
+
+def test_an_environment_may_end_by_its_limit_of_time() -> None:
+    environment = Environment()
+    ours = world(Episode([0.25, 0.25]), environment)
+    ended = iter([(0.0, 1, False, False, {}), (0.0, 1, False, True, {})])
+    environment.step = lambda _: next(ended)  # type: ignore[assignment,method-assign]
+    over = []
+    for _ in range(2):
+        ours.step()
+        over.append((ours.over, ours.terminated, ours.truncated))
+    assert over == [(False, False, False), (True, False, True)]
 
 
 def test_the_seeds_of_an_episode_determine_the_environment() -> None:
