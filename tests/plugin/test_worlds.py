@@ -97,7 +97,7 @@ def test_an_environment_publishes_observations_and_receives_actions_until_it_end
 def test_an_environment_may_end_by_its_limit_of_time() -> None:
     environment = Environment()
     ours = world(Episode([0.25, 0.25]), environment)
-    ended = iter([(0.0, 1, False, False, {}), (0.0, 1, False, True, {})])
+    ended: Any = iter([(0.0, 1, False, False, {}), (0.0, 1, False, True, {})])
     environment.step = lambda _: next(ended)  # type: ignore[assignment,method-assign]
     over = []
     for _ in range(2):
