@@ -107,10 +107,12 @@ def test_a_goal_is_shown_as_pending_active_and_ended(
     assert result.header.stamp.to_sec() > 0
 
 
-def test_an_ended_goal_has_an_empty_result_unless_one_is_given(scene: Scene) -> None:
+@pytest.mark.parametrize("given", ["", "None", "0", "''"])
+def test_an_ended_goal_has_an_empty_result_unless_one_is_given(scene: Scene, given: str) -> None:
     scene.goal("a")
-    scene.do("server.set_succeeded()", "log.append(len(server.get_default_result().sequence))")
+    scene.do(f"server.set_succeeded({given})", "log.append(len(server.get_default_result().sequence))")
     assert (len(scene.results[0].result.sequence), scene.log[-1]) == (0, 0)
+    assert scene.ended() == [("a", SUCCEEDED)]
 
 
 def test_a_newer_goal_requests_the_end_of_the_active_one(scene: Scene) -> None:
