@@ -75,12 +75,17 @@ class Ros(Network):
         return (*self._launch_notes, *self.uninstalled.notes(), *self._silent_terminals())
 
     def type(self, text: str, node: str | None = None) -> None:
-        """Type text on the terminal of all nodes, or of those called `node`. Raise SettingsError if there is none."""
-        running = [one for one in self.processes if not one.ended and node in (None, one.name, one.label)]
+        """Type text on the terminal of all nodes, or of those called `node`, which may be the path of a script.
+
+        Raise SettingsError if there is none.
+        """
+        called = set() if node is None else {node, _program(node)}
+        living = [one for one in self.processes if not one.ended]
+        running = living if node is None else [one for one in living if called & {one.name, one.label}]
         if not running:
             which = "no node is running" if node is None else f"no running node is called {node!r}"
             raise SettingsError(
-                f"tarl.type: {which}. Start it first; use the name given to tarl.start, or the node's own name."
+                f"tarl.type: {which}. Start it first; use its path, the name given to tarl.start, or its ROS name."
             )
         for process in running:
             process.part(Terminal).type(text)
@@ -202,3 +207,8 @@ class Ros(Network):
         if scheduler.failure is not None:
             failure, scheduler.failure = scheduler.failure, None
             raise failure
+
+
+def _program(node: str) -> str:
+    """Return the name under which `tarl.start` starts a script, given its path; the name of a ROS node as it is."""
+    return node if node.startswith("/") else Path(node).stem

@@ -17,7 +17,14 @@ def start(tmp_path: Path) -> Iterator[Start]:
     """Return a function that starts the source of a node in a new or given episode, which is closed after the test."""
     open_episodes = []
 
-    def start_node(source: str, *, ros: Ros | None = None, argv: tuple[str, ...] = (), **options: Any) -> Ros:
+    def start_node(
+        source: str,
+        *,
+        ros: Ros | None = None,
+        argv: tuple[str, ...] = (),
+        name: str = "node.py",
+        **options: Any,
+    ) -> Ros:
         path = tmp_path / "node.py"
         path.write_text(dedent(source))
         code = compile(path.read_text(), str(path), "exec")
@@ -27,7 +34,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
             installed.__enter__()
             open_episodes.append((ros, installed))
         namespace = {"__name__": "__main__", "__file__": str(path)}
-        ros.start(lambda: exec(code, namespace), name="node.py", argv=argv)
+        ros.start(lambda: exec(code, namespace), name=name, argv=argv)
         ros.namespace = namespace  # type: ignore[attr-defined]
         return ros
 

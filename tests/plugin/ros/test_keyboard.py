@@ -104,6 +104,15 @@ def test_each_node_has_its_own_keyboard(start: Start) -> None:
         ros.type("c", node="/third")
 
 
+@pytest.mark.parametrize("called", ["scripts/teleop.py", "teleop.py", "teleop", "/teleop"])
+def test_a_node_is_called_by_its_script_or_its_names(start: Start, called: str) -> None:
+    ros = start(NODE.format(body=WAITING["input"]), name="teleop")
+    keys = heard(ros, "/keys")
+    ros.type("a\n", node=called)
+    ros.step(0.1)
+    assert len(keys) == 1
+
+
 def test_a_node_that_waits_for_a_key_that_never_comes_is_named(start: Start) -> None:
     ros = start(NODE.format(body=WAITING["input"]))
     ros.step(0.1)
