@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from pytest_tarl.errors import AnalysisError
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.item_episode import Instruments
 from tarl_lint.api import Analysis, analyse
+from tarl_lint.errors import ConfigError
 
 
 def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
@@ -24,7 +25,7 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
         if not path.exists():
             raise AnalysisError(f"The marker names the node {node!r}: no such file in {folder}.")
     with _working_in(root):  # the analysis names files relative to the working directory
-        analysis = analyse(paths, root=root)
+        analysis = _analysis(paths, root)
     if analysis.errors:
         first = analysis.errors[0]
         raise AnalysisError(f"{first.path}:{first.line} cannot be analysed: {first.message}")
@@ -34,6 +35,14 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
             ", so there is nothing to instrument: run tarl-lint on these files, and name all files of the node."
         )
     return analysis
+
+
+def _analysis(paths: Sequence[Path], root: Path) -> Analysis:
+    """Analyse with the project's settings of tarl-lint, which may name functions that receive or publish messages."""
+    try:
+        return analyse(paths, root=root, with_settings=True)
+    except ConfigError as error:
+        raise AnalysisError(str(error)) from error
 
 
 def instruments(sites: Plan, root: Path) -> Instruments:

@@ -14,7 +14,7 @@ from tarl_lint.queries.probe import Prober
 from tarl_lint.read import discover
 from tarl_lint.read.discover import SourceFile
 from tarl_lint.read.source import Module, SourceError, parse
-from tarl_lint.settings.config import Config
+from tarl_lint.settings.config import Config, describing
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,13 +80,14 @@ class Analysis:
         return self.prober.holders(topic, field, site)
 
 
-def analyse(paths: Sequence[Path], *, root: Path | None = None) -> Analysis:
+def analyse(paths: Sequence[Path], *, root: Path | None = None, with_settings: bool = False) -> Analysis:
     """Analyse the files at and below the paths.
 
-    `root` is the base of relative paths in settings; it defaults to the working directory.
-    Raises UsageError for a path that does not exist.
+    `root` is the base of relative paths in settings; it defaults to the working directory. `with_settings` applies
+    what the nearest settings file says about the code, such as the functions that receive messages.
+    Raises UsageError for a path that does not exist, and ConfigError for an unusable settings file.
     """
-    config = Config(root=root)
+    config = describing(paths, root) if with_settings else Config(root=root)
     files = discover.find(paths, config).files
     parsed = [_read(file) for file in files]
     modules = [p for p in parsed if isinstance(p, Module)]

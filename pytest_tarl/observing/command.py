@@ -132,7 +132,8 @@ def _check(order: Order) -> None:
 
 
 def _sites(order: Order) -> Plan:
-    analysis = analyse([path.resolve() for path in (order.node, *order.modules)], root=Path.cwd())
+    paths = [path.resolve() for path in (order.node, *order.modules)]
+    analysis = analyse(paths, root=Path.cwd(), with_settings=True)  # the same statements as in the recording
     if not analysis.flows:
         raise AnalysisError(f"No flow from a subscription to a publish call was found in {order.node}.")
     return plan(analysis)

@@ -149,6 +149,24 @@ def resolve(options: Options) -> Config:
     )
 
 
+def describing(paths: Sequence[Path], root: Path | None) -> Config:
+    """Return the settings that describe the code at the paths, not what a report shows of it, for use by a program.
+
+    These are sources, sinks, sanitizers, wrappers and `tf2`, which is on unless the settings file says otherwise:
+    a program that runs the code sees that a look-up of a transform depends on messages. Raises ConfigError.
+    """
+    file = find_settings(common_directory(paths))
+    table = read_settings(file, required=False) if file else {}
+    return Config(
+        root=root,
+        sources=table.get("sources", ()),
+        sinks=table.get("sinks", ()),
+        sanitizers=table.get("sanitizers", ()),
+        wrappers=table.get("wrappers", ()),
+        tf2=table.get("tf2", True),
+    )
+
+
 def _baseline(options: Options, root: Path, named: Path | str | None) -> Path | None:
     """Return the baseline file to use, or None if there is none or it is disabled."""
     if options.no_baseline:
