@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, ItemsView, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
@@ -330,8 +330,7 @@ def _setting(name: str, value: Any, context: Context) -> Setting | None:
         text = performed(inner, context)
         if symbolic(text):
             return None
-        stated = Setting(name, context.file, text)
-        return stated if kind == "str" else replace(stated, value=None, yaml=text)
+        return Setting(name, context.file, text) if kind == "str" else _parsed(name, context, text)
     if isinstance(value, bool | int | float | str):
         return Setting(name, context.file, value)
     if isinstance(value, FilePath):
@@ -344,7 +343,12 @@ def _setting(name: str, value: Any, context: Context) -> Setting | None:
     if isinstance(value, Unknown | Library):
         return None
     text = performed(value, context)  # ROS 2 parses the text of substitutions as YAML
-    return None if symbolic(text) else Setting(name, context.file, yaml=text)
+    return None if symbolic(text) else _parsed(name, context, text)
+
+
+def _parsed(name: str, context: Context, text: str) -> Setting:
+    """Return a parameter whose text is YAML; an empty text stays a text."""
+    return Setting(name, context.file, yaml=text) if text else Setting(name, context.file, "")
 
 
 def _command(values: Mapping[str, Any], context: Context) -> str:

@@ -200,6 +200,8 @@ class _Reader:
         )  # a parameter inside a <node> is private
         if "command" in element.attrib:
             raise SymbolicError(f"{name} is what a command prints on the robot")
+        if "binfile" in element.attrib:
+            raise SymbolicError(f"{name} is the content of a file that is not text")
         kind = element.get("type", "auto")
         if "textfile" in element.attrib:
             return Setting(name, place.scope.file, self._read(Path(text(element.attrib["textfile"]))))

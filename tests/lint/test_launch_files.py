@@ -527,3 +527,54 @@ def test_anonymous_names_and_nodes_started_by_events_are_marked(tmp_path: Path) 
         [("x", "anon", False)],
         [("x", "file 0", False), ("x", "file 0", False), ("x", "", False), ("x", "file 1", False)],
     ]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (
+            "bringup.launch.py",
+            """
+            from launch import LaunchDescription
+            from launch.actions import DeclareLaunchArgument
+            from launch.substitutions import LaunchConfiguration
+            from launch_ros.actions import Node
+
+            def generate_launch_description():
+                world = LaunchConfiguration("world")
+                return LaunchDescription([
+                    DeclareLaunchArgument("world", default_value=""),
+                    Node(package="sim", executable="create", parameters=[{"world": world}]),
+                ])
+            """,
+        ),
+        (
+            "bringup.launch.xml",
+            """
+            <launch>
+              <arg name="world" default=""/>
+              <node pkg="sim" exec="create"><param name="world" value="$(var world)"/></node>
+            </launch>
+            """,
+        ),
+    ],
+)
+def test_an_empty_parameter_is_an_empty_text(tmp_path: Path, name: str, text: str) -> None:
+    found = launched(tmp_path, text, name)
+
+    assert [(one.name, one.value, one.yaml) for one in found.nodes[0].settings] == [("~world", "", None)]
+
+
+def test_the_content_of_a_file_that_is_not_text_is_unknown(tmp_path: Path) -> None:
+    found = launched(tmp_path, """
+        <launch>
+          <node pkg="arm_base" type="part" name="part">
+            <param name="table" binfile="$(find arm_base)/config/arm.yaml"/>
+          </node>
+        </launch>
+        """)  # fmt: skip
+
+    assert unknown(found) == ["~table"]
+    assert [one.reason for one in found.problems] == [
+        "<param> of part: ~table is the content of a file that is not text"
+    ]
