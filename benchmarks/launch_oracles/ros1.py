@@ -35,10 +35,11 @@ def patch(packages):
 
     def _value(self, verbose, name, ptype, text, textfile, binfile, command):
         missing = textfile is not None and not os.path.isfile(textfile)
-        if command is not None or missing:
+        if command is not None or binfile is not None or missing:
             return COMMAND
         return value(self, verbose, name, ptype, text, textfile, binfile, command)
 
+    xml.ignore_unset_args = False  # roslaunch sets it in a function that the oracle does not use
     xml._include_tag = roslaunch.xmlloader.ifunless(_include)
     loader.load_rosparam, loader.param_value = _yaml, _value
 
