@@ -197,7 +197,8 @@ class Evaluator:
         return tuple(self._elements(node.elts, names))
 
     def _set(self, node: ast.Set, names: Scope) -> Any:
-        return BUILTINS["set"](self._elements(node.elts, names))
+        found = self._elements(node.elts, names)
+        return list(dict.fromkeys(found)) if plain(found) else found
 
     def _elements(self, nodes: list[ast.expr], names: Scope) -> list[Any]:
         found: list[Any] = []

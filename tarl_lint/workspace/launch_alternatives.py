@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from tarl_lint.workspace.conditions import combined
 from tarl_lint.workspace.expressions import Unknown
-from tarl_lint.workspace.launch_run import Action
+from tarl_lint.workspace.launch_actions import Action
 from tarl_lint.workspace.launch_values import Substitution
 from tarl_lint.workspace.python_values import plain
 

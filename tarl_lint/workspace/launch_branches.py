@@ -13,6 +13,7 @@ from typing import Any, Final
 from tarl_lint.workspace.conditions import combined
 from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.jumps import Left, Raised, Returned
+from tarl_lint.workspace.launch_actions import Action
 from tarl_lint.workspace.launch_alternatives import (
     ABSENT,
     LONGEST,
@@ -23,7 +24,6 @@ from tarl_lint.workspace.launch_alternatives import (
     one_of,
 )
 from tarl_lint.workspace.launch_paths import Branch, Frame, Loop, Names
-from tarl_lint.workspace.launch_run import Action
 from tarl_lint.workspace.match_patterns import fits
 from tarl_lint.workspace.python_values import Bound, Class, Function, Made, Scope
 from tarl_lint.workspace.statements import Interpreter

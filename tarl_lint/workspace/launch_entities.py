@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from tarl_lint.workspace.launch_run import Action, Condition, Quoted
+from tarl_lint.workspace.launch_actions import Action, Condition, Quoted
 from tarl_lint.workspace.launch_values import (
     Anonymous,
     Choice,
@@ -65,7 +65,16 @@ def _made(entity: Entity) -> Iterator[Action]:
 
 def _group(entity: Entity) -> dict[str, Any]:
     scoped = entity.tag == "group" and entity.attributes.get("scoped", "true").lower() != "false"
-    return {"actions": actions(entity.children), "scoped": scoped}
+    return {
+        "actions": actions(entity.children),
+        "scoped": scoped,
+        "forwarding": entity.get("forwarding") or "true",
+        "launch_configurations": _kept(entity),
+    }
+
+
+def _kept(entity: Entity) -> list[tuple[Any, Any]]:
+    return [(one.get("name"), one.get("value")) for one in entity.all("keep")]
 
 
 def _include(entity: Entity) -> dict[str, Any]:
@@ -100,6 +109,7 @@ _MAKERS: Final[Mapping[str, tuple[str, Callable[[Entity], dict[str, Any]]]]] = {
     "group": ("group", _group),
     "timer": ("group", _group),
     "ros_timer": ("group", _group),
+    "reset": ("reset", lambda e: {"launch_configurations": _kept(e)}),
     "include": ("include", _include),
     "push_ros_namespace": _NAMESPACE,
     "push_namespace": _NAMESPACE,
@@ -116,7 +126,8 @@ _MAKERS: Final[Mapping[str, tuple[str, Callable[[Entity], dict[str, Any]]]]] = {
 
 def _parameter(entity: Entity) -> Any:
     if "from" in entity.attributes:
-        return entity.get("from")
+        values = {"param_file": entity.get("from"), "allow_substs": entity.get("allow_substs")}
+        return Action("parameters of a file", entity.line, values)
     return {entity.get("name"): _stated(entity)}
 
 

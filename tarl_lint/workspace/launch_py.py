@@ -9,8 +9,8 @@ from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace import launch_reads
 from tarl_lint.workspace.expressions import Unknown
+from tarl_lint.workspace.launch_actions import Action, Condition, Quoted
 from tarl_lint.workspace.launch_branches import BranchingInterpreter
-from tarl_lint.workspace.launch_run import Action, Condition, Quoted
 from tarl_lint.workspace.launch_values import (
     Anonymous,
     Choice,
@@ -33,6 +33,9 @@ _ACTIONS: Final = {
     "launch.actions.DeclareLaunchArgument": ("argument", "name"),
     "launch.actions.SetLaunchConfiguration": ("set", "name", "value"),
     "launch.actions.UnsetLaunchConfiguration": ("unset", "name"),
+    "launch.actions.PushLaunchConfigurations": ("push",),
+    "launch.actions.PopLaunchConfigurations": ("pop",),
+    "launch.actions.ResetLaunchConfigurations": ("reset", "launch_configurations"),
     "launch.actions.IncludeLaunchDescription": ("include", "source"),
     "launch_ros.actions.Node": ("node",),
     "launch_ros.actions.LifecycleNode": ("node",),
@@ -240,6 +243,8 @@ def _substitutions() -> dict[str, Any]:
         "nav2_common.launch.RewrittenYaml": _rewritten,
         "launch_ros.parameter_descriptions.ParameterValue": _value,
         "launch_ros.descriptions.ParameterValue": _value,
+        "launch_ros.parameter_descriptions.Parameter": _named_value,
+        "launch_ros.descriptions.Parameter": _named_value,
         **{f"{home}.{name}": lambda location, **_: location for home in homes for name in sources},
     }
 
@@ -268,6 +273,11 @@ def _choice(condition: Any, if_value: Any = "", else_value: Any = "") -> Choice:
 
 def _value(value: Any, value_type: Any = None, **_: Any) -> Quoted:
     return Quoted(value, "str" if value_type is str else "")
+
+
+def _named_value(name: Any, value: Any, value_type: Any = None, **_: Any) -> dict[Any, Quoted]:
+    """Return a parameter with its name, as in the mappings of a node's parameters."""
+    return {_hashed(name): _value(value, value_type)}
 
 
 def _parts(value: Any) -> tuple[Any, ...]:

@@ -5,78 +5,27 @@ The actions come from Python, XML or YAML. None of them is executed.
 
 from __future__ import annotations
 
-import shlex
-from collections.abc import Callable, ItemsView, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
 from tarl_lint.workspace import ros_arguments
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.conditions import combined
-from tarl_lint.workspace.expressions import Library, Unknown
+from tarl_lint.workspace.expressions import Unknown
+from tarl_lint.workspace.launch_actions import Action, Condition, Quoted
+from tarl_lint.workspace.launch_entities import substitutions
 from tarl_lint.workspace.launch_model import Kind, LaunchedNode, Setting
-from tarl_lint.workspace.launch_values import (
-    Anonymous,
-    Context,
-    Joined,
-    Substitution,
-    performed,
-    symbolic,
-    truth,
-)
+from tarl_lint.workspace.launch_node_values import anonymous, command, items_of, pairs, private, setting
+from tarl_lint.workspace.launch_values import Context, performed, symbolic, truth
 from tarl_lint.workspace.model import Problem
-from tarl_lint.workspace.python_values import FilePath
 from tarl_lint.workspace.ros_arguments import first_of_each
 from tarl_lint.workspace.ros_names import joined
 
 LARGEST: Final = 1_000_000  # maximum size of a YAML file (bytes)
 DEEPEST: Final = 20  # maximum nesting of includes
 MOST: Final = 5_000  # maximum number of actions of a launch file with its includes
-
-
-@dataclass(frozen=True)
-class Action:
-    """A node, group, declaration or include; `line` is the line of its call or element."""
-
-    kind: str
-    line: int
-    values: dict[str, Any] = field(default_factory=dict)
-    readable: frozenset[str] = frozenset({"add_action", "add_entity", "entities"})
-
-    def add_action(self, action: Any) -> None:
-        """Add to a launch description or group."""
-        self.entities.append(action)
-
-    add_entity = add_action
-
-    @property
-    def entities(self) -> Any:
-        """Return the actions of a launch description or group."""
-        return self.values.setdefault("actions", [])
-
-
-@dataclass(frozen=True)
-class Condition:
-    """`IfCondition` and `UnlessCondition`; with `name`, a comparison of a launch configuration."""
-
-    value: Any
-    wanted: bool = True
-    name: Any = None
-    readable: ClassVar = frozenset({"evaluate"})
-
-    def evaluate(self, context: Any) -> Any:
-        """Return whether the condition holds, for the function of an OpaqueFunction; Unknown if that is unknown."""
-        holds = truth(performed(self.value, context)) if self.name is None else None
-        return Unknown(0, "a condition") if holds is None else holds is self.wanted
-
-
-@dataclass(frozen=True)
-class Quoted:
-    """A parameter value with its type: `str` keeps a text unchanged, other types parse it as YAML."""
-
-    value: Any
-    kind: str = ""
 
 
 Opener = Callable[[Path, Context, list[Problem]], Any]  # function that returns the actions of a launch file
@@ -141,8 +90,10 @@ class Runner:
         if action.kind == "group":
             scoped = values.get("scoped", False) is not False
             inner = context.inside() if scoped else context
-            for name, value in _items(values.get("launch_configurations")):
-                inner.configurations[performed(name, context)] = performed(value, context)
+            kept = _performed(values.get("launch_configurations"), context)
+            if performed(values.get("forwarding", True), context).lower() == "false":
+                inner.reset()
+            inner.configurations.update(kept)
             self.events += bool(values.get("event"))
             self.run(values.get("actions"), inner, condition)
             self.events -= bool(values.get("event"))
@@ -157,6 +108,8 @@ class Runner:
             self.run(made if made is not None else [], context, condition)
         elif action.kind == "unread":
             self._problem(context, action.line, str(values.get("reason")))
+        elif action.kind in ("unset", "push", "pop", "reset"):
+            _forget(action, context)
         else:
             self._set(action, context, condition)
 
@@ -175,8 +128,6 @@ class Runner:
             value = performed(values.get("value"), context)
             same = not condition or context.configurations.get(name) == value
             context.configurations[name] = value if same else f"$(var {name})"
-        elif kind == "unset":
-            context.configurations.pop(name, None)
         elif kind == "namespace":
             context.namespace = joined(context.namespace, text("namespace"))
         elif kind == "remap":
@@ -209,7 +160,7 @@ class Runner:
         if symbolic(name) or not name:
             self._problem(context, action.line, f"the included file {name or '?'} is not in the workspace")
             return
-        for key, value in _items(action.values.get("arguments")):
+        for key, value in items_of(action.values.get("arguments")):
             context.configurations[performed(key, context)] = performed(value, context)
         here = (Path(name), frozenset(context.configurations.items()))
         if here in self.including or len(self.including) >= DEEPEST:
@@ -254,16 +205,16 @@ class Runner:
             if symbolic(found[key]):
                 reason = f"the {key} of a node is known on the robot only: {found[key]}"
                 self._problem(context, line, reason)
-        arguments = _command(values, context)
+        arguments = command(values, context)
         given = ros_arguments.ros2(arguments)
-        stated = (*({name: Quoted(value)} for name, value in _private(given)), *given.files)
+        stated = (*({name: Quoted(value)} for name, value in private(given)), *given.files)
         settings = (*context.settings, *self._settings(stated, context, line),
                     *self._settings(values.get("parameters"), context, line))  # fmt: skip
         name = found["name"] or given.name
         namespace = joined(context.namespace, performed(values.get("namespace"), context) or given.namespace)
         own = name or found["executable"].rpartition("::")[2]
         inherited = first_of_each(context.remaps, namespace, own)
-        remaps = (*context.remaps, *given.remaps, *_pairs(values.get("remappings"), context))
+        remaps = (*context.remaps, *given.remaps, *pairs(values.get("remappings"), context))
         self.nodes.append(
             LaunchedNode(
                 found["package"],
@@ -278,7 +229,7 @@ class Runner:
                 kind,
                 condition,
                 len(inherited),
-                "anon" if _anonymous(values.get("name")) else "",
+                "anon" if anonymous(values.get("name")) else "",
                 self.events > 0,
             )
         )
@@ -298,6 +249,8 @@ class Runner:
             except UnreadableError as reason:
                 self._problem(context, line, f"the parameter file {Path(name).name}: {reason}")
                 continue
+            if truth(performed(source.get("allow_substs"), context)):
+                content = performed(substitutions(content), context)
             yield Setting("~", Path(name), yaml=content)
 
     def _stated(
@@ -309,11 +262,11 @@ class Runner:
             if isinstance(value, dict):
                 yield from self._stated(value, context, line, f"{name}.")
                 continue
-            setting = _setting(f"~{name}", value, context)
-            if setting is None:
+            stated = setting(f"~{name}", value, context)
+            if stated is None:
                 self._problem(context, line, f"the parameter {name} is not constant")
-                setting = Setting(f"~{name}", context.file, unknown=True)
-            yield setting
+                stated = Setting(f"~{name}", context.file, unknown=True)
+            yield stated
 
     def _problem(self, context: Context, line: int, reason: str) -> None:
         problem = Problem(context.file, line, reason)
@@ -321,70 +274,21 @@ class Runner:
             self.problems.append(problem)
 
 
-def _setting(name: str, value: Any, context: Context) -> Setting | None:
-    """Return a parameter with a constant value; None if it is not constant."""
-    if isinstance(value, Quoted):
-        inner, kind = value.value, value.kind
-        if kind not in ("", "str") or not isinstance(inner, Substitution | list | tuple | str):
-            return _setting(name, inner, context)
-        text = performed(inner, context)
-        if symbolic(text):
-            return None
-        return Setting(name, context.file, text) if kind == "str" else _parsed(name, context, text)
-    if isinstance(value, bool | int | float | str):
-        return Setting(name, context.file, value)
-    if isinstance(value, FilePath):
-        return Setting(name, context.file, str(value))
-    if isinstance(value, list | tuple):
-        plain = all(isinstance(one, bool | int | float) for one in value)
-        words = len(value) > 1 and all(isinstance(one, str) for one in value)
-        if plain or words:
-            return Setting(name, context.file, yaml=repr(list(value)))
-    if isinstance(value, Unknown | Library):
-        return None
-    text = performed(value, context)  # ROS 2 parses the text of substitutions as YAML
-    return None if symbolic(text) else _parsed(name, context, text)
+def _forget(action: Action, context: Context) -> None:
+    """Remove launch configurations, or save and restore them."""
+    values, kind = action.values, action.kind
+    if kind == "unset":
+        context.configurations.pop(performed(values.get("name"), context), None)
+    elif kind == "push":
+        context.saved.append(context.inside())
+    elif kind == "pop" and context.saved:
+        context.restore(context.saved.pop())
+    elif kind == "reset":
+        kept = _performed(values.get("launch_configurations"), context)
+        context.reset()
+        context.configurations.update(kept)
 
 
-def _parsed(name: str, context: Context, text: str) -> Setting:
-    """Return a parameter whose text is YAML; an empty text stays a text."""
-    return Setting(name, context.file, yaml=text) if text else Setting(name, context.file, "")
-
-
-def _command(values: Mapping[str, Any], context: Context) -> str:
-    """Return the arguments of a node; those of a list are quoted."""
-    texts = []
-    listed = isinstance(values.get("arguments"), list | tuple)
-    for one in _listed(values.get("arguments")):
-        text = performed(one, context)
-        texts.append(shlex.quote(text) if listed and " " in text else text)
-    more = [performed(one, context) for one in _listed(values.get("ros_arguments"))]
-    return " ".join([*texts, *(["--ros-args", *more] if more else [])])
-
-
-def _anonymous(name: Any) -> bool:
-    """Return whether a name has a part that is made unique on the robot."""
-    parts = name.parts if isinstance(name, Joined) else name if isinstance(name, list | tuple) else (name,)
-    return any(isinstance(one, Anonymous) for one in parts)
-
-
-def _private(given: ros_arguments.Given) -> Iterator[tuple[str, str]]:
-    return ((name.removeprefix("~"), value) for name, value in given.parameters)
-
-
-def _pairs(remaps: Any, context: Context) -> Iterator[tuple[str, str]]:
-    for one in remaps if isinstance(remaps, list | tuple) else ():
-        if isinstance(one, tuple | list) and len(one) == 2:
-            yield performed(one[0], context), performed(one[1], context)
-
-
-def _items(pairs: Any) -> Iterator[tuple[Any, Any]]:
-    """Yield the pairs of a dict, or of a list of pairs."""
-    whole = pairs.items() if isinstance(pairs, dict) else pairs
-    for one in whole if isinstance(whole, list | tuple | ItemsView) else ():
-        if isinstance(one, tuple | list) and len(one) == 2:
-            yield one[0], one[1]
-
-
-def _listed(value: Any) -> tuple[Any, ...]:
-    return tuple(value) if isinstance(value, list | tuple) else () if value is None else (value,)
+def _performed(values: Any, context: Context) -> dict[str, str]:
+    """Return launch configurations with their substitutions replaced."""
+    return {performed(key, context): performed(value, context) for key, value in items_of(values)}

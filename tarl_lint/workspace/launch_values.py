@@ -44,6 +44,7 @@ class Context:
     # number of substitutions that may still be replaced; shared by all groups
     left: list[int] = field(default_factory=lambda: [WORK])
     readable: frozenset[str] = frozenset({"launch_configurations", "perform_substitution"})
+    saved: list[Context] = field(default_factory=list)  # by PushLaunchConfigurations
 
     def spend(self) -> None:
         """Count a substitution. Raises SpentError if there were too many."""
@@ -72,6 +73,16 @@ class Context:
             self.asked,
             self.left,
         )
+
+    def reset(self) -> None:
+        """Forget all launch configurations. launch keeps namespace, remappings and parameters among them."""
+        self.configurations = {}
+        self.namespace, self.remaps, self.settings = "/", (), ()
+
+    def restore(self, other: Context) -> None:
+        """Take the launch configurations of another context."""
+        self.configurations = dict(other.configurations)
+        self.namespace, self.remaps, self.settings = other.namespace, other.remaps, other.settings
 
 
 class _Configurations(dict[str, Any]):

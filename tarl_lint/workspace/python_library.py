@@ -34,7 +34,7 @@ _INSIDE: Final = re.compile(r"\{[^{}:!]*[.\[]")
 BINARY: Final[Mapping[type[ast.operator], Callable[[Any, Any], Any]]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
     ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.BitOr: operator.or_, ast.BitAnd: operator.and_,
-    ast.BitXor: operator.xor,
+    ast.BitXor: operator.xor, ast.Pow: operator.pow,
 }  # fmt: skip
 COMPARE: Final[Mapping[type[ast.cmpop], Callable[[Any, Any], Any]]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt,
@@ -64,12 +64,24 @@ def binary(kind: type[ast.operator], left: Any, right: Any) -> Any:
     if all(numbers):
         if isinstance(left, int) and isinstance(right, int) and left.bit_length() + right.bit_length() > BITS:
             raise ValueError("too large a number")
+        if kind is ast.Pow:
+            return _power(left, right)
     elif kind is ast.Mult:
         many, times = (right, left) if numbers[0] else (left, right)
         _limited(len(many) * max(times, 0))
     elif kind is ast.Add and isinstance(left, str | list | tuple):
         _limited(len(left) + len(right))
     return BINARY[kind](left, right)
+
+
+def _power(base: float, exponent: float) -> float:
+    """Return a power. Raises ValueError if it is too large or not a real number."""
+    if isinstance(base, int) and isinstance(exponent, int) and base.bit_length() * abs(exponent) > BITS:
+        raise ValueError("too large a number")
+    found: int | float | complex = base**exponent
+    if isinstance(found, complex):
+        raise ValueError("not a real number")
+    return found
 
 
 def formatted(value: Any, spec: str, conversion: int = -1) -> str:
