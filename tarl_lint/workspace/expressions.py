@@ -39,6 +39,7 @@ from tarl_lint.workspace.python_values import (
     SpentError,
     Unknown,
     items,
+    known,
     plain,
 )
 
@@ -198,7 +199,11 @@ class Evaluator:
 
     def _set(self, node: ast.Set, names: Scope) -> Any:
         found = self._elements(node.elts, names)
-        return list(dict.fromkeys(found)) if plain(found) else found
+        if plain(found) or not known(found):
+            return BUILTINS["set"](found)
+        return list(
+            {id(one): one for one in found}.values()
+        )  # objects such as substitutions are equal only to themselves
 
     def _elements(self, nodes: list[ast.expr], names: Scope) -> list[Any]:
         found: list[Any] = []

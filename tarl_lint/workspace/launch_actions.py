@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -51,3 +52,18 @@ class Quoted:
 
     value: Any
     kind: str = ""
+
+
+def gz_bridge(line: int, values: Mapping[Any, Any]) -> Action:
+    """Return the node that `RosGzBridge`, `<ros_gz_bridge>` and the launch file of ros_gz_bridge start."""
+    return Action(
+        "node",
+        line,
+        {
+            "package": "ros_gz_bridge",
+            "executable": "bridge_node",
+            "name": values.get("bridge_name"),
+            "namespace": values.get("namespace"),
+            "parameters": [{"config_file": values.get("config_file")}],
+        },
+    )

@@ -61,10 +61,10 @@ class BranchingInterpreter(Interpreter):
         both = "; both branches are read" if statement.orelse else ""
         for kept, left in ((statement.orelse, statement.body), (statement.body, statement.orelse)):
             if left and isinstance(left[-1], ast.Raise):
-                self.problem(line, f"the condition `{text}` is not constant")
+                self.problem(line, f"the condition `{text}` is not constant", hides=False)
                 self._body(kept, names)
                 return
-        self.problem(line, f"the condition `{text}` is not constant{both}")
+        self.problem(line, f"the condition `{text}` is not constant{both}", hides=False)
         runs = (lambda: self._body(statement.body, names)), (lambda: self._body(statement.orelse, names))
         self._alternatives(runs, text, line, names)
 
@@ -80,7 +80,7 @@ class BranchingInterpreter(Interpreter):
                 fit = guard if fit is True or not guard else fit
             if isinstance(fit, Unknown | Library):
                 pattern, line = ast.unparse(case.pattern)[:LONGEST], case.pattern.lineno
-                self.problem(line, f"the case `{pattern}` is not constant")
+                self.problem(line, f"the case `{pattern}` is not constant", hides=False)
                 compared = "==" if isinstance(case.pattern, ast.MatchValue) else "matches"
                 text = f"{ast.unparse(statement.subject)[:LONGEST]} {compared} {pattern}"
                 runs = (

@@ -45,9 +45,9 @@ def xml_root(path: Path, problems: list[Problem]) -> Element | None:
     try:
         return xml_tree(read_text(path, LARGEST))
     except UnreadableError as reason:
-        problems.append(Problem(path, 0, str(reason)))
+        problems.append(Problem(path, 0, str(reason), hides=True))
     except (expat.ExpatError, AssertionError) as error:
-        problems.append(Problem(path, getattr(error, "lineno", 0), f"it is not XML: {error}"))
+        problems.append(Problem(path, getattr(error, "lineno", 0), f"it is not XML: {error}", hides=True))
     return None
 
 
@@ -69,19 +69,19 @@ def of_yaml(path: Path, problems: list[Problem]) -> list[Entity]:
     try:
         import yaml
     except ModuleNotFoundError:
-        problems.append(Problem(path, 0, "reading YAML needs PyYAML: run pip install PyYAML"))
+        problems.append(Problem(path, 0, "reading YAML needs PyYAML: run pip install PyYAML", hides=True))
         return []
     try:
         root = yaml.compose(read_text(path, LARGEST), Loader=yaml.SafeLoader)
     except UnreadableError as reason:
-        problems.append(Problem(path, 0, str(reason)))
+        problems.append(Problem(path, 0, str(reason), hides=True))
         return []
     except (yaml.YAMLError, RecursionError) as error:
-        problems.append(Problem(path, 0, f"it is not YAML: {' '.join(str(error).split())[:200]}"))
+        problems.append(Problem(path, 0, f"it is not YAML: {' '.join(str(error).split())[:200]}", hides=True))
         return []
     launch = next((value for key, value in _pairs(root) if key.value == "launch"), None)
     if launch is None:
-        problems.append(Problem(path, 0, "it is not a launch file: it has no `launch:`"))
+        problems.append(Problem(path, 0, "it is not a launch file: it has no `launch:`", hides=True))
         return []
     return _named(launch, [MOST])
 

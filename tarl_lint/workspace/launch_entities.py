@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from tarl_lint.workspace.launch_actions import Action, Condition, Quoted
+from tarl_lint.workspace.launch_actions import Action, Condition, Quoted, gz_bridge
 from tarl_lint.workspace.launch_values import (
     Anonymous,
     Choice,
@@ -121,6 +121,10 @@ _MAKERS: Final[Mapping[str, tuple[str, Callable[[Entity], dict[str, Any]]]]] = {
     "lifecycle_node": _NODE,
     "node_container": ("container", _node),
     "load_composable_node": ("load", _node),
+    "ros_gz_bridge": (
+        "node",
+        lambda e: gz_bridge(e.line, {name: e.get(name) for name in e.attributes}).values,
+    ),
 }
 
 

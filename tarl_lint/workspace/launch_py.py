@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace import launch_reads
 from tarl_lint.workspace.expressions import Unknown
-from tarl_lint.workspace.launch_actions import Action, Condition, Quoted
+from tarl_lint.workspace.launch_actions import Action, Condition, Quoted, gz_bridge
 from tarl_lint.workspace.launch_branches import BranchingInterpreter
 from tarl_lint.workspace.launch_values import (
     Anonymous,
@@ -118,6 +118,7 @@ class _File:
             "launch.actions.TimerAction": self._action("group", "period"),
             "launch_ros.actions.RosTimer": self._action("group", "period"),
             "launch.actions.RegisterEventHandler": self._handler,
+            "ros_gz_bridge.actions.RosGzBridge": self._gz_bridge,
             **{f"launch.actions.{name}": self._action("other") for name in (
                 "ExecuteProcess", "LogInfo", "SetEnvironmentVariable", "AppendEnvironmentVariable", "EmitEvent",
                 "UnsetEnvironmentVariable", "Shutdown", "ExecuteLocal", "ResetEnvironment", "PushEnvironment",
@@ -190,6 +191,10 @@ class _File:
         return self._action("group", "actions")(
             [values[key] for key in _EVENTS if key in values], **{"event": True, **keywords}
         )
+
+    def _gz_bridge(self, **keywords: Any) -> Action:
+        values = gz_bridge(self.file.line, keywords).values
+        return self._action("node")(condition=keywords.get("condition"), **values)
 
     def _opaque(self, function: Any = None, **keywords: Any) -> Action:
         line, args, named = self.file.line, keywords.pop("args", None), keywords.pop("kwargs", None)

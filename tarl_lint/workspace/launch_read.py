@@ -39,7 +39,10 @@ def read_launch(path: Path, workspace: Workspace, arguments: Mapping[str, str] |
         return _launch(path, workspace, dict(arguments or {}))
     except (RecursionError, SpentError):
         return Launch(
-            path, problems=(Problem(path, 0, "it nests too deeply, contains itself, or has too many parts"),)
+            path,
+            problems=(
+                Problem(path, 0, "it nests too deeply, contains itself, or has too many parts", hides=True),
+            ),
         )
 
 
@@ -77,7 +80,7 @@ def is_ros2_xml(path: Path, workspace: Workspace) -> bool:
 def _opened(path: Path, context: Context, problems: list[Problem]) -> Any:
     """Return the actions of a ROS 2 launch file."""
     if not path.is_file():
-        problems.append(Problem(path, 0, "there is no such launch file"))
+        problems.append(Problem(path, 0, "there is no such launch file", hides=True))
         return ()
     if path.suffix == ".py":
         return actions_of_python(path, context.workspace, problems)

@@ -14,7 +14,7 @@ from tarl_lint.workspace import ros_arguments
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.conditions import combined
 from tarl_lint.workspace.expressions import Unknown
-from tarl_lint.workspace.launch_actions import Action, Condition, Quoted
+from tarl_lint.workspace.launch_actions import Action, Condition, Quoted, gz_bridge
 from tarl_lint.workspace.launch_entities import substitutions
 from tarl_lint.workspace.launch_model import Kind, LaunchedNode, Setting
 from tarl_lint.workspace.launch_node_values import anonymous, command, items_of, pairs, private, setting
@@ -25,6 +25,7 @@ from tarl_lint.workspace.ros_names import joined
 
 LARGEST: Final = 1_000_000  # maximum size of a YAML file (bytes)
 DEEPEST: Final = 20  # maximum nesting of includes
+_GZ_BRIDGE: Final = "$(find-pkg-share ros_gz_bridge)/launch/ros_gz_bridge.launch"
 MOST: Final = 5_000  # maximum number of actions of a launch file with its includes
 
 
@@ -61,7 +62,7 @@ class Runner:
                     own = combined(action.values.get("assumed", ""), unsure)
                     self._one(action, context, combined(condition, own))
             elif isinstance(action, Unknown):
-                self._problem(context, action.line, f"`{action.text}` is not followed")
+                self._problem(context, action.line, f"`{action.text}` is not followed", hides=True)
 
     def _holds(self, action: Action, context: Context) -> tuple[bool, str]:
         """Return whether an action is kept. If its condition is known only on the robot, also return the condition."""
@@ -107,7 +108,7 @@ class Runner:
             made = values["made"](context)
             self.run(made if made is not None else [], context, condition)
         elif action.kind == "unread":
-            self._problem(context, action.line, str(values.get("reason")))
+            self._problem(context, action.line, str(values.get("reason")), hides=True)
         elif action.kind in ("unset", "push", "pop", "reset"):
             _forget(action, context)
         else:
@@ -157,15 +158,22 @@ class Runner:
 
     def _include(self, action: Action, context: Context, condition: str) -> None:
         name = performed(action.values.get("source"), context)
+        if name.startswith(_GZ_BRIDGE):  # its package is usually installed without its source
+            given = {
+                key: value for key, value in items_of(action.values.get("arguments")) if isinstance(key, str)
+            }
+            self._node(gz_bridge(action.line, given), context, condition)
+            return
         if symbolic(name) or not name:
-            self._problem(context, action.line, f"the included file {name or '?'} is not in the workspace")
+            reason = f"the included file {name or '?'} is not in the workspace"
+            self._problem(context, action.line, reason, hides=True)
             return
         for key, value in items_of(action.values.get("arguments")):
             context.configurations[performed(key, context)] = performed(value, context)
         here = (Path(name), frozenset(context.configurations.items()))
         if here in self.including or len(self.including) >= DEEPEST:
             said = "it includes itself" if here in self.including else "files include each other"
-            self._problem(context, action.line, f"{Path(name).name}: {said}")
+            self._problem(context, action.line, f"{Path(name).name}: {said}", hides=True)
             return
         before, context.file = context.file, Path(name)
         self.including.append(here)
@@ -180,7 +188,7 @@ class Runner:
         values = action.values
         kind: Kind = "container" if action.kind == "container" else "node"
         if not values.get("package") and kind == "node" and not values.get("executable"):
-            self._problem(context, action.line, "a node has neither package nor executable")
+            self._problem(context, action.line, "a node has neither package nor executable", hides=True)
             return
         self._started(values, context, action.line, kind, condition)
         self._components(values.get("components"), context, condition)
@@ -195,7 +203,7 @@ class Runner:
                     own = combined(one.values.get("assumed", ""), unsure)
                     self._started(values, context, one.line, "component", combined(condition, own))
             elif isinstance(one, Unknown):
-                self._problem(context, one.line, f"`{one.text}` is not followed")
+                self._problem(context, one.line, f"`{one.text}` is not followed", hides=True)
 
     def _started(
         self, values: Mapping[str, Any], context: Context, line: int, kind: Kind, condition: str
@@ -268,8 +276,8 @@ class Runner:
                 stated = Setting(f"~{name}", context.file, unknown=True)
             yield stated
 
-    def _problem(self, context: Context, line: int, reason: str) -> None:
-        problem = Problem(context.file, line, reason)
+    def _problem(self, context: Context, line: int, reason: str, *, hides: bool = False) -> None:
+        problem = Problem(context.file, line, reason, hides)
         if problem not in self.problems:
             self.problems.append(problem)
 

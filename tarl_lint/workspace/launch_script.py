@@ -139,7 +139,7 @@ class _Api:
 
     def problem(self, reason: str) -> None:
         """Note what could not be read."""
-        self.started.problems.append(Problem(self.path, self.file.line, reason))
+        self.started.problems.append(Problem(self.path, self.file.line, reason, hides=True))
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,8 @@ class _Reader:
                     inside = replace(place, condition=combined(place.condition, unsure))
                     place = replace(self._element(element, inside, unsure), condition=place.condition)
             except SymbolicError as reason:
-                self._problem(element, place, f"<{element.tag}>: {reason}")
+                hides = element.tag in ("include", "group", "node")
+                self._problem(element, place, f"<{element.tag}>: {reason}", hides=hides)
 
     def _element(self, element: Element, place: _Place, unsure: str) -> _Place:
         """Read one element; return the context of the following ones. `unsure` is its own unknown condition."""
@@ -251,8 +252,8 @@ class _Reader:
         except UnreadableError as reason:
             raise SymbolicError(f"{path.name}: {reason}") from None
 
-    def _problem(self, element: Element, place: _Place, reason: str) -> None:
-        problem = Problem(place.scope.file, int(element.get(LINE, "0")), reason)
+    def _problem(self, element: Element, place: _Place, reason: str, *, hides: bool = False) -> None:
+        problem = Problem(place.scope.file, int(element.get(LINE, "0")), reason, hides)
         if problem not in self.problems:
             self.problems.append(problem)
 

@@ -13,11 +13,15 @@ INTERFACES: Final = ("msg", "srv", "action")
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Something that could not be read: the file, a line (0 for the whole file) and the reason."""
+    """Something that could not be read: the file, a line (0 for the whole file) and the reason.
+
+    `hides` says that a launch file may start further nodes there.
+    """
 
     file: Path
     line: int
     reason: str
+    hides: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -122,9 +122,9 @@ class Interpreter(Evaluator):
             self.problem(line, _PARTLY)
         return Unknown(line, name)
 
-    def problem(self, line: int, reason: str) -> None:
-        """Record a problem, once."""
-        one = Problem(self._files[-1], line, reason)
+    def problem(self, line: int, reason: str, *, hides: bool = True) -> None:
+        """Record a problem, once. `hides` says that nodes may be missing because of it."""
+        one = Problem(self._files[-1], line, reason, hides)
         if one not in self.problems:
             self.problems.append(one)
 
