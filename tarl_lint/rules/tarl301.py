@@ -6,9 +6,9 @@ not move. For this reason, the keyboard teleoperation of the Kobuki had no effec
 (https://github.com/aliasrobotics/RVD/issues/581). Robots also stand still if they are launched in a namespace
 but their code publishes on `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
 
-The rule reports nothing if a node of the launch file was not read, or if it computes the names of its topics,
-because that node might be the other end. The rule also reports nothing if no publisher has a similar name,
-because sensors and simulators are often started elsewhere.
+The rule reports nothing if a node of the launch file was not read or computes the names of its topics, or if an
+included launch file is not in the workspace, because the other end might be there. The rule also reports
+nothing if no publisher has a similar name, because sensors and simulators are often started elsewhere.
 """
 
 from __future__ import annotations

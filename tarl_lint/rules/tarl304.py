@@ -1,9 +1,9 @@
 """TARL304: a service that is called has no server, and a server with a similar name is never called.
 
-The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason: a
-service `~home` of the node `arm` is `/arm/home`, not `/home`. The rule reports nothing if a node of the launch file
-was not read. The rule also reports nothing if no server has a similar name, because the server may be started
-elsewhere.
+The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason:
+a service `~home` of the node `arm` is `/arm/home`, not `/home`. The rule reports nothing if a node of the
+launch file was not read or an included launch file is not in the workspace. The rule also reports nothing if no
+server has a similar name, because the server may be started elsewhere.
 """
 
 from __future__ import annotations

@@ -184,11 +184,10 @@ def _last(name: str) -> str:
 
 def _unmatched(instance: Instance, old: str) -> bool:
     """Return whether a node certainly uses no such name."""
-    interface = instance.interface
     last = _last(old)
     if (
-        interface is None
-        or not interface.whole
+        not instance.whole
+        or instance.silent
         or old.startswith("_")
         or last in _OF_ROS
         or "$(" in old
@@ -196,7 +195,8 @@ def _unmatched(instance: Instance, old: str) -> bool:
     ):
         return False
     own, namespace = instance.name.rpartition("/")[2], instance.node.namespace
-    names = {name for end in interface.endpoints for name in end.names}
+    names = {name for end in instance.certain for name in end.names}
     used = {resolved(name, namespace, own) for name in names}
-    said = any(_last(word) == last for word in interface.words - names)
+    words = instance.interface.words if instance.interface is not None else frozenset[str]()
+    said = any(_last(word) == last for word in words - names)
     return not said and resolved(old, namespace, own) not in used

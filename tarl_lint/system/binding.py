@@ -38,6 +38,13 @@ def parameter_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapp
     return found
 
 
+def private_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapping[str, Any]:
+    """Return the private parameters that a launch file gives a node, by the names in its code."""
+    above = f"{full_name}/"
+    values = parameter_values(launch, node, full_name)
+    return {name.removeprefix(above): value for name, value in values.items() if name.startswith(above)}
+
+
 def fixed(names: Sequence[str], values: Mapping[str, Any], full_name: str) -> Mapping[str, object]:
     """Return the values of parameters in a launched node by their names in the code; DEFAULT for parameters not set.
 

@@ -13,15 +13,17 @@ from tarl_lint.system.binding import (
     command_line,
     fixed,
     parameter_values,
+    private_values,
     undetermined,
     whole,
     with_names_in_code,
     with_prints,
 )
 from tarl_lint.system.cpp_sources import named_topics
+from tarl_lint.system.gz_bridges import bridged, own_name
 from tarl_lint.system.image_transport import is_republisher, republished, transported
 from tarl_lint.system.known_programs import stated
-from tarl_lint.system.model import Endpoint, Hop, Instance, Interface, Role, System, full_name
+from tarl_lint.system.model import Hop, Instance, Interface, Role, Seen, System, full_name
 from tarl_lint.system.service_calls import PARTS, part
 from tarl_lint.system.topic_tools import passed_on
 from tarl_lint.workspace import hidden_packages
@@ -111,24 +113,31 @@ def _instance(
 ) -> Instance:
     found = program(node, workspace, files)
     interface = read(found, {}) if isinstance(found, Program) else found
-    own = interface.name if isinstance(interface, Interface) else ""
+    own = interface.name if isinstance(interface, Interface) else own_name(node)
     name = full_name(node, own)
     if isinstance(interface, Interface) and isinstance(found, Program):
         return Instance(node, name, _decided(node, launch, name, interface, lambda given: read(found, given)))
     unread = Instance(node, name, None, str(interface), silent=node.executable in _SILENT)
-    seen = () if isinstance(found, Program) else _seen(unread, launch, workspace)
-    return replace(unread, seen=seen, unread=f"a C++ program of {node.package}") if seen else unread
+    known = Seen() if isinstance(found, Program) else _known(unread, launch, workspace)
+    reason = f"a C++ program of {node.package}" if known.ends else unread.unread
+    return replace(unread, known=known, unread=reason)
 
 
-def _seen(instance: Instance, launch: Launch, workspace: Workspace) -> tuple[Endpoint, ...]:
-    """Return the topics of a C++ program, from its source or as its documentation states them."""
+def _known(instance: Instance, launch: Launch, workspace: Workspace) -> Seen:
+    """Return the topics of a C++ program: from its source, its arguments, or as they are known to be."""
     node = instance.node
     if is_republisher(node):
-        return republished(instance, ros2=launch.ros2)
-    package = workspace.package(node.package) if node.kind == "node" else None
+        return Seen(republished(instance, ros2=launch.ros2))
+    values = private_values(launch, node, instance.name)
+    bridge = bridged(instance, values, workspace)
+    if bridge is not None:
+        return bridge
+    package = workspace.package(node.package)
     if package is None:
-        return passed_on(instance, ros2=launch.ros2) or stated(instance, ros2=launch.ros2)
-    return tuple(transported(instance, named_topics(package, node.executable)))
+        passed = passed_on(instance, values, ros2=launch.ros2)
+        return passed if passed.ends else stated(instance, values, ros2=launch.ros2)
+    ends = named_topics(package, node.executable) if node.kind == "node" else ()
+    return Seen(tuple(transported(instance, ends)))
 
 
 def _decided(
@@ -169,7 +178,7 @@ def hops(instances: Sequence[Instance]) -> list[Hop]:
     subscribed = _names(instances, "subscribes")
     for instance in instances:
         ends = [sorted({name for name, _ in instance.named(role)}) for role in ("subscribes", "publishes")]
-        if instance.seen:
+        if instance.seen and instance.known.through:
             made += [_unread(instance, one, other) for one in ends[0] for other in ends[1]]
         inputs = [one for one in instance.touched if one in published]
         outputs = [one for one in instance.touched if one in subscribed and one not in published]
@@ -183,7 +192,7 @@ def _chosen_by_requests(instances: Sequence[Instance], found: Sequence[Hop]) -> 
     """Yield the possible flows of unread nodes from the requests of their services to what they publish and answer."""
     sinks = {hop.sink for hop in found}
     asked, answered = PARTS[0]
-    for instance in (one for one in instances if one.seen):
+    for instance in (one for one in instances if one.seen and one.known.through):
         published = sorted({name for name, _ in instance.named("publishes")})
         for service in sorted({name for name, _ in instance.named("serves")}):
             if service + asked in sinks:

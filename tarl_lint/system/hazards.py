@@ -52,7 +52,7 @@ def at_node(code: str, instance: Instance, message: str, about: str) -> Finding:
 
 def at_end(code: str, instance: Instance, endpoint: Endpoint, message: str, about: str) -> Finding:
     """Return a hazard at the code of an endpoint."""
-    package = instance.interface.package if instance.interface is not None else ""
+    package = instance.interface.package if instance.interface is not None else instance.node.package
     return Finding(code, endpoint.span, message, about=about, place=endpoint.place, package=package)
 
 

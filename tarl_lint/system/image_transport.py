@@ -18,11 +18,13 @@ CAMERA: Final = "Image and CameraInfo by image_transport"
 RAW: Final = "raw"
 COMPRESSED: Final = "compressed"  # transport of the plugin that is installed nearly everywhere
 _REPUBLISH: Final = "image_transport/republish"
+_COMPONENT: Final = "image_transport::Republisher"
 
 
 def is_republisher(node: LaunchedNode) -> bool:
     """Return whether a node is `republish`, which publishes the images of `in` on `out` in another transport."""
-    return f"{node.package}/{node.executable}" == _REPUBLISH or _nodelet(node) is not None
+    program = f"{node.package}/{node.executable}" == _REPUBLISH or node.executable == _COMPONENT
+    return program or _nodelet(node) is not None
 
 
 def republished(instance: Instance, *, ros2: bool) -> tuple[Endpoint, ...]:
@@ -34,10 +36,17 @@ def republished(instance: Instance, *, ros2: bool) -> tuple[Endpoint, ...]:
     arriving = given.get(0) or _parameter(node, "in_transport") or RAW
     leaving = given.get(1) or _parameter(node, "out_transport")
     span = Span(shown(node.file), max(node.line, 1), 1, max(node.line, 1), 2)
-    sent = [leaving] if leaving else [RAW, COMPRESSED]
+    if not leaving:
+        sent = [_topic(instance, "out", one) for one in (RAW, COMPRESSED)]
+    elif (
+        ros2 and leaving != RAW
+    ):  # the plugin creates the topic itself, so remapping `out` does not rename it
+        sent = [instance.resolve(f"out/{leaving}")]
+    else:
+        sent = [_topic(instance, "out", leaving)]
     return (
         Endpoint("subscribes", (_topic(instance, "in", arriving),), "", span),
-        *(Endpoint("publishes", (_topic(instance, "out", one),), "", span) for one in sent),
+        *(Endpoint("publishes", (one,), "", span) for one in sent),
     )
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
+from tarl_lint.files import shown
 from tarl_lint.model import Finding, Kind, Span
 from tarl_lint.parameter_names import ParameterName
 from tarl_lint.workspace.conditions import exclusive
@@ -90,6 +91,19 @@ class Interface:
 
 
 @dataclass(frozen=True)
+class Seen:
+    """The topics and services of a node whose code was not read, as its C++ source or its arguments name them.
+
+    `certain` says that the node has no others, except those of transforms and parameters. `through` says that data of
+    each subscribed topic may reach each published one.
+    """
+
+    ends: tuple[Endpoint, ...] = ()
+    certain: bool = False
+    through: bool = True
+
+
+@dataclass(frozen=True)
 class Instance:
     """A launched node. Without an interface, `unread` is the reason why the node's program was not read."""
 
@@ -97,9 +111,7 @@ class Instance:
     name: str
     interface: Interface | None = None
     unread: str = ""
-    seen: tuple[
-        Endpoint, ...
-    ] = ()  # topics that the C++ source of a node names, if it could not be read otherwise
+    known: Seen = Seen()  # what is known of a node that could not be read
     silent: bool = False  # whether the node is known to publish nothing that other nodes subscribe to
     # if the code of the node could not be read: the remappings of its launch groups that it can use
     meant: tuple[tuple[str, str], ...] = ()
@@ -109,17 +121,33 @@ class Instance:
         own = self.name.rpartition("/")[2]
         return remapped(name, self.node.namespace, own, self.node.remaps)
 
+    @property
+    def seen(self) -> tuple[Endpoint, ...]:
+        """Return the endpoints that are known of a node that could not be read."""
+        return self.known.ends
+
+    @property
+    def certain(self) -> tuple[Endpoint, ...]:
+        """Return the endpoints that the node certainly has."""
+        if self.interface is not None:
+            return self.interface.endpoints
+        return self.seen if self.known.certain else ()
+
+    @property
+    def whole(self) -> bool:
+        """Return whether the node certainly has no endpoints but the known ones."""
+        return self.silent or (self.known.certain if self.interface is None else self.interface.whole)
+
     def ends(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
         """Yield the endpoints of a role by launched name, without those whose name is unknown."""
-        for one in self.interface.endpoints if self.interface is not None else ():
-            if one.role == role:
-                for name in one.names:
-                    yield self.resolve(name), one
+        yield from self._launched(self.certain, role)
 
     def named(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
-        """Yield the endpoints of a role; for an unread node, those that its C++ source names."""
-        yield from self.ends(role)
-        for one in self.seen:
+        """Yield the endpoints of a role; for an unread node, those that its C++ source or its arguments name."""
+        yield from self._launched(self.seen if self.interface is None else self.certain, role)
+
+    def _launched(self, ends: Iterable[Endpoint], role: Role) -> Iterator[tuple[str, Endpoint]]:
+        for one in ends:
             if one.role == role:
                 for name in one.names:
                     yield self.resolve(name), one
@@ -178,10 +206,8 @@ class System:
 
     @property
     def complete(self) -> bool:
-        """Return whether every node was read, so that a topic with one known end certainly has no other."""
-        return all(
-            one.silent or (one.interface is not None and one.interface.whole) for one in self.instances
-        )
+        """Return whether every node is known, so that a topic with one known end certainly has no other."""
+        return all(one.whole for one in self.instances) and not any(one.hides for one in self.problems)
 
     def ends(self, role: Role) -> Iterator[tuple[str, Instance, Endpoint]]:
         """Yield the endpoints that all nodes have in a role, by launched name."""
@@ -193,3 +219,9 @@ class System:
 def full_name(node: LaunchedNode, own: str) -> str:
     """Return the name of a launched node; `own` is its name in the code."""
     return joined(node.namespace, node.name or own or node.executable.rpartition("::")[2])
+
+
+def place_of(instance: Instance) -> Span:
+    """Return the place where a launch file starts a node."""
+    line = max(instance.node.line, 1)
+    return Span(shown(instance.node.file), line, 1, line, 2)

@@ -20,7 +20,7 @@ from tarl_lint.system.binding import (
     with_prints,
 )
 from tarl_lint.system.compose import hops
-from tarl_lint.system.model import Endpoint, Instance, Interface, full_name
+from tarl_lint.system.model import Endpoint, Instance, Interface, Seen, full_name
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_parameters import ON_ROBOT
 
@@ -206,9 +206,10 @@ def test_a_node_that_was_not_read_may_connect_the_topics_of_its_remappings(examp
         "/c",
         None,
         "",
-        (end("subscribes", "i"), end("publishes", "o"), end("publishes", "p")),
+        Seen((end("subscribes", "i"), end("publishes", "o"), end("publishes", "p"))),
     )
     assert made(seen) == [("/c", "/i", "/o", "not read"), ("/c", "/i", "/p", "not read")]
+    assert made(replace(seen, known=replace(seen.known, through=False))) == []
 
 
 def test_a_node_without_a_name_in_the_launch_file_is_named_by_its_code_or_program():

@@ -90,7 +90,9 @@ def test_a_chain_passes_through_republish(workspace, capsys):
         ("drop", "/scan 1 2", ["/scan"], ["/scan_drop"]),
         ("mux", "/cmd_vel /joy_vel /nav_vel", ["/joy_vel", "/nav_vel"], ["/cmd_vel"]),
         ("demux", "/in /a /b", ["/in"], ["/a", "/b"]),
-        ("transform", "/in /out std_msgs/Float64 m", [], []),
+        ("transform", "/in /out std_msgs/Float64 m --import std_msgs", ["/in"], ["/out"]),
+        ("transform", "/in /out std_msgs/Float64", [], []),
+        ("relay_field", "/in/header /out std_msgs/Header m.header", ["/in/header"], ["/out"]),
         ("throttle", "messages", [], []),
         ("relay", "", [], []),
         ("relay", "$(env IN) /out", [], ["/out"]),
@@ -101,6 +103,45 @@ def test_programs_of_topic_tools_name_their_topics_in_arguments(
 ):
     node = f'<node pkg="topic_tools" type="{program}" name="t" args="{arguments}"/>'
     assert ends(capsys, launched(workspace, node)) == (subscribed, published)
+
+
+@pytest.mark.parametrize(
+    ("program", "parameters", "subscribed", "published"),
+    [
+        ("relay", {"input_topic": "/scan"}, ["/scan"], ["/scan_relay"]),
+        ("throttle", {"input_topic": "/scan", "output_topic": "/slow"}, ["/scan"], ["/slow"]),
+        ("mux", {"input_topics": "[/a, /b]"}, ["/a", "/b"], ["/t/selected"]),
+        ("demux", {"output_topics": "[/a, /b]"}, ["/t/input"], ["/a", "/b"]),
+        ("delay", {"input_topic": "$(env TOPIC)"}, [], []),
+    ],
+)
+def test_programs_of_topic_tools_name_their_topics_in_parameters_in_ros2(
+    workspace, capsys, program, parameters, subscribed, published
+):
+    inside = "".join(f'<param name="{name}" value="{value}"/>' for name, value in parameters.items())
+    node = f'<node pkg="topic_tools" exec="{program}" name="t">{inside}</node>'
+    component = f"""<node_container pkg="rclcpp_components" exec="component_container" name="c">
+        <composable_node pkg="topic_tools" plugin="topic_tools::{program.title()}Node" name="t">{inside}
+        </composable_node></node_container>"""
+    assert ends(capsys, launched(workspace, node, "a.launch.xml")) == (subscribed, published)
+    assert ends(capsys, launched(workspace, component, "b.launch.xml"), 1) == (subscribed, published)
+
+
+def test_in_ros2_remapping_the_output_of_republish_does_not_rename_a_single_transport(workspace, capsys):
+    node = """<node pkg="image_transport" exec="republish" name="r">
+        <param name="in_transport" value="raw"/><param name="out_transport" value="compressed"/>
+        <remap from="in" to="/cam"/><remap from="out" to="/small"/></node>"""
+    exact = node.replace('from="out"', 'from="out/compressed"')
+    component = f"""<node_container pkg="rclcpp_components" exec="component_container" name="c">
+        {
+        exact.replace(
+            'node pkg="image_transport" exec="republish"',
+            'composable_node pkg="image_transport" plugin="image_transport::Republisher"',
+        ).replace("</node>", "</composable_node>")
+    }</node_container>"""
+    assert ends(capsys, launched(workspace, node, "a.launch.xml")) == (["/cam"], ["/out/compressed"])
+    assert ends(capsys, launched(workspace, exact, "b.launch.xml")) == (["/cam"], ["/small"])
+    assert ends(capsys, launched(workspace, component, "c.launch.xml"), 1) == (["/cam"], ["/small"])
 
 
 SELECTING = """#!/usr/bin/env python3
@@ -116,7 +157,7 @@ rospy.spin()
 """
 
 
-@pytest.mark.parametrize("service", ["/mux/select", "/drive/select"])
+@pytest.mark.parametrize("service", ["/mux/select", "/cmd_vel_select"])
 def test_a_request_to_a_mux_chooses_what_it_passes_on(workspace, capsys, service):
     write(workspace, {"arm/scripts/chooser.py": SELECTING.format(service=service)})
     file = launched(
