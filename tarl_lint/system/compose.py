@@ -119,6 +119,8 @@ def _instance(
         return Instance(node, name, _decided(node, launch, name, interface, lambda given: read(found, given)))
     unread = Instance(node, name, None, str(interface), silent=node.executable in _SILENT)
     known = Seen() if isinstance(found, Program) else _known(unread, launch, workspace)
+    if any(one.hides and one.file.suffix == ".py" for one in launch.problems):
+        known = replace(known, certain=False)  # the arguments of a node may be incomplete, too
     reason = f"a C++ program of {node.package}" if known.ends else unread.unread
     return replace(unread, known=known, unread=reason)
 

@@ -237,3 +237,21 @@ def test_a_missing_publisher_may_be_started_by_a_file_that_is_not_read(cart, cap
     wrong = CMD.replace("/cmd_vel", "/model/cart/cmd_vel")
     _, out, _ = run(capsys, "--launch", launched(cart, BRIDGE.format(f"{SCAN} {wrong}") + START + place))
     assert ("TARL301" in out) is not bool(place)
+
+
+def test_a_list_of_arguments_that_may_be_incomplete_decides_nothing(cart, capsys):
+    text = """
+        from launch import LaunchDescription
+        from launch_ros.actions import Node
+
+        def generate_launch_description():
+            names = ["/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan"]
+            for one in {loop}:
+                names.append(one + "@std_msgs/msg/String[gz.msgs.StringMsg")
+            return LaunchDescription([Node(package="ros_gz_bridge", executable="parameter_bridge", name="b",
+                                           arguments=names, remappings=[("/lidar", "/front")])])
+        """
+    found = [run(capsys, "--launch", launched(cart, text.replace("{loop}", loop), f"{number}.launch.py"))[1]
+             for number, loop in enumerate(('["/a"]', "absent()"))]  # fmt: skip
+    assert ["TARL308" in out for out in found] == [True, False]
+    assert all("/scan" in out for out in found)
