@@ -27,7 +27,7 @@ from tarl_lint.memory.frames import Escape, Frame
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, const, join, lineage
 from tarl_lint.models import removal, unpacking
 from tarl_lint.models.ros import publications
-from tarl_lint.models.ros.endpoints import Publisher
+from tarl_lint.models.ros.endpoints import Acceptance, Publisher
 
 
 def run(ctx: Interpreter, frame: Frame) -> Value:
@@ -186,6 +186,9 @@ def _returned(ctx: Interpreter, s: ir.Return, frame: Frame) -> bool:
             publications.send(
                 ctx, Invocation("response", BOTTOM, ([value], {}), frame, _answer(s)), frame.answer
             )
+        elif isinstance(frame.answer, Acceptance):
+            it = Invocation("goal", BOTTOM, ([], {}), frame, _answer(s))
+            publications.accept(ctx, it, value, frame.answer)
     attempts.returned(ctx, value, frame)
     return False
 

@@ -65,6 +65,17 @@ class SinkRecord:
 
 
 @dataclass(slots=True, eq=False)
+class Acceptance:
+    """The decision of an action server whether a goal runs: what its `goal_callback` returns.
+
+    `node` is the decision. `answers` are the nodes of the returned values, with the name or constant of each.
+    """
+
+    node: int
+    answers: dict[int, Hashable] = field(default_factory=dict)
+
+
+@dataclass(slots=True, eq=False)
 class Publisher:
     """A publisher: its topics, types (as in SourceRecord), the place of its creation, and whether it is used."""
 

@@ -10,7 +10,7 @@ from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import UNKNOWN, Value, pointer
-from tarl_lint.models.ros.endpoints import DefaultName, Publisher, SinkRecord
+from tarl_lint.models.ros.endpoints import Acceptance, DefaultName, Publisher, SinkRecord
 
 
 def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
@@ -75,6 +75,21 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
     return UNKNOWN
 
 
+def accept(ctx: Interpreter, it: Invocation, value: Value, acceptance: Acceptance) -> None:
+    """Let the decision about a goal depend on a returned value and its conditions, unless all values are one."""
+    node = ctx.node(it.frame, ("accept", it.call.pos), "condition")
+    ctx.graph.flow(value.deps, node)
+    ctx.graph.depend(node, [n for n, _ in ctx.guards])
+    if it.frame.statement is not None:
+        under(ctx, it.frame, it.frame.statement, node)
+    known, constant = value.constant()
+    names = {o.name for o in value.pts}
+    only = next(iter(names)) if len(names) == 1 else None
+    acceptance.answers[node] = only if value.pts else repr(constant) if known else None
+    if len(set(acceptance.answers.values())) > 1 or None in acceptance.answers.values():
+        ctx.graph.depend(acceptance.node, acceptance.answers)
+
+
 def under(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int) -> None:
     """Make a node depend on the conditions of a statement, including those in callers."""
     control = ctx.control(frame)
@@ -101,6 +116,7 @@ def _entered(ctx: Interpreter, frame: Frame, node: int) -> None:
     """Make a node depend on the conditions under which its function is called."""
     caller, call = frame.caller, frame.call
     if caller is None or call is None:
+        ctx.graph.depend(node, [n for n, _ in frame.guards])
         return
     if frame.shared:
         ctx.graph.depend(node, [n for n, _ in shared_contexts.conditions(ctx, frame)])

@@ -11,21 +11,26 @@ from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency
+from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, pointer
 from tarl_lint.models import library
 from tarl_lint.models.ros import publications, subscriptions
-from tarl_lint.models.ros.endpoints import Publisher, SourceRecord
+from tarl_lint.models.ros.endpoints import Acceptance, Publisher, SourceRecord
 
 RUN: Final = frozenset([*CALLABLE, "instance"])
 
 
 @dataclass(slots=True, eq=False)
 class Server:
-    """An action server or goal handle, with the source of goals and the sink of results."""
+    """An action server or goal handle, with the source of goals and the sink of results.
+
+    `started` is the node of the decision of `handle_accepted_callback` to execute a goal; None without this callback.
+    """
 
     record: SourceRecord
     sends: Publisher
     handle: bool = False
+    started: int | None = None
 
 
 def service(ctx: Interpreter, it: Invocation) -> Value:
@@ -62,28 +67,41 @@ def action(ctx: Interpreter, it: Invocation) -> Value:
     supplied = frozenset(o for v in callbacks.values() for o in v.pts if o.kind in RUN)
     record = subscriptions.source(ctx, it, Value(pts=supplied))
     server = Server(record, _sender(it, record, "action"))
-    for way, callback in callbacks.items():
-        for target in callback.objects:
-            if target.kind in RUN:
-                _goal_callback(ctx, server, way, target)
+    given = {way: [one for one in callback.objects if one.kind in RUN] for way, callback in callbacks.items()}
+    executes = bool(given.get("execute"))
+    acceptance = Acceptance(_decision(ctx, record, "accepted")) if executes and given["goal"] else None
+    server.started = _decision(ctx, record, "started") if executes and given["accepted"] else None
+    for way, targets in given.items():
+        for target in targets:
+            _goal_callback(ctx, server, way, target, acceptance)
     obj = recency.intern(ctx, "server", record.key)
     obj.info = server
     return pointer(obj)
 
 
-def _goal_callback(ctx: Interpreter, server: Server, way: str, target: Obj) -> None:
+def _decision(ctx: Interpreter, record: SourceRecord, what: str) -> int:
+    """Return the node of a decision about the goals of an action server."""
+    place = Place(record.frame, record.statement, "condition", record.pos)
+    return ctx.graph.node((what, *record.key), place, frozenset())
+
+
+def _goal_callback(
+    ctx: Interpreter, server: Server, way: str, target: Obj, acceptance: Acceptance | None
+) -> None:
     record = server.record
     message = pointer(subscriptions.message(ctx, record, target))
     key = ("action", way, *record.key)
     if way == "goal":
-        subscriptions.call_when(ctx, key, target, [message], "callback")
+        subscriptions.call_when(ctx, key, target, [message], "callback", answer=acceptance)
         return
     handle = recency.intern(ctx, "goal", (*record.key, target.key))
-    handle.info = Server(record, server.sends, handle=True)
+    handle.info = Server(record, server.sends, handle=True, started=server.started)
+    guards = [acceptance.node] if acceptance is not None and way in ("accepted", "execute") else []
+    if way == "execute" and server.started is not None:
+        guards.append(server.started)
+    fresh = [(handle, catalog.GOAL_FIELD, message)]
     answer = server.sends if way == "execute" else None
-    subscriptions.call_when(
-        ctx, key, target, [pointer(handle)], "callback", [(handle, catalog.GOAL_FIELD, message)], answer
-    )
+    subscriptions.call_when(ctx, key, target, [pointer(handle)], "callback", fresh, answer, guards=guards)
 
 
 def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
@@ -95,6 +113,12 @@ def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
     if it.name in server.sends.methods:
         given = bool(it.arguments[0] or it.arguments[1])  # without arguments, there is no result to send
         return publications.send(ctx, it, server.sends) if given else UNKNOWN
+    if it.name == "execute" and server.started is not None:
+        node = ctx.node(it.frame, ("execute", it.call.slot), "condition")
+        ctx.graph.depend(node, [n for n, _ in ctx.guards])
+        if it.frame.statement is not None:
+            publications.under(ctx, it.frame, it.frame.statement, node)
+        ctx.graph.depend(server.started, (node,))
     if it.name in catalog.GOAL_READERS:
         if server.handle:
             return heap.read(ctx, pointer(target), catalog.GOAL_FIELD)

@@ -22,7 +22,7 @@ from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, function_of, join, join_all, pointer
 from tarl_lint.models import sizes
 from tarl_lint.models.ros import publications
-from tarl_lint.models.ros.endpoints import NAMESPACE, Kind, Publisher, SourceRecord
+from tarl_lint.models.ros.endpoints import NAMESPACE, Acceptance, Kind, Publisher, SourceRecord
 from tarl_lint.models.ros.publications import type_names, whole_type_names
 from tarl_lint.models.smach import LATER
 
@@ -264,11 +264,15 @@ def call_when(
     values: Sequence[Value],
     kind: str,
     fresh: Fresh = (),
-    answer: Publisher | None = None,
+    answer: Publisher | Acceptance | None = None,
     named: Mapping[str, Value] = NOTHING,
     program: str = "",
+    guards: Sequence[int] = (),
 ) -> None:
-    """Queue a function as root with these arguments; `answer` receives its result."""
+    """Queue a function as root with these arguments; `answer` receives its result.
+
+    `guards` are the nodes of the decisions whether ROS calls the function.
+    """
     root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", function_of(target))
     root.maker = ctx.store.root
     root.program = program or root.maker.program
@@ -287,7 +291,9 @@ def call_when(
         for obj, name, value in fresh:
             recency.clear_fields(ctx, obj)
             ctx.store.put((obj, name), value)
+        ctx.guards += [(node, "called") for node in guards]
         calls.call_object(ctx, target, (list(values), dict(named)), frame, ROOT_CALL)
+        del ctx.guards[len(ctx.guards) - len(guards) :]
 
     ctx.ops.add_root(ctx, root, run, news=news)
 

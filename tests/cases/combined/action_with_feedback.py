@@ -21,6 +21,7 @@ class DriveServer(Node):
             goal_callback=self.on_goal,
             cancel_callback=lambda h: CancelResponse.ACCEPT,
             callback_group=self.group)
+        self.pub.publish(Twist())  # clean
 
     def on_odom(self, msg):
         self.x = msg.pose.pose.position.x
@@ -30,7 +31,7 @@ class DriveServer(Node):
 
     async def execute(self, handle):
         start = self.x
-        self.pub.publish(Twist())  # clean
+        self.pub.publish(Twist())  # sink ~goal
         feedback = Drive.Feedback()
         while self.x - start < handle.request.distance:
             if handle.is_cancel_requested:

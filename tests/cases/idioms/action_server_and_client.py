@@ -24,7 +24,7 @@ class Server(Node):
         return CancelResponse.ACCEPT
 
     async def execute(self, handle):
-        self.state.publish(String(data="begin"))
+        self.state.publish(String(data="begin"))  # sink ~goal
         feedback = Fibonacci.Feedback()
         feedback.sequence = [0, 1]
         for i in range(1, handle.request.order):

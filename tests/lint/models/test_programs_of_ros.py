@@ -182,6 +182,101 @@ def accept(goal):
     out.publish(goal.target)  # data
     return 1
 rclpy.action.ActionServer(node, Go, "go", run, goal_callback=accept)
+### a goal runs only if it is accepted
+class S:
+    def __init__(self):
+        self.level, self.full = 1.0, True
+        self.go = rclpy.action.ActionServer(node, Go, "go", self.run, goal_callback=self.accept)
+        node.create_subscription(Float64, "level", self.on, 10)
+    def on(self, msg):
+        self.level = msg.data
+        out.publish(5.0)  # clean
+    def accept(self, goal):
+        if self.level < 0.2:
+            return rclpy.action.GoalResponse.REJECT
+        return rclpy.action.GoalResponse.ACCEPT
+    def run(self, handle):
+        out.publish(1.0)  # control
+        self.help()
+        handle.succeed()
+        return Go.Result()  # control
+    def help(self):
+        out.publish(2.0)  # control
+S()
+### the goal itself decides whether it runs
+def accept(goal):
+    good = goal.target > 0.0
+    return rclpy.action.GoalResponse.ACCEPT if good else rclpy.action.GoalResponse.REJECT
+def run(handle):
+    out.publish(1.0)  # control
+    out.publish(handle.request.target)  # data
+    return Go.Result()  # control
+rclpy.action.ActionServer(node, Go, "go", run, goal_callback=accept)
+### every goal is accepted
+level = 0.0
+def on(msg):
+    global level
+    level = msg.data
+def accept(goal):
+    if level < 0.2:
+        print("low")
+        return rclpy.action.GoalResponse.ACCEPT
+    return rclpy.action.GoalResponse.ACCEPT
+def run(handle):
+    out.publish(1.0)  # clean
+    return Go.Result()  # clean
+rclpy.action.ActionServer(node, Go, "go", run, goal_callback=accept)
+node.create_subscription(Float64, "level", on, 10)
+### an accepted goal runs when the server executes it
+class S:
+    def __init__(self):
+        self.busy = False
+        rclpy.action.ActionServer(node, Go, "go", self.run, handle_accepted_callback=self.begin)
+        node.create_subscription(Float64, "busy", self.on, 10)
+    def on(self, msg):
+        self.busy = msg.data
+    def begin(self, handle):
+        out.publish(3.0)  # clean
+        if not self.busy:
+            handle.execute()
+    def run(self, handle):
+        out.publish(1.0)  # control
+        return Go.Result()  # control
+S()
+### an accepted goal runs in any case
+def on(msg):
+    global busy
+    busy = msg.data
+def begin(handle):
+    if busy:
+        print("late")
+    handle.execute()
+def accept(goal):
+    return rclpy.action.GoalResponse.ACCEPT
+def run(handle):
+    out.publish(1.0)  # clean
+    return Go.Result()  # clean
+rclpy.action.ActionServer(node, Go, "go", run, goal_callback=accept, handle_accepted_callback=begin)
+node.create_subscription(Float64, "busy", on, 10)
+### an accepted goal is kept, and executed later
+class S:
+    def __init__(self):
+        self.goal = None
+        rclpy.action.ActionServer(node, Go, "go", self.run, goal_callback=self.accept,
+                                  handle_accepted_callback=self.keep)
+        node.create_subscription(Float64, "start", self.on, 10)
+    def accept(self, goal):
+        return goal.target > 0.0
+    def keep(self, handle):
+        self.goal = handle
+        out.publish(4.0)  # control
+    def on(self, msg):
+        if msg.data > 0.5 and self.goal is not None:
+            self.goal.execute()
+    def run(self, handle):
+        out.publish(1.0)  # control
+        return Go.Result()  # control
+S()
 ### timers and threads read shared state
 last = 0.0
 def on(msg):
