@@ -2,9 +2,11 @@
 
 The publish call sends no data of the message, but a condition on the message chooses between constants, or between
 publishing and not publishing (an *implicit* flow). A statement does not depend on a loop merely because it follows
-the loop. The mere arrival of a message is not a condition. The `execute_callback` of an action server of rclpy runs only
-if its `goal_callback` accepts the goal, so a condition there decides what it publishes; the same holds for a condition
-of `handle_accepted_callback` on `goal_handle.execute()`.
+the loop. The mere arrival of a message is not a condition.
+
+The `execute_callback` of an action server of rclpy runs only if its `goal_callback` accepts the goal, so a condition
+there decides what `execute_callback` publishes. The same holds for a condition on `goal_handle.execute()` in its
+`handle_accepted_callback`.
 """
 
 from __future__ import annotations
