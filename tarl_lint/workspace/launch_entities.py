@@ -22,7 +22,7 @@ from tarl_lint.workspace.launch_values import (
     Package,
 )
 
-_IGNORED: Final = frozenset(["executable", "set_env", "unset_env", "append_env", "reset_env", "log", "log_info",
+_IGNORED: Final = frozenset(["executable", "append_env", "reset_env", "log", "log_info",
                              "shutdown", "set_ros_log_dir", "keep", "env", "param", "remap"])  # fmt: skip
 
 _LOGIC: Final = {"not": "not", "and": "and", "or": "or", "all": "and", "any": "or"}
@@ -109,6 +109,8 @@ _MAKERS: Final[Mapping[str, tuple[str, Callable[[Entity], dict[str, Any]]]]] = {
     "group": ("group", _group),
     "timer": ("group", _group),
     "ros_timer": ("group", _group),
+    "set_env": ("environment", lambda e: {"name": e.get("name"), "value": e.get("value")}),
+    "unset_env": ("unset environment", lambda e: {"name": e.get("name")}),
     "reset": ("reset", lambda e: {"launch_configurations": _kept(e)}),
     "include": ("include", _include),
     "push_ros_namespace": _NAMESPACE,

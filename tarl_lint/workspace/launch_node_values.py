@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import re
 import shlex
 from collections.abc import ItemsView, Iterator, Mapping
-from typing import Any
+from typing import Any, Final
 
 from tarl_lint.workspace import ros_arguments
 from tarl_lint.workspace.expressions import Library, Unknown
@@ -12,6 +14,8 @@ from tarl_lint.workspace.launch_actions import Quoted
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.launch_values import Anonymous, Context, Joined, Substitution, performed, symbolic
 from tarl_lint.workspace.python_values import FilePath
+
+_SIMPLE: Final = re.compile(r"[\w./+-]+")  # matches a text that stays one value inside a list of YAML
 
 
 def setting(name: str, value: Any, context: Context) -> Setting | None:
@@ -29,14 +33,26 @@ def setting(name: str, value: Any, context: Context) -> Setting | None:
     if isinstance(value, FilePath):
         return Setting(name, context.file, str(value))
     if isinstance(value, list | tuple):
-        plain = all(isinstance(one, bool | int | float) for one in value)
-        words = len(value) > 1 and all(isinstance(one, str) for one in value)
-        if plain or words:
-            return Setting(name, context.file, yaml=repr(list(value)))
+        listed = _listed_values(value, context)
+        if listed:
+            return None if symbolic(listed) else Setting(name, context.file, yaml=listed)
     if isinstance(value, Unknown | Library):
         return None
     text = performed(value, context)  # ROS 2 parses the text of substitutions as YAML
     return None if symbolic(text) else _parsed(name, context, text)
+
+
+def _listed_values(value: list[Any] | tuple[Any, ...], context: Context) -> str:
+    """Return a list as YAML, with the types that launch_ros gives its elements; "" if it is the parts of one text."""
+    if all(isinstance(one, bool | int | float) for one in value):
+        real = any(isinstance(one, float) for one in value)
+        return repr([float(one) if real and not isinstance(one, bool) else one for one in value])
+    if all(isinstance(one, str) for one in value):
+        return repr(list(value))
+    if any(isinstance(one, list | tuple) for one in value):
+        texts = [performed(one, context) for one in value]  # the text of each element is YAML
+        return f"[{', '.join(one if _SIMPLE.fullmatch(one) else json.dumps(one) for one in texts)}]"
+    return ""
 
 
 def _parsed(name: str, context: Context, text: str) -> Setting:

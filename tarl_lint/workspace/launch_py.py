@@ -33,6 +33,8 @@ _ACTIONS: Final = {
     "launch.actions.DeclareLaunchArgument": ("argument", "name"),
     "launch.actions.SetLaunchConfiguration": ("set", "name", "value"),
     "launch.actions.UnsetLaunchConfiguration": ("unset", "name"),
+    "launch.actions.SetEnvironmentVariable": ("environment", "name", "value"),
+    "launch.actions.UnsetEnvironmentVariable": ("unset environment", "name"),
     "launch.actions.PushLaunchConfigurations": ("push",),
     "launch.actions.PopLaunchConfigurations": ("pop",),
     "launch.actions.ResetLaunchConfigurations": ("reset", "launch_configurations"),
@@ -120,8 +122,8 @@ class _File:
             "launch.actions.RegisterEventHandler": self._handler,
             "ros_gz_bridge.actions.RosGzBridge": self._gz_bridge,
             **{f"launch.actions.{name}": self._action("other") for name in (
-                "ExecuteProcess", "LogInfo", "SetEnvironmentVariable", "AppendEnvironmentVariable", "EmitEvent",
-                "UnsetEnvironmentVariable", "Shutdown", "ExecuteLocal", "ResetEnvironment", "PushEnvironment",
+                "ExecuteProcess", "LogInfo", "AppendEnvironmentVariable", "EmitEvent", "Shutdown", "ExecuteLocal",
+                "ResetEnvironment", "PushEnvironment",
                 "PopEnvironment", "UnregisterEventHandler")},
             **{f"launch_ros.actions.{name}": self._action("other") for name in (
                 "LifecycleTransition", "SetROSLogDir")},

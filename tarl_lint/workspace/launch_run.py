@@ -109,7 +109,7 @@ class Runner:
             self.run(made if made is not None else [], context, condition)
         elif action.kind == "unread":
             self._problem(context, action.line, str(values.get("reason")), hides=True)
-        elif action.kind in ("unset", "push", "pop", "reset"):
+        elif action.kind in ("unset", "unset environment", "push", "pop", "reset"):
             _forget(action, context)
         else:
             self._set(action, context, condition)
@@ -131,6 +131,8 @@ class Runner:
             context.configurations[name] = value if same else f"$(var {name})"
         elif kind == "namespace":
             context.namespace = joined(context.namespace, text("namespace"))
+        elif kind == "environment":
+            context.environment[name] = text("value")
         elif kind == "remap":
             pair = performed(values.get("src"), context), text("dst")
             context.remaps = (*context.remaps, pair)
@@ -287,6 +289,8 @@ def _forget(action: Action, context: Context) -> None:
     values, kind = action.values, action.kind
     if kind == "unset":
         context.configurations.pop(performed(values.get("name"), context), None)
+    elif kind == "unset environment":
+        context.environment.pop(performed(values.get("name"), context), None)
     elif kind == "push":
         context.saved.append(context.inside())
     elif kind == "pop" and context.saved:

@@ -45,6 +45,7 @@ class Context:
     left: list[int] = field(default_factory=lambda: [WORK])
     readable: frozenset[str] = frozenset({"launch_configurations", "perform_substitution"})
     saved: list[Context] = field(default_factory=list)  # by PushLaunchConfigurations
+    environment: dict[str, str] = field(default_factory=dict)  # variables that the launch file sets
 
     def spend(self) -> None:
         """Count a substitution. Raises SpentError if there were too many."""
@@ -72,6 +73,7 @@ class Context:
             self.settings,
             self.asked,
             self.left,
+            environment=dict(self.environment),
         )
 
     def reset(self) -> None:
@@ -287,7 +289,10 @@ class OnRobot(Substitution):
     default: Any = None
 
     def text(self, context: Context, depth: int) -> str:
-        """Return the default, or else what it depends on as `$(…)`."""
+        """Return the value that the launch file sets, the default, or else what it depends on as `$(…)`."""
+        kind, _, rest = self.what.partition(" ")
+        if kind in ("env", "optenv") and rest.split(" ")[0] in context.environment:
+            return context.environment[rest.split(" ")[0]]
         always = self.what.split()[1:2] and self.what.split()[1] in ALWAYS_SET
         return (
             f"$({self.what})" if self.default is None or always else performed(self.default, context, depth)

@@ -166,6 +166,48 @@ def test_a_set_of_remappings_and_single_parameters_are_read(tmp_path: Path) -> N
     assert values(node) == {"~safe": "True", "~gain": 2.5}
 
 
+def test_environment_variables_that_the_launch_file_sets_are_known(tmp_path: Path) -> None:
+    found = launched(tmp_path, """
+        from launch.substitutions import EnvironmentVariable
+        def generate_launch_description():
+            side = EnvironmentVariable("SIDE", default_value="none")
+            return LaunchDescription([
+                cam(["a_", side]),
+                GroupAction([SetEnvironmentVariable("SIDE", "left"), cam(["b_", side])]),
+                cam(["c_", side]),
+                SetEnvironmentVariable("SIDE", "right"),
+                cam(["d_", side]),
+                UnsetEnvironmentVariable("SIDE"),
+                cam(["e_", side]),
+            ])
+        """, "x.launch.py")  # fmt: skip
+    assert [one.name for one in found.nodes] == ["a_none", "b_left", "c_none", "d_right", "e_none"]
+    text = """<launch><set_env name="SIDE" value="up"/><node pkg="cam" exec="cam" name="$(env SIDE none)"/>
+        <unset_env name="SIDE"/><node pkg="cam" exec="cam" name="$(env SIDE none)"/></launch>"""
+    found = launched(tmp_path / "xml", text, "x.launch.xml")
+    assert [one.name for one in found.nodes] == ["up", "none"]
+
+
+@pytest.mark.parametrize(
+    ("value", "read"),
+    [
+        ('["only"]', ["only"]),
+        ('["1", "b"]', ["1", "b"]),
+        ("[1, 2.5]", [1.0, 2.5]),
+        ("(True, False)", [True, False]),
+        ('["a", LaunchConfiguration("n", default="5")]', "a5"),
+        ('[[LaunchConfiguration("n", default="5")], ["6"]]', [5, 6]),
+        ('[["a", LaunchConfiguration("n", default=", b")], "c"]', ["a, b", "c"]),
+    ],
+)
+def test_lists_have_the_types_that_launch_gives_them(tmp_path: Path, value: str, read: object) -> None:
+    found = launched(tmp_path, f"""
+        def generate_launch_description():
+            return LaunchDescription([cam("a", parameters=[{{"given": {value}}}])])
+        """, "x.launch.py")  # fmt: skip
+    assert repr(values(found.nodes[0])["~given"]) == repr(read)
+
+
 @pytest.mark.parametrize(
     ("text", "value"),
     [("2 ** 10", 1024), ("9 ** 0.5", 3.0), ("2 ** -1", 0.5), ("(3.0 ** 2 + 4 ** 2) ** 0.5", 5.0)],
