@@ -65,7 +65,10 @@ def passed_on(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> S
             certain = False
         else:
             ends.append(Endpoint("subscribes" if role == "subscribes" else "publishes", (name,), "", span))
-    return Seen((*ends, *_choice(program, outputs, span, ros2=ros2)) if named else (), certain)
+    above = (
+        "~" if ros2 else instance.resolve(program)
+    )  # in ROS 1, the namespace of the services may be remapped
+    return Seen((*ends, *_choice(program, outputs, above, span)) if named else (), certain)
 
 
 def _program(instance: Instance, *, ros2: bool) -> str:
@@ -103,13 +106,12 @@ def _texts(value: Any) -> list[str]:
     return [one for one in (value if isinstance(value, list) else [value]) if isinstance(one, str) and one]
 
 
-def _choice(program: str, outputs: Sequence[str], span: Span, *, ros2: bool) -> Iterator[Endpoint]:
-    """Yield the services that choose the topic of `mux` and `demux`; in ROS 1, they are below the program's name."""
+def _choice(program: str, outputs: Sequence[str], above: str, span: Span) -> Iterator[Endpoint]:
+    """Yield the services of `mux` and `demux` that choose the topic; they are below the name `above`."""
     kind = _CHOOSING.get(program)
     if kind is None:
         return
     for service in ("select", "add", "delete"):
-        name = f"~/{service}" if ros2 else f"{program}/{service}"
-        yield Endpoint("serves", (name,), f"{kind}{service.capitalize()}", span)
-    if program == "mux" and not ros2 and outputs:
+        yield Endpoint("serves", (f"{above}/{service}",), f"{kind}{service.capitalize()}", span)
+    if program == "mux" and above != "~" and outputs:
         yield Endpoint("serves", (f"{outputs[0]}_select",), "MuxSelect", span)

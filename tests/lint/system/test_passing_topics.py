@@ -157,12 +157,19 @@ rospy.spin()
 """
 
 
-@pytest.mark.parametrize("service", ["/mux/select", "/cmd_vel_select"])
-def test_a_request_to_a_mux_chooses_what_it_passes_on(workspace, capsys, service):
+@pytest.mark.parametrize(
+    ("service", "inside"),
+    [
+        ("/mux/select", ""),
+        ("/cmd_vel_select", ""),
+        ("/drive/select", '<remap from="mux" to="drive"/>'),
+    ],
+)
+def test_a_request_to_a_mux_chooses_what_it_passes_on(workspace, capsys, service, inside):
     write(workspace, {"arm/scripts/chooser.py": SELECTING.format(service=service)})
     file = launched(
         workspace,
-        '<node pkg="topic_tools" type="mux" name="drive" args="/cmd_vel /joy_vel /nav_vel"/>'
+        f'<node pkg="topic_tools" type="mux" name="drive" args="/cmd_vel /joy_vel /nav_vel">{inside}</node>'
         '<node pkg="arm" type="chooser.py" name="chooser"/>',
     )
     _, out, _ = run(capsys, "--launch", file, "--from", "/mode")
