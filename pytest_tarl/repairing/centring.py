@@ -33,12 +33,12 @@ def centred(
 
     A candidate that fails on these seeds, or loses little, is returned unchanged. Raise BudgetSpentError.
     """
-    pairs = goal.pairs[:SEEDS]
+    pairs = sorted(goal.pairs, key=lambda pair: not trials.ran(candidate, [pair]))[:SEEDS]
     harder = fmean(goal.harder.get(pair.seed, 0.0) for pair in pairs)
     enough = reference.mean - THIN * reference.margin - harder
     try:
         if all(goal.reached(trials(candidate, pair.seed), pair.seed) for pair in pairs):
-            return _climbed(candidate, trials, mutate, goal, enough)
+            return _climbed(candidate, trials, mutate, replace(goal, pairs=tuple(pairs)), enough)
     except RepairError:
         return candidate
     return candidate
@@ -58,6 +58,7 @@ def in_place(candidate: Candidate) -> Candidate:
 
 
 def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, enough: float) -> Candidate:
+    """Climb on the seeds of the goal's first pairs, until steps in both directions have no effect."""
     best, totals = candidate, [trials(candidate, pair.seed).total for pair in goal.pairs[:SEEDS]]
     for step in STEPS:
         for ratio in (step, 1 / step):
@@ -67,6 +68,9 @@ def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, e
                 if other is None or earned is None:
                     break
                 best, totals = other, earned
+        near = (moved(candidate, ratio, mutate) for ratio in (step, 1 / step))
+        if all(one is not None and trials.same_as(one, candidate) for one in near):
+            return candidate  # smaller steps have no effect either
     return best
 
 

@@ -16,6 +16,8 @@ from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.searching.search import Candidate, Trials
 
 FROM = 60  # number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
+LATER = 100  # the same if a constant gains at least `PARTLY`, because it may only need another value or a second one
+PARTLY = 0.2  # share of the wanted gain
 MOST = 45  # number of episodes for the changes; half as many more if one of them gains much
 
 
@@ -35,9 +37,13 @@ class Early:
         self._signs: Signs | None = None
         self._structures: Structures | None = None
 
-    def candidates(self) -> Iterator[Candidate]:
-        """Yield confirmed candidates if the search has come to `FROM` episodes, otherwise nothing."""
-        if self._structures is not None or self.trials.spent < FROM:
+    def candidates(self, best: float = 0.0) -> Iterator[Candidate]:
+        """Yield confirmed candidates if the search has come to `FROM` episodes, or to `LATER`, otherwise nothing.
+
+        `best` is the largest gain of a constant so far.
+        """
+        begin = LATER if best >= PARTLY * self.order.goal.wanted else FROM
+        if self._structures is not None or self.trials.spent < begin:
             return
         begun = self.trials.spent
         found = self.signs(self.trials)

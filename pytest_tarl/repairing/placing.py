@@ -75,6 +75,7 @@ class Placing:
         pairs = self.order.goal.pairs[:LOOKED_AT]
         first = pairs[0].seed
         if trials(moved, first) == trials(candidate, first):
+            trials.equate(candidate, moved)
             return moved  # the rewards are equal, so nothing else in this test depends on the definition
         if all(self.order.goal.reached(trials(moved, pair.seed), pair.seed) for pair in pairs):
             return moved

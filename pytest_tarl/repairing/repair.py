@@ -30,7 +30,8 @@ from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.repairing.unsearched_modules import unnamed_modules
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ranking import Ranking
-from pytest_tarl.searching.search import BudgetSpentError, Strategy, label
+from pytest_tarl.searching.search import BudgetSpentError, label
+from pytest_tarl.searching.strategy import Strategy
 
 CONSTANTS = 2 / 3  # share of the budget for the search of constants; structural changes get the rest
 RESERVE = 1 / 6  # share of the budget that is added to the search of constants if a candidate has gained much
@@ -119,7 +120,7 @@ def _search(
     first = found.accepted is None
     early = Early(mutants.order, _chief(searched), trials)
     strategy = strategies.strategy(
-        mutants, method, searched, trials, early.candidates if share < 1.0 else lambda: iter(())
+        mutants, method, searched, trials, early.candidates if share < 1.0 else lambda _: iter(())
     )
     try:
         if found.accepted is None:

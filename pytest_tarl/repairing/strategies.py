@@ -19,7 +19,8 @@ from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
 from pytest_tarl.searching.halving import Halving
 from pytest_tarl.searching.plainness import writing
 from pytest_tarl.searching.ranking import Ranking
-from pytest_tarl.searching.search import Candidate, Strategy, Trials
+from pytest_tarl.searching.search import Candidate, Trials
+from pytest_tarl.searching.strategy import Strategy
 from pytest_tarl.searching.sweep import Sweep
 from tarl_lint.api import Analysis
 from tarl_lint.model import Operand, SiteId
@@ -32,11 +33,11 @@ def strategy(
     method: str,
     guards: Sequence[Guard],
     trials: Trials,
-    interlude: Callable[[], Iterator[Candidate]] = lambda: iter(()),
+    interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
 ) -> Strategy:
     """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
 
-    The sweep calls `interlude` before each of its steps.
+    The sweep calls `interlude` before each of its steps, with the largest gain so far.
     """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)

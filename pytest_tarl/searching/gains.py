@@ -51,10 +51,14 @@ class Gains:
         """Return the gains of all units that were tried under a guard."""
         return {unit: gains for (unit, held), gains in self._by_key.items() if held == guard}
 
+    def best(self) -> float:
+        """Return the largest gain, at least 0."""
+        return max((max(gains.values()) for gains in self._by_key.values()), default=0.0)
+
     def anything(self, least: float | None = None) -> bool:
         """Return whether any gain exceeds `least`, by default `slack`."""
         bound = self.slack if least is None else least
-        return any(max(gains.values()) > bound for gains in self._by_key.values())
+        return self.best() > bound
 
     def idle(self, unit: Unit) -> bool:
         """Return whether a proposed change had no effect at factor 1, its proposed value."""

@@ -31,6 +31,7 @@ from pytest_tarl.searching.smaller import (
     inside,
     milder,
     onward,
+    outside,
     smaller,
 )
 from pytest_tarl.searching.units import NEAR, Unit
@@ -62,6 +63,9 @@ class Search(Protocol):
     def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
         """Try a factor; return the candidate if it is new and confirmed."""
 
+    def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
+        """Return whether a new factor reaches the goal on the seed of a pair."""
+
     def joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
         """Return a selection that combines units."""
 
@@ -86,11 +90,25 @@ class Preferences:
             yield from self._plainer(found, unit, pair)
             yield from self._called(found, unit, factor)
         if holds or (near and oddness(found.mutations) is Oddness.NATURE):
-            yield from self._instead(found, unit, pair)
+            yield from self._instead(found, unit, self._hardest(pair))
         if holds:
             yield from self._truer(found, unit, factor, pair)
-            yield from self._smaller(found, unit, factor, pair)
-            yield from self._milder(found, unit, factor, pair)
+            hardest = self._hardest(pair)
+            milder = self._milder(found, unit, factor, hardest)
+            if milder is None:
+                yield from self._smaller(found, unit, factor, hardest)
+            else:
+                yield milder
+
+    def _hardest(self, pair: int) -> int:
+        """Return the index of the pair on whose seed most candidates fell short, by default `pair`.
+
+        A rival that fails is dropped after its first mission there.
+        """
+        misses = self.search.trials.misses
+        seeds = [one.seed for one in self.search.goal.pairs]
+        worst = max(range(len(seeds)), key=lambda at: misses[seeds[at]])
+        return worst if misses[seeds[worst]] else pair
 
     def after(self) -> Iterator[Candidate]:
         """Yield the confirmed changes that were set aside, those with the largest mean reward first."""
@@ -169,26 +187,34 @@ class Preferences:
         if exact is not None:
             yield exact
             return
-        begun = self.search.trials.spent
+        begun, compared = self.search.trials.spent, set[Unit]()
         for other, step in rivals(unit, factor, self.search.units, self.search.gains, found.guard):
             if self.search.trials.spent - begun >= RIVALS:
                 return
-            candidate = self.search.holding(other, step, found.guard, pair)
+            if other in compared or not self.search.reaches(other, step, found.guard, pair):
+                continue
+            compared.add(other)
+            candidate = self._closer_rival(found, other, step, pair)
             if candidate is None:
                 continue
-            candidate = self._nearer(candidate, other, step, pair)
             if self._deviation(candidate, seeds) <= CLOSER * self._deviation(found, seeds):
                 yield candidate
                 self.search.refused.add((other, found.guard))
                 return
             self._aside.append((other, candidate))
 
-    def _nearer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Candidate:
-        """Return the confirmed candidate with the factor whose missions are closest to the designed ones."""
-        seed = self._compared_on(pair)[0]
-        step, _ = exactest(unit, factor, found.guard, seed, self.search.mutate, self.search.trials)
-        candidate = self.search.holding(unit, step, found.guard, pair) if step != factor else None
-        return candidate or found
+    def _closer_rival(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Candidate | None:
+        """Return a confirmed change of a rival constant that reached the goal, or None.
+
+        Its factor is the one whose mission on the first seed is closest to the designed one. Unless this mission is
+        much closer than that of `found`, the rival is dropped without further episodes.
+        """
+        search, seed = self.search, self._compared_on(pair)[0]
+        step, least = exactest(unit, factor, found.guard, seed, search.mutate, search.trials)
+        if least > CLOSER * self._deviation(found, [seed]):
+            return None
+        tried = (search.holding(unit, one, found.guard, pair) for one in dict.fromkeys((step, factor)))
+        return next((one for one in tried if one is not None), None)
 
     def _smaller(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
         """Yield a much smaller change of another constant first, unless missions then deviate more from the design."""
@@ -202,9 +228,10 @@ class Preferences:
         self._reduced = bool(parts)
         begun, seeds = self.search.trials.spent, self._compared_on(pair)
         for other, step in self._small_steps(parts, found, unit, factor, begun):
-            candidate = self._smaller_holding(other, step, found.guard, pair)
+            step, candidate = self._smaller_holding(other, step, found.guard, pair)
             if candidate is None:
                 continue
+            step, candidate = self._off_the_edge(candidate, other, step, pair)
             if self._deviation(candidate, seeds) <= self._deviation(found, seeds) + WORSE:
                 yield from self._truer(candidate, other, step, pair)
                 yield candidate
@@ -212,26 +239,26 @@ class Preferences:
                 return
             self._aside.append((other, candidate))
 
-    def _milder(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """Yield the value halfway to the old one first if it earns as much and nothing between them was tried.
+    def _milder(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Candidate | None:
+        """Return the value halfway to the old one if it earns as much and nothing between them was tried, else None.
 
         A value a little nearer to the old one must hold, too, so that the value lies inside the good range.
         """
         gains = self.search.gains.of(unit, found.guard)
         halfway = milder(unit, factor, gains)
         if self.search.proposed or halfway is None:
-            return
+            return None
         candidate = self.search.holding(unit, halfway, found.guard, pair)
         if candidate is None:
-            return
+            return None
         one, other = (
             self.search.trials.totals_of(each, self.search.goal.pairs) for each in (candidate, found)
         )
         lost = fmean(other[at] - one[at] for at in one.keys() & other.keys())
         if lost <= LOST * self.search.goal.wanted and self._holds_inside(unit, halfway, found.guard, pair):
-            yield candidate
-        else:
-            self._aside.append((unit, candidate))
+            return candidate
+        self._aside.append((unit, candidate))
+        return None
 
     def _holds_inside(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
         """Return whether a factor a little nearer to 1 reaches the goal on a few seeds."""
@@ -254,16 +281,32 @@ class Preferences:
             yield part
         yield from onward(tried, unit, factor, self.search.gains, found.guard, self.search.goal.wanted)
 
-    def _smaller_holding(self, unit: Unit, step: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a small step, and those beside it if it earns nearly enough; return the first confirmed candidate."""
+    def _smaller_holding(
+        self, unit: Unit, step: float, guard: Guard, pair: int
+    ) -> tuple[float, Candidate | None]:
+        """Try a small step, and those beside it if it earns nearly enough; return the first that is confirmed."""
         if (unit, guard) in self.search.refused:
-            return None
+            return step, None
         candidate = self.search.holding(unit, step, guard, pair)
         gains = self.search.gains.of(unit, guard)
         if candidate is not None or gains.get(step, 0.0) < ALMOST * self.search.goal.wanted:
-            return candidate
-        tried = (self.search.holding(unit, round(step * by, 3), guard, pair) for by in BESIDE)
-        return next((one for one in tried if one is not None), None)
+            return step, candidate
+        steps = [round(step * by, 3) for by in BESIDE]
+        tried = ((one, self.search.holding(unit, one, guard, pair)) for one in steps)
+        return next(((one, candidate) for one, candidate in tried if candidate is not None), (step, None))
+
+    def _off_the_edge(
+        self, candidate: Candidate, unit: Unit, step: float, pair: int
+    ) -> tuple[float, Candidate]:
+        """Return a slightly larger change instead if a slightly smaller one does not reach the goal."""
+        if self.search.reaches(unit, inside(step), candidate.guard, pair):
+            return step, candidate
+        larger = outside(step)
+        beyond = self.search.holding(unit, larger, candidate.guard, pair)
+        if beyond is None:
+            return step, candidate
+        self._aside.append((unit, candidate))
+        return larger, beyond
 
     def _compared_on(self, pair: int) -> list[int]:
         """Return the seeds on which to compare the course of missions."""

@@ -7,10 +7,9 @@ A search yields confirmed candidates, best first. `searching.accept` then tests 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean
-from typing import Protocol
 
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.mutate import Mutation, form_values, redefinition
@@ -154,6 +153,12 @@ class Trials:
     def know(self, other: Trials) -> None:
         """Take over the outcomes of another phase, so that its episodes do not run again."""
         self._known = {**other._known, **self._known}
+
+    def equate(self, candidate: Candidate, other: Candidate) -> None:
+        """Take the outcomes of a candidate as those of another one that acts alike, unless that one ran itself."""
+        for (one, seed), outcome in list(self._known.items()):
+            if one == candidate:
+                self._known.setdefault((other, seed), outcome)
 
     def expect(self, wanted: Iterable[Wanted]) -> None:
         """Announce the episodes that are likely to be requested next, in order, so that workers can start them."""
@@ -318,16 +323,6 @@ def _hardest_first(trials: Trials, goal: Goal, first: int) -> list[int]:
     missed = [seed for seed in others if trials.misses[seed]]
     hard = sorted(missed, key=lambda seed: -trials.misses[seed])[:HARD]
     return [*hard, *(seed for seed in others if seed not in hard)][:CONFIRMATIONS]
-
-
-class Strategy(Protocol):
-    """Interface of a search."""
-
-    def candidates(self) -> Iterator[Candidate]:
-        """Yield confirmed candidates, best first. Raise BudgetSpentError."""
-
-    def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, for each site id, the best gain found for each of its operands."""
 
 
 def operand_effect(mutation: Mutation, gain: float) -> OperandEffect:

@@ -16,23 +16,30 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit, change_size
 
-STEPS = ((0.82, 1.22), (0.74, 1.33))  # factors: the first pair is tried on each constant, then the second
+STEPS = (0.82, 1.22)  # factors that are tried on each constant
 BESIDE = (1.06, 0.94)  # factors by which a step that earns nearly enough is multiplied
 LESS = 0.5  # maximum size of a small change (see `change_size`), as a share of the size of the change found
-ONWARD = ((0.62, 1.61), (0.5, 1.9))  # larger steps in the direction in which a small one gained something
+ONWARD = (
+    (0.74, 1.33),
+    (0.62, 1.61),
+    (0.5, 1.9),
+)  # larger steps in the direction in which a small one gained something
 LEADING = 3  # maximum number of constants that are tried with the steps ONWARD
 TRACE = 0.005  # minimum gain of a small step that is followed by steps ONWARD, as a share of the wanted gain
+OTHERS = 6  # maximum number of constants that are tried in small steps
 EPISODES = 20  # number of episodes after which no further constant is tried
 EARLY = 0.5  # share of the budget after which a repair is no longer compared
 LOST = 0.01  # maximum reward that a milder value of the same constant may lose, as a share of the wanted gain
-INSIDE = 0.85  # a change of this share of the milder change's size must hold, too
+INSIDE = 0.85  # a change of this share of a milder or smaller change's size must hold, too
 WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
 
 
 def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Part]:
     """Return other named constants with small steps, the best gain so far first, then those not tried yet.
 
-    Constants that never changed a mission are left out, and so are steps larger than `LESS` times the change found.
+    There are at most `OTHERS` constants. Constants that never changed a mission are left out, and so are steps larger
+    than `LESS` times the change found.
+
     """
     most, tried = LESS * change_size(found, factor), gains.under(guard)
     others = [
@@ -46,9 +53,8 @@ def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, gua
     others.sort(key=lambda unit: (unit not in tried, -max(tried.get(unit, {1.0: 0.0}).values())))
     return [
         (unit, step)
-        for steps in STEPS
-        for unit in others
-        for step in steps
+        for unit in others[:OTHERS]
+        for step in STEPS
         if change_size(unit, step) <= most and step not in tried.get(unit, {})
     ]
 
@@ -88,3 +94,9 @@ def inside(factor: float) -> float:
     """Return a factor a little nearer to 1."""
     nearer: float = factor**INSIDE
     return round(nearer, 3)
+
+
+def outside(factor: float) -> float:
+    """Return the factor whose `inside` is this one."""
+    farther: float = factor ** (1.0 / INSIDE)
+    return round(farther, 3)

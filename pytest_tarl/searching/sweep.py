@@ -66,7 +66,8 @@ class Sweep:
     it `weaker` are skipped. Only parameters of the same change are combined. The last steps of the sweep are
     tried on every operand. If a search for structural changes follows, only the nearest of these steps are
     tried, on named constants. `responding` contains the ids of statements whose constants increased the
-    reward. `interlude` is called before each step and each long phase, and may yield candidates of another search.
+    reward. `interlude` is called with the largest gain before each step and each long phase, and may yield
+    candidates of another search.
     """
 
     def __init__(
@@ -86,7 +87,7 @@ class Sweep:
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
         responding: Collection[str] = (),
         scope: Scope = everywhere,
-        interlude: Callable[[], Iterator[Candidate]] = lambda: iter(()),
+        interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
     ) -> None:
         self.interlude = interlude
         self.responding = responding
@@ -117,6 +118,7 @@ class Sweep:
         self.combining = Combining(self)
         self.adjusting = Adjusting(self)
         self._inside: set[Guard] = set()
+        self._apart: set[tuple[Unit, Guard]] = set()  # constants whose uses were tried alone
         self._families: tuple[Unit, ...] = ()
         self._turn = 0
 
@@ -130,9 +132,9 @@ class Sweep:
         yield from self._in_large_steps(chief)
         gained = self.gains.anything()
         if gained:
-            yield from self.interlude()
+            yield from self.interlude(self.gains.best())
             yield from self.combining.sharpened(chief)
-            yield from self.interlude()
+            yield from self.interlude(self.gains.best())
             yield from self.combining.jointly(chief)
             yield from self.combining.best_with_others()
         yield from self._finely(chief)
@@ -201,7 +203,10 @@ class Sweep:
         if self.proposed:
             yield from self._all(1.0, guard, moving)
             yield from self._strengthened(guard, moving)
-        for factor in (FLIP, *NEAR) if self.proposed else NEAR:
+            yield from self._all(FLIP, guard, moving)
+        else:
+            yield from self._named_first(guard, named(moving))
+        for factor in NEAR:
             yield from self._all(factor, guard, moving)
         yield from self._across_a_plateau(guard, plateau.STEPS[:2])
         yield from self._narrow(guard, moving)
@@ -213,6 +218,14 @@ class Sweep:
         yield from self.combining.leaders(guard)
         yield from self.combining.unmasked(guard)
         yield from self._uses_apart(guard, block)
+
+    def _named_first(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Increase named constants; if none gains, try moderate steps on them before other constants are tried."""
+        yield from self._each(NEAR[0], guard, among, self._turn % len(self.goal.pairs))
+        if among and not self.gains.anything():
+            self._turn += 1
+            yield from self._all(NEAR[1], guard, among)
+            yield from self._across_a_plateau(guard, plateau.STEPS[:2])
 
     def _uses_apart(self, guard: Guard, block: Sequence[Unit]) -> Iterator[Candidate]:
         """Change a constant at one of its uses only, because its effects at several uses may cancel each other."""
@@ -237,17 +250,20 @@ class Sweep:
 
     def _all(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try one factor on several operands, then refine the best one."""
-        yield from self.interlude()
+        yield from self.interlude(self.gains.best())
         pair = self._turn % len(self.goal.pairs)
         self._turn += 1
-        among = self.gains.distinct(among)
-        for at, unit in enumerate(among):
-            self.expect([(each, guard, factor) for each in among[at:]], pair)
-            yield from self.attempt(unit, guard, factor, pair)
+        yield from self._each(factor, guard, among, pair)
         if 0.0 < factor < 1.0:
             for unit in self._leading(factor, guard, self.slack)[:FLIPPED]:
                 yield from self.attempt(unit, guard, FLIP, pair)
         yield from self.adjusting.refine(pair)
+
+    def _each(self, factor: float, guard: Guard, among: Sequence[Unit], pair: int) -> Iterator[Candidate]:
+        among = self.gains.distinct(among)
+        for at, unit in enumerate(among):
+            self.expect([(each, guard, factor) for each in among[at:]], pair)
+            yield from self.attempt(unit, guard, factor, pair)
 
     def _late_ones(self, late: Sequence[Unit], guards: Sequence[Guard]) -> Iterator[Candidate]:
         """Try operands that are in no data flow, such as the period of a timer."""
@@ -307,6 +323,8 @@ class Sweep:
             self._try_uses(unit, guard, factor, pair)
             yield candidate
             yield from self.preferences.after()
+        elif near:
+            yield from self._uses_alone(unit, guard, factor, pair)
         if holds or (near and self.trials.loses(candidate)):
             self.refused.add((unit, guard))
 
@@ -331,6 +349,18 @@ class Sweep:
             self._try_uses(unit, guard, factor, pair)
         return candidate if holds else None
 
+    def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
+        """Return whether a new factor reaches the goal on the seed of a pair; if so, it may be confirmed later."""
+        candidate = Candidate(unit.mutations(self.mutate, factor), guard)
+        if not candidate.mutations or candidate in self._tried:
+            return False
+        near = self._near(candidate, pair)
+        if near is not None:
+            self._learn(unit, candidate, factor)
+        if not near:
+            self._tried.add(candidate)
+        return bool(near)
+
     def _try_uses(self, unit: Unit, guard: Guard, factor: float, pair: int) -> None:
         """Change each use of a confirmed constant alone, on one seed, to learn which of the statements matter."""
         uses = self._uses.get(unit, ())
@@ -342,6 +372,17 @@ class Sweep:
                 self._tried.add(candidate)
                 if self._near(candidate, pair) is not None:
                     self._learn(use, candidate, factor)
+
+    def _uses_alone(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        """Once try each use alone of a constant that reached the goal on some seeds only.
+
+        Its other uses may be what fails missions.
+        """
+        uses = self._uses.get(unit, ())
+        if len(uses) <= MOST_USES and (unit, guard) not in self._apart:
+            self._apart.add((unit, guard))
+            for use in uses:
+                yield from self.attempt(use, guard, factor, pair)
 
     def expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
         """Announce the tries that come next unless a result changes the order."""

@@ -13,7 +13,7 @@ from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import SHIPPED, template
 from pytest_tarl.repairing.between import factor, stronger
-from pytest_tarl.repairing.centring import SEEDS, THIN, centred, moved
+from pytest_tarl.repairing.centring import BEHIND, SEEDS, THIN, centred, moved
 from pytest_tarl.searching.accept import Outcome, Reference
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
@@ -56,6 +56,23 @@ def test_a_value_moves_towards_the_middle_of_its_good_values_until_the_reward_is
     if before >= 10.0 - THIN * REFERENCE.margin:
         assert moved == found
         assert trials.spent <= SEEDS
+
+
+def test_smaller_steps_are_left_out_where_larger_ones_have_no_effect() -> None:
+    trials = Trials(lambda _, __: Outcome(9.0, True), 100)
+    found = Candidate((Mutation(LITERAL, 4.4),), ALWAYS)
+    assert centred(found, trials, mutations, GOAL, REFERENCE) == found
+    assert trials.spent == SEEDS + 2 * BEHIND
+
+
+def test_values_are_compared_on_the_seeds_on_which_the_candidate_has_run() -> None:
+    trials = world(2.0, 0.3)
+    goal = replace(GOAL, pairs=tuple(Pair(seed, 0.0) for seed in range(9)))
+    found = Candidate((Mutation(LITERAL, 4.0),), ALWAYS)
+    for seed in range(3, 8):
+        trials(found, seed)
+    assert centred(found, trials, mutations, goal, REFERENCE) == found
+    assert trials.spent == SEEDS
 
 
 def test_a_value_does_not_move_to_a_value_that_earns_more_but_fails_missions() -> None:

@@ -16,7 +16,7 @@ from pytest_tarl.instrumentation.sites import plan
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.patching.templates import Template, template, templates
 from pytest_tarl.repairing import mission_pairs
-from pytest_tarl.repairing.early import FROM, MOST, Early
+from pytest_tarl.repairing.early import FROM, LATER, MOST, PARTLY, Early
 from pytest_tarl.repairing.evident import CHANGES, PLACES, evident
 from pytest_tarl.repairing.mission_pairs import PAIRS, Signs, signs
 from pytest_tarl.repairing.structural import Structures
@@ -237,6 +237,21 @@ def _quietly(structures: Structures) -> list[Candidate]:
         return list(structures.candidates())
     except BudgetSpentError:
         return []
+
+
+def test_early_changes_wait_longer_while_a_constant_gains_a_part(tmp_path: Path) -> None:
+    order, _ = missions(tmp_path)
+    trials = Trials(unhelpful, 200)
+    early = Early(order, (ALWAYS,), trials)
+    for _ in range(FROM):
+        trials.charge()
+    partly = PARTLY * order.goal.wanted
+    assert list(early.candidates(partly)) == []
+    assert early.spent == 0
+    for _ in range(FROM, LATER):
+        trials.charge()
+    list(early.candidates(partly))
+    assert early.spent > 0
 
 
 def test_early_changes_wait_until_constants_were_tried_then_run_a_single_time_and_keep_the_budget_of_constants(

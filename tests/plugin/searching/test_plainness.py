@@ -95,7 +95,13 @@ def restoring(
 
 def test_a_factor_is_tried_before_an_offset_that_also_holds() -> None:
     found = restoring({OFFSET: 2.2, NAMED: 0.42}, window=0.2).candidates()
-    assert [next(found).mutations[0].operand for _ in range(2)] == [NAMED, OFFSET]
+    assert next(found).mutations[0].operand == NAMED
+
+
+def test_named_constants_get_near_and_moderate_steps_before_literals_while_nothing_gains() -> None:
+    search = restoring({INNER: 2.2, NAMED: 0.65}, window=0.1, harm=0.3)
+    assert next(search.candidates()).mutations[0].operand == NAMED
+    assert not any("→" in label for label in search.trials.labels)
 
 
 def test_a_named_constant_of_a_helper_is_tried_without_a_condition_before_a_literal() -> None:

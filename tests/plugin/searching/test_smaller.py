@@ -16,7 +16,7 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Goal, Pair, Trials
-from pytest_tarl.searching.smaller import EPISODES, ONWARD, milder, onward, smaller
+from pytest_tarl.searching.smaller import ONWARD, OTHERS, milder, onward, smaller
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import Unit, change_size
 from tarl_lint.model import Operand
@@ -85,7 +85,7 @@ def test_the_search_for_smaller_changes_takes_few_episodes_if_there_is_none() ->
     search = searched((HOTTEST, *many), {HOTTEST: (2.0, 2.4)})
     assert order(search, 1) == [HOTTEST]
     confirming, halfway = 6, 1
-    assert search.trials.spent == confirming + EPISODES + halfway + search.trials.beside
+    assert search.trials.spent == confirming + 2 * OTHERS + halfway + search.trials.beside
 
 
 def test_the_value_halfway_to_the_original_one_comes_first_if_it_restores_as_much_reward() -> None:
@@ -124,9 +124,18 @@ def test_only_named_constants_that_matter_are_changed_and_by_much_less() -> None
     for unit, gain in zip(units, (9.0, -1.0, 0.0, 2.0), strict=True):
         for factor in (2.2, 0.4):
             gains.enter((unit, ALWAYS), factor, gain)
-    assert smaller(units[0], 2.2, units, gains, ALWAYS) == [(units[1], by) for by in (0.82, 1.22, 0.74, 1.33)]
+    assert smaller(units[0], 2.2, units, gains, ALWAYS) == [(units[1], by) for by in (0.82, 1.22)]
     assert smaller(units[0], 1.5, units, gains, ALWAYS) == [(units[1], 0.82), (units[1], 1.22)]
     assert smaller(units[0], 1.3, units, gains, ALWAYS) == []
+
+
+def test_small_steps_are_tried_on_the_most_promising_constants_only() -> None:
+    found, *units = (Unit((named(at, f"A{at}"),)) for at in range(7, 9 + OTHERS))
+    gains = Gains(0.1)
+    for at, unit in enumerate(units):
+        gains.enter((unit, ALWAYS), 2.2, float(at + 1))
+    tried = smaller(found, 2.2, units, gains, ALWAYS)
+    assert list(dict.fromkeys(unit for unit, _ in tried)) == units[: -OTHERS - 1 : -1]
 
 
 def test_the_size_of_a_change_is_the_logarithm_of_the_ratio_of_its_values() -> None:
@@ -201,10 +210,9 @@ def test_larger_steps_follow_only_where_a_small_one_gained_and_stay_small() -> N
     for (unit, step), gain in zip(small, (0.04, -1.0, 0.04, 0.3, 0.2, 0.0, 0.1, 0.41), strict=True):
         gains.enter((unit, ALWAYS), step, gain)
     best = [(others[3], 1.22), (others[1], 1.22), (others[2], 0.82)]
-    (down, up), (further_down, further_up) = ONWARD
-    near = [(unit, up if step > 1.0 else down) for unit, step in best]
-    far = [(unit, further_up if step > 1.0 else further_down) for unit, step in best]
-    assert onward(small, found, 8.0, gains, ALWAYS, 10.0) == near + far
-    assert onward(small, found, 3.0, gains, ALWAYS, 10.0) == near
-    assert onward(small, found, 2.2, gains, ALWAYS, 10.0) == []
+    near, far, farthest = ([(unit, up if step > 1.0 else down) for unit, step in best] for down, up in ONWARD)
+    assert onward(small, found, 8.0, gains, ALWAYS, 10.0) == near + far + farthest
+    assert onward(small, found, 3.0, gains, ALWAYS, 10.0) == near + far
+    assert onward(small, found, 2.2, gains, ALWAYS, 10.0) == near
+    assert onward(small, found, 1.5, gains, ALWAYS, 10.0) == []
     assert onward([], found, 8.0, gains, ALWAYS, 10.0) == []

@@ -46,6 +46,13 @@ def trials(totals: Mapping[Candidate, Mapping[int, float]], budget: int = 99) ->
     return made
 
 
+def test_a_candidate_that_acts_like_another_one_takes_its_outcomes_but_keeps_its_own() -> None:
+    made = trials({ONE: {0: 9.0, 1: 8.0}, TWO: {0: 7.0}})
+    made.equate(ONE, TWO)
+    assert made.totals_of(TWO, PAIRS) == {0: 7.0, 1: 8.0}
+    assert made.spent == 3
+
+
 def test_the_wanted_gain_is_that_of_the_episodes_that_lost() -> None:
     assert GOAL.wanted == 9.0 - 1.5
     assert replace(GOAL, harder={0: 2.0, 2: 2.0}).wanted == 8.0 - 1.5

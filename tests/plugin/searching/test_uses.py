@@ -53,6 +53,20 @@ def test_a_single_use_is_changed_if_the_effects_of_all_uses_cancel_out() -> None
     assert [one.operand for one in found.mutations] == [SECOND]
 
 
+def test_uses_are_tried_alone_at_once_if_all_of_them_together_suffice_in_some_missions_only() -> None:
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        by = {one.operand: factor(one) or 1.0 for one in candidate.mutations}
+        right = 2.0 < by.get(SECOND, 1.0) < 2.4 and (seed % 2 == 0 or FIRST not in by)
+        return Outcome(10.0 if right else 0.0, right, steps=50)
+
+    trials = Trials(run, 200)
+    sweep = Sweep([FIRST, *OTHERS, SECOND], mutations, (ALWAYS,), trials, GOAL)
+    found = next(sweep.candidates())
+    assert [one.operand for one in found.mutations] == [SECOND]
+    others = [at for at, label in enumerate(trials.labels) if "C4" in label]
+    assert trials.labels.index(label(found)) < others[0]
+
+
 def test_a_use_without_an_effect_is_credited_only_with_its_own_gain() -> None:
     sweep, found, _ = searched({SECOND}, set())
     assert found is not None
