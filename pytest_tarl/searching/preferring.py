@@ -279,7 +279,10 @@ class Preferences:
                 break
             tried.append(part)
             yield part
-        yield from onward(tried, unit, factor, self.search.gains, found.guard, self.search.goal.wanted)
+        for part in onward(tried, unit, factor, self.search.gains, found.guard, self.search.goal.wanted):
+            if self.search.trials.spent - begun >= EPISODES:
+                return
+            yield part
 
     def _smaller_holding(
         self, unit: Unit, step: float, guard: Guard, pair: int

@@ -25,6 +25,7 @@ FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)
 CONFIRMATIONS = 5  # number of further seeds on which a promising candidate must also earn enough
 HARD = 2  # maximum number of confirmation seeds that are chosen because other candidates failed on them
 FAR = 0.6  # minimum gain of a candidate that releases the reserve of episodes, as a share of the wanted gain
+SHORT = 3  # number of missions after which a candidate is rejected if each of them clearly earned too little
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
 
 
@@ -291,10 +292,10 @@ def label(candidate: Candidate) -> str:
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
     """Return whether a candidate passes on further seeds, starting after `goal.pairs[first]`.
 
-    The seeds on which other candidates fell short run first. A candidate is rejected early if it loses missions that
-    were lost by rejected candidates in their acceptance tests. A candidate is also rejected at its first failed
-    mission, if missions succeed in the designed world and the drift's size does not vary. The other reasons are a
-    second seed with too little reward, and a low estimate of the candidate's mean total (`falls_short`).
+    The seeds on which other candidates fell short run first. A candidate is rejected early if it loses missions of
+    rejected candidates' tests, at its first failed mission (if missions succeed in the designed world and the drift's
+    size does not vary), at its second seed with too little reward, if its mean total is estimated to be too low
+    (`falls_short`), or if each of its first `SHORT` missions clearly earns too little.
     """
     if trials.loses(candidate):
         return False
@@ -311,10 +312,22 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
             return False
         if trials.falls_short(candidate, goal.pairs, goal.enough):
             return False
-    holds = not outcomes or fmean(outcome.total for outcome in outcomes) >= goal.enough_on(seeds)
+        if _always_short(candidate, trials, goal):
+            break
+    holds = not outcomes or fmean(outcome.total for outcome in outcomes) >= goal.enough_on(
+        seeds[: len(outcomes)]
+    )
     if not holds and not missed:
         trials.fell_short(candidate, goal.pairs)
     return holds
+
+
+def _always_short(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
+    """Return whether each of at least `SHORT` missions earned clearly too little: nearer to `near` than to `enough`."""
+    totals, least = trials.totals_of(candidate, goal.pairs), (goal.enough - goal.near) / 2
+    return len(totals) >= SHORT and all(
+        total < goal.enough_on([seed]) - least for seed, total in totals.items()
+    )
 
 
 def _hardest_first(trials: Trials, goal: Goal, first: int) -> list[int]:

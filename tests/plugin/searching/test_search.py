@@ -18,6 +18,7 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
 from pytest_tarl.searching.search import (
     CONFIRMATIONS,
+    SHORT,
     BudgetSpentError,
     Candidate,
     Goal,
@@ -145,10 +146,23 @@ def test_a_candidate_that_gains_no_more_than_a_failed_one_is_dropped_early() -> 
     goal = replace(GOAL, near=9.0, enough=9.5)
     trials = Trials(plateau, 100)
     first, second = (Candidate((m,), ALWAYS) for m in map(mutations, (GAIN, GAIN), (2.2, 5.0)) if m)
-    for candidate, runs in ((first, CONFIRMATIONS), (second, 2)):
+    for candidate, runs in ((first, SHORT), (second, 2)):
         before = trials.spent
         assert not confirmed(candidate, trials, goal, 0)
         assert trials.spent - before == runs
+
+
+@pytest.mark.parametrize(
+    ("right", "runs"), [(None, SHORT), (1, CONFIRMATIONS), (3, CONFIRMATIONS), (4, SHORT)]
+)
+def test_a_candidate_is_dropped_once_each_of_its_first_missions_earned_too_little(
+    right: int | None, runs: int
+) -> None:
+    trials = Trials(lambda _, seed: Outcome(9.3 if seed == right else 9.1, True), 100)
+    mutation = mutations(GAIN, 2.2)
+    assert mutation is not None
+    assert not confirmed(Candidate((mutation,), ALWAYS), trials, replace(GOAL, near=9.0, enough=9.5), 0)
+    assert trials.spent == runs
 
 
 def test_a_candidate_that_gains_more_than_a_failed_one_is_confirmed() -> None:
