@@ -17,6 +17,7 @@ from pytest_tarl.patching.charts import Chart
 from pytest_tarl.searching import plateau
 from pytest_tarl.searching.acting import Acting
 from pytest_tarl.searching.adjusting import Adjusting
+from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.combining import Combining
 from pytest_tarl.searching.families import families
 from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
@@ -36,6 +37,7 @@ from pytest_tarl.searching.units import (
     units,
     uses_apart,
 )
+from pytest_tarl.searching.uses import Uses
 from tarl_lint.model import Operand
 
 if TYPE_CHECKING:
@@ -53,7 +55,6 @@ LAST = (10.0, 0.05)
 # maximum number of units to try with the other sign, among those that gained with a smaller value
 FLIPPED = 3
 HALF = 0.5  # gain of a change, as a share of the wanted gain, from which on others get no `FINER` steps
-MOST_USES = 3  # maximum number of uses of a constant that are changed alone once it is confirmed
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
 
 
@@ -96,9 +97,10 @@ class Sweep:
         self.aside = units(aside)
         self.scope = scope
         self.units = charted(units(operands), charts)
-        self._uses: Mapping[Unit, tuple[Unit, ...]] = {}
+        parts: Mapping[Unit, tuple[Unit, ...]] = {}
         if not proposed:
-            self.units, self._uses = uses_apart(self.units, (*self.late, *self.aside), scope)
+            self.units, parts = uses_apart(self.units, (*self.late, *self.aside), scope)
+        self.uses = Uses(self, parts)
         self.weaker = weaker
         self.given = given
         self.mutate = mutate
@@ -118,7 +120,6 @@ class Sweep:
         self.combining = Combining(self)
         self.adjusting = Adjusting(self)
         self._inside: set[Guard] = set()
-        self._apart: set[tuple[Unit, Guard]] = set()  # constants whose uses were tried alone
         self._families: tuple[Unit, ...] = ()
         self._turn = 0
 
@@ -213,6 +214,7 @@ class Sweep:
         for factor, before in () if self.gains.anything() else FURTHER:
             leading = self._leading(before, guard, self.goal.wanted * HINT)
             yield from self._all(factor, guard, leading[:LEADING])
+        yield from self._without_condition(guard)
         yield from self._inward(guard)
         yield from self.adjusting.exactly(guard)
         yield from self.combining.leaders(guard)
@@ -229,7 +231,7 @@ class Sweep:
 
     def _uses_apart(self, guard: Guard, block: Sequence[Unit]) -> Iterator[Candidate]:
         """Change a constant at one of its uses only, because its effects at several uses may cancel each other."""
-        uses = [use for whole in self.gains.moving(block) for use in self._uses.get(whole, ())]
+        uses = [use for whole in self.gains.moving(block) for use in self.uses.of(whole)]
         self.units = (*self.units, *(use for use in uses if use not in self.units))
         for factor in NEAR if uses else ():
             yield from self._all(factor, guard, self.gains.moving(uses))
@@ -247,6 +249,12 @@ class Sweep:
         pair = self._turn % len(self.goal.pairs)
         for unit, factor in self.gains.best_under([one for one in self.guards if one != guard])[:LEADING]:
             yield from self.attempt(unit, guard, factor, pair)
+
+    def _without_condition(self, guard: Guard) -> Iterator[Candidate]:
+        """Try the change that gains most without its condition before more is done under it: it may be too narrow."""
+        for unit, factor in self.gains.best_under([guard])[:1]:
+            if guard.conjuncts and ALWAYS in self.guards and self.gains.most((unit, guard)) > self.slack:
+                yield from self.attempt(unit, ALWAYS, factor, self._turn % len(self.goal.pairs))
 
     def _all(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try one factor on several operands, then refine the best one."""
@@ -320,11 +328,11 @@ class Sweep:
         self._learn(unit, candidate, factor)
         yield from self.preferences.before(candidate, unit, factor, pair, holds, near)
         if holds:
-            self._try_uses(unit, guard, factor, pair)
+            self.uses.learn(unit, guard, factor, pair)
             yield candidate
             yield from self.preferences.after()
         elif near:
-            yield from self._uses_alone(unit, guard, factor, pair)
+            yield from self.uses.alone(unit, guard, factor, pair)
         if holds or (near and self.trials.loses(candidate)):
             self.refused.add((unit, guard))
 
@@ -346,43 +354,20 @@ class Sweep:
         holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
         self._learn(unit, candidate, factor)
         if holds:
-            self._try_uses(unit, guard, factor, pair)
+            self.uses.learn(unit, guard, factor, pair)
         return candidate if holds else None
 
-    def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
-        """Return whether a new factor reaches the goal on the seed of a pair; if so, it may be confirmed later."""
+    def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int, confirmable: bool = True) -> bool:
+        """Return whether a new factor reaches the goal on a pair's seed; `confirmable` ones may be confirmed later."""
         candidate = Candidate(unit.mutations(self.mutate, factor), guard)
         if not candidate.mutations or candidate in self._tried:
             return False
         near = self._near(candidate, pair)
         if near is not None:
             self._learn(unit, candidate, factor)
-        if not near:
+        if not (near and confirmable):
             self._tried.add(candidate)
         return bool(near)
-
-    def _try_uses(self, unit: Unit, guard: Guard, factor: float, pair: int) -> None:
-        """Change each use of a confirmed constant alone, on one seed, to learn which of the statements matter."""
-        uses = self._uses.get(unit, ())
-        if len(uses) > MOST_USES or self.trials.budget - self.trials.spent <= len(uses):
-            return
-        for use in uses:
-            candidate = Candidate(use.mutations(self.mutate, factor), guard)
-            if candidate.mutations and candidate not in self._tried:
-                self._tried.add(candidate)
-                if self._near(candidate, pair) is not None:
-                    self._learn(use, candidate, factor)
-
-    def _uses_alone(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """Once try each use alone of a constant that reached the goal on some seeds only.
-
-        Its other uses may be what fails missions.
-        """
-        uses = self._uses.get(unit, ())
-        if len(uses) <= MOST_USES and (unit, guard) not in self._apart:
-            self._apart.add((unit, guard))
-            for use in uses:
-                yield from self.attempt(use, guard, factor, pair)
 
     def expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
         """Announce the tries that come next unless a result changes the order."""

@@ -56,6 +56,25 @@ def test_constants_that_gained_under_one_guard_are_tried_first_under_the_next() 
     assert trials.spent <= 2 * len(GAINS) + 8 + CONFIRMATIONS
 
 
+def test_a_far_change_that_gains_a_part_under_a_condition_is_tried_without_it_before_other_changes() -> None:
+    def earned(factors: dict[int, float], guard: Guard) -> float:
+        right = factors.get(6, 1.0) > 4.0
+        return (
+            10.0
+            if right and guard == ALWAYS
+            else 3.0
+            if right
+            else 0.1
+            if 6 in factors
+            else 0.01 * len(factors)
+        )
+
+    trials = world(earned)
+    candidate = found(trials, WET, ALWAYS)
+    assert (candidate.mutations[0].operand, candidate.guard) == (GAINS[3], ALWAYS)
+    assert trials.spent <= 2 * len(GAINS) + 10 + CONFIRMATIONS
+
+
 def test_a_constant_without_effect_alone_is_combined_with_two_that_gain_much() -> None:
     def earned(factors: dict[int, float], _: Guard) -> float:
         first, second = factors.get(3, 1.0) > 2.0, factors.get(4, 1.0) > 2.0

@@ -1,0 +1,55 @@
+"""Change a constant that several statements use at one of its uses only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Protocol
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.search import Candidate, Trials
+from pytest_tarl.searching.units import Unit
+
+MOST = 3  # maximum number of uses of a constant that are changed alone
+
+
+class Search(Protocol):
+    """The parts of the sweep that `Uses` uses."""
+
+    trials: Trials
+
+    def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        """Try a factor; yield the candidates that are confirmed."""
+
+    def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int, confirmable: bool = True) -> bool:
+        """Return whether a new factor reaches the goal on the seed of a pair."""
+
+
+class Uses:
+    """The uses of each constant of one search; `parts` maps a constant to its uses."""
+
+    def __init__(self, search: Search, parts: Mapping[Unit, tuple[Unit, ...]]) -> None:
+        self.search = search
+        self.parts = parts
+        self._apart: set[tuple[Unit, Guard]] = set()  # constants whose uses `alone` has tried
+
+    def of(self, whole: Unit) -> tuple[Unit, ...]:
+        """Return the uses of a constant, or none if there is only one."""
+        return self.parts.get(whole, ())
+
+    def learn(self, whole: Unit, guard: Guard, factor: float, pair: int) -> None:
+        """Change each use of a confirmed constant alone, on one seed, to learn which of the statements matter."""
+        uses, trials = self.of(whole), self.search.trials
+        if len(uses) <= MOST and trials.budget - trials.spent > len(uses):
+            for use in uses:
+                self.search.reaches(use, factor, guard, pair, confirmable=False)
+
+    def alone(self, whole: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        """Once try each use alone of a constant that reached the goal on some seeds only.
+
+        Its other uses may be what fails missions.
+        """
+        uses = self.of(whole)
+        if len(uses) <= MOST and (whole, guard) not in self._apart:
+            self._apart.add((whole, guard))
+            for use in uses:
+                yield from self.search.attempt(use, guard, factor, pair)
