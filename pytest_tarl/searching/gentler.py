@@ -47,7 +47,11 @@ def gentler(
         site = unit.operands[0].site
         at_site[site] = max(at_site.get(site, 0.0), *by_factor.values())
     moved = {unit for unit in tried if gains.matters(unit) or not set(NEAR) <= tried[unit].keys()}
-    others = [unit for unit in named(units) if unit != found and (unit in moved or unit not in tried)]
+    others = [
+        unit
+        for unit in named(units)
+        if unit.operands != found.operands and (unit in moved or unit not in tried)
+    ]
     worth = {unit: at_site.get(unit.operands[0].site, 0.0) for unit in others}
     others.sort(key=lambda unit: -worth[unit])
     return [(unit, FINE if worth[unit] >= promising else COARSE) for unit in others]

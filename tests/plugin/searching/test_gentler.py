@@ -8,12 +8,16 @@ from dataclasses import replace
 
 import pytest
 
+from pytest_tarl.patching.charts import SHARE
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.gentler import gentler
 from pytest_tarl.searching.plainness import Oddness, oddness, of_nature, writing
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
+from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 from tests.plugin.searching.test_search import operand
 
@@ -135,3 +139,9 @@ def test_candidates_act_alike_if_all_their_common_seeds_end_alike() -> None:
     assert trials.same_as(one, two) == 5
     assert trials.same_as(one, other) == 0
     assert trials.same_as(one, Candidate((Mutation(GRAVITY, 2.0),), ALWAYS)) == 0
+
+
+def test_the_constant_found_is_not_an_alternative_to_itself_on_another_scale() -> None:
+    found, other = Unit((PADS,)), Unit((CRUISE,))
+    units = [found, Unit((PADS,), SHARE), other]
+    assert [unit for unit, _ in gentler(found, units, Gains(0.1), ALWAYS, 1.0)] == [other]
