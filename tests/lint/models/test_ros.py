@@ -257,6 +257,24 @@ def test_only_data_of_messages_reaches_sinks(name, body):
     assert differing(f"{HEAD}{dedent(body.replace('NAME', name))}{SPIN}") == {}
 
 
+@pytest.mark.parametrize(
+    "call", ["node.destroy_subscription(sub)", "node.destroy_timer(sub)", "sub.unregister()"]
+)
+def test_what_a_node_reports_does_not_depend_on_what_it_destroyed(call):
+    text = f"""
+        sub = node.create_subscription(Float64, "other", print, 10)
+        def on(msg):
+            global sub
+            if msg.data > 0.0:
+                {call}
+                sub = None
+        rospy.Subscriber("in", Float64, on)
+        while node.get_topic_names_and_types():
+            out.publish(len(node.get_topic_names_and_types()))  # clean
+    """
+    assert differing(HEAD + dedent(text) + SPIN) == {}
+
+
 def test_images_are_received_and_published_through_image_transport():
     text = HEAD + dedent("""
         from image_transport_py import ImageTransport
