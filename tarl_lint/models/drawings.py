@@ -1,20 +1,23 @@
 """Drawings of matplotlib: whatever is drawn into a part of a figure is also in the figure and in its image.
 
 Axes, lines and canvases refer to their figure, and the functions of `pyplot` to the current one. All of them are
-therefore one object, even where a program has several figures.
+therefore one object, even where a program has several figures. Programs that are run have one object each, because
+they are separate processes; the drawings of other modules are one object that all programs share.
 """
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from typing import Final
 
 from tarl_lint.interpret import call_contexts
 from tarl_lint.interpret.interpreter import Interpreter
-from tarl_lint.interpret.invocation import Arguments
+from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import Obj, Value, pointer
+from tarl_lint.memory.values import Obj, Value
 from tarl_lint.models import containers
 
 PYPLOT: Final = frozenset(["matplotlib.pyplot", "matplotlib.pylab", "pylab"])
@@ -22,6 +25,13 @@ FIGURE: Final = ("Figure", "FigureCanvas")  # prefixes of class names
 PLAIN: Final = frozenset(["get_cmap", "imread", "rc"])  # functions of pyplot that do not draw
 SAVING: Final = frozenset(["savefig", "print_png", "print_figure", "print_raw", "print_rgba", "print_jpg"])
 KEY: Final = ("drawing",)
+DRAWS: Final = re.compile(
+    r"(?:vis|visuali[sz]e|plot|draw|show)(?:_|[A-Z]|$)|\w+plot$"
+)  # names of functions that draw
+OTHER_WINDOWS: Final = frozenset(
+    ["cv2", "PIL", "open3d", "pygame", "tkinter", "turtle"]
+)  # draw without matplotlib
+RUN: Final = "__main__"  # occurs in files that are run
 
 
 def drawn(
@@ -32,45 +42,65 @@ def drawn(
     draws = module in PYPLOT and name not in PLAIN and not name[:1].isupper()
     if not draws and not (module.startswith("matplotlib.") and name.startswith(FIGURE)):
         return None
-    obj = recency.intern(ctx, "lib", KEY, "matplotlib")
-    obj.many = True
-    return _changed(ctx, obj, pointer(obj), arguments, frame, call)
+    return _changed(ctx, Value(pts=_of_program(ctx)), arguments, frame, call)
 
 
 def is_drawing(obj: Obj) -> bool:
     """Return whether an object is a drawing, or a part of one."""
-    return obj.whole.key == KEY
+    key = obj.whole.key
+    return isinstance(key, tuple) and key[:1] == KEY
+
+
+def _of_program(ctx: Interpreter) -> frozenset[Obj]:
+    """Return the drawing of the current program, and the drawing of modules that several programs import."""
+    module = ctx.modules.get(ctx.program)
+    runs = module is not None and module.contains(RUN)
+    own = recency.intern(ctx, "lib", (*KEY, ctx.program if runs else ""), "matplotlib")
+    own.many = True
+    shared = ctx.objects.get(("lib", (*KEY, "")), own)
+    return frozenset((own, shared))
 
 
 def drawn_into(
     ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Value | None:
     """Return the drawing after a call of a method of one of its parts; None for other objects."""
-    whole = next((o.whole for o in base.pts if is_drawing(o)), None)
-    if whole is None or not all(map(is_drawing, base.pts)):
+    if not base.pts or not all(map(is_drawing, base.pts)):
         return None
-    return _changed(ctx, whole, Value(base.deps, frozenset([whole])), arguments, frame, call)
+    return _changed(ctx, Value(base.deps, _wholes(base.pts)), arguments, frame, call)
 
 
-def pass_to_function(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-    """Draw data into a drawing that a library's function gets with the data, such as `show(image, ax=axes)`."""
-    if ("lib", KEY) not in ctx.objects:
-        return
-    given = [*arguments[0], *arguments[1].values()]
-    whole = next((o.whole for v in given for o in v.pts if is_drawing(o)), None)
-    if whole is None:
+def pass_to_function(ctx: Interpreter, it: Invocation, *, unused: bool) -> None:
+    """Draw data that a library's function draws into the axes that it gets, or into the current figure.
+
+    Examples are `show(image, ax=axes)` and `vis_image(image)`. A function that gets no axes draws if its name says so,
+    its result is unused and the module imports `pyplot`.
+    """
+    given = [*it.arguments[0], *it.arguments[1].values()]
+    wholes = _wholes(o for v in given for o in v.pts if is_drawing(o))
+    if not wholes and unused and _draws(ctx, it):
+        wholes = _of_program(ctx)
+    if not wholes:
         return
     others = [v for v in given if not any(map(is_drawing, v.pts))]
     learnt = Value(call_contexts.all_used(ctx, (others, {})))
     if learnt.deps:
-        containers.insert_elements(ctx, pointer(whole), [learnt], frame, call)
+        containers.insert_elements(ctx, Value(pts=wholes), [learnt], it.frame, it.call)
 
 
-def _changed(
-    ctx: Interpreter, obj: Obj, base: Value, arguments: Arguments, frame: Frame, call: ir.Call
-) -> Value:
+def _draws(ctx: Interpreter, it: Invocation) -> bool:
+    if DRAWS.match(it.name.rpartition(".")[2]) is None or it.name.partition(".")[0] in OTHER_WINDOWS:
+        return False
+    return ctx.modules[it.frame.program.path].contains("pyplot")
+
+
+def _wholes(parts: Iterable[Obj]) -> frozenset[Obj]:
+    return frozenset(part.whole for part in parts)
+
+
+def _changed(ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
     """Draw the arguments, and store the drawing into buffers that are written."""
-    inside = ctx.use(pointer(obj))
+    inside = ctx.use(Value(pts=base.pts))
     if isinstance(call.function, ir.Attribute) and call.function.name in SAVING:
         for value, expr in zip(arguments[0][:1], call.arguments[:1], strict=False):
             news = containers.through_statement(ctx, Value(inside), frame, call)
@@ -78,5 +108,5 @@ def _changed(
         return base
     if arguments[0] or arguments[1]:  # constants count too, because data can decide whether they are drawn
         learnt = Value(call_contexts.all_used(ctx, arguments))
-        containers.insert_elements(ctx, pointer(obj), [learnt], frame, call)
+        containers.insert_elements(ctx, Value(pts=base.pts), [learnt], frame, call)
     return base

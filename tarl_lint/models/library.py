@@ -133,7 +133,8 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
             containers.change(ctx, arguments[1][keyword], news, [expr], frame)
     if written is None and dropped(frame, call):
         filling.fill(ctx, name, BOTTOM, arguments, frame, call)
-    drawings.pass_to_function(ctx, arguments, frame, call)
+    it = Invocation(qualified, BOTTOM, arguments, frame, call)
+    drawings.pass_to_function(ctx, it, unused=dropped(frame, call))
     if catalog.scalar(qualified):
         same = qualified == "builtins.float" and len(arguments[0]) == 1
         return Value(deps, arguments[0][0].pts if same else frozenset())
