@@ -10,7 +10,7 @@ from collections.abc import Callable, Hashable, Mapping
 from tarl_lint.interpret import dunder_methods, nullness
 from tarl_lint.interpret.interpreter import NONE_ONLY, Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap
+from tarl_lint.memory import heap, reachable_data
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import (
     BOTTOM,
@@ -152,8 +152,8 @@ def chosen(ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashab
 def truth(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes:
     """Return the nodes that decide whether a value counts as true.
 
-    A whole message, and an object without `__bool__` and `__len__`, are always true. The truth of a container depends
-    on its length.
+    A message, also one that is a field of another one, and an object without `__bool__` and `__len__` are always true.
+    The truth of a container depends on its length.
     """
     if not value.pts:
         return value.deps
@@ -171,7 +171,9 @@ def truth(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes
 def _always_true(ctx: Interpreter, obj: Obj) -> bool:
     if obj.kind == "instance":
         return not any(heap.read_field(ctx, obj, name).pts for name in ("__bool__", "__len__"))
-    return obj.info is BY_CLASS or (obj.kind in MESSAGES and obj.parent is None)
+    if obj.kind in MESSAGES:
+        return obj.parent is None or reachable_data.defined(ctx, obj) != ""
+    return obj.info is BY_CLASS
 
 
 def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:

@@ -85,3 +85,42 @@ def test_a_parameter_may_be_none_if_the_argument_may_be(given, flows):
 def test_the_result_of_a_call_may_be_none_if_the_returned_value_may_be_none(result, flows):
     head = f"def asked():\n    return {result}"
     assert differing(node(GATED.format(value="asked()", flows=flows), head)) == {}
+
+
+POSE = """\
+import rospy
+from geometry_msgs.msg import PoseStamped
+from std_msgs.msg import Float64
+from unknown.msg import Track
+
+out = rospy.Publisher("out", Float64, queue_size=1)
+kept = None
+
+def on(msg):
+    global kept
+    kept = {field}
+
+def tick(event):
+    if {test}:
+        out.publish(1.0)  # {flows}
+
+rospy.Subscriber("in", {kind}, on)
+rospy.Timer(rospy.Duration(1.0), tick)
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize("test", ["kept", "not kept", "kept and True", "bool(kept)"])
+@pytest.mark.parametrize(
+    ("kind", "field", "flows"),
+    [
+        ("PoseStamped", "msg", "clean"),
+        ("PoseStamped", "msg.pose", "clean"),
+        ("PoseStamped", "msg.pose.position", "clean"),
+        ("PoseStamped", "msg.pose.position.x", "control"),
+        ("PoseStamped", "msg.header.stamp", "control"),
+        ("Track", "msg.pose", "control"),
+    ],
+)
+def test_the_truth_of_a_field_depends_on_data_unless_the_field_is_a_message(kind, field, flows, test):
+    assert differing(POSE.format(kind=kind, field=field, flows=flows, test=test)) == {}
