@@ -138,6 +138,10 @@ METHODS: Final[Mapping[str, Fact]] = {
     **{name: Fact("transform", f"tf2.{name}") for name in sorted(LOOKUPS)},
     "registerCallback": Fact("register", "message_filters", callback=(0, "cb")),
 }
+# methods that make a subscription, a publisher, a timer or a service, and are therefore recognised by name alone
+MAKERS: Final = frozenset(
+    name for name, fact in METHODS.items() if fact.kind in ("subscribe", "publisher", "timer", "service")
+)
 # methods of `message_filters.Cache` that return messages
 CACHE_READERS: Final = frozenset(
     ["getElemBeforeTime", "getElemAfterTime", "getInterval", "getSurroundingInterval", "getLast"]

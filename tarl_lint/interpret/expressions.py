@@ -93,7 +93,7 @@ def external(ctx: Interpreter, qualified: str) -> Value:
 
 def _attribute(ctx: Interpreter, expr: ir.Attribute, frame: Frame) -> Value:
     base = evaluate(ctx, expr.base, frame)
-    value = heap.read(ctx, base, expr.name)
+    value = heap.read_or_hold(ctx, base, expr.name)
     for obj in value.objects:
         if obj.kind == "bound" and is_property(obj):
             call = ir.Call(expr, (), (), expr.pos, -expr.slot)

@@ -16,8 +16,10 @@ KINDS = frozenset(
 FACTS = {**catalog.FUNCTIONS, **catalog.METHODS}
 REGISTERING = frozenset(name.rpartition(".")[2] for name, fact in FACTS.items() if fact.kind in KINDS)
 STARTS = REGISTERING | {"init_node", "init", "create_node", "spin"}
+HELD = REGISTERING & catalog.MAKERS  # methods that are recognised without a call
 STARTING = re.compile(
     rf"\.\s*(?:{'|'.join(sorted(STARTS))})\s*\(|\b(?:{'|'.join(sorted(REGISTERING))})\s*\("
+    rf"|\b(?:{'|'.join(sorted(HELD))})\b"
 )  # a file that starts a node contains at least one of these words
 
 
@@ -39,10 +41,19 @@ def registers(statement: ir.Class) -> bool:
 
 
 def starts(function: ir.Function) -> bool:
-    """Return whether a function contains a call that registers something or starts a node."""
+    """Return whether a function contains a call that registers something or starts a node, or such a method."""
     if function.starts is None:
-        function.starts = any(isinstance(n, ast.Call) and _starts(n.func) for n in walk(function.node))
+        function.starts = any(
+            _starts(n.func) if isinstance(n, ast.Call) else _holds(n) for n in walk(function.node)
+        )
     return function.starts
+
+
+def _holds(node: ast.AST) -> bool:
+    """Return whether an expression is a method that registers something, or its name as for `getattr`."""
+    if isinstance(node, ast.Attribute):
+        return node.attr in HELD
+    return isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in HELD
 
 
 def _starts(called: ast.expr) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarl_lint.catalog import MEASURES, METHODS
+from tarl_lint.catalog import MAKERS, MEASURES, METHODS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency, userdata
@@ -96,7 +96,7 @@ def written_here(ctx: Interpreter, obj: Obj, name: str) -> bool:
 def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
     """Return the value of an unset field."""
     kind = obj.kind
-    if name in METHODS_OF.get(kind, ()):
+    if name in METHODS_OF.get(kind, ()) or (kind == "lib" and name in MAKERS):
         return held_method(ctx, obj, name)
     if kind in ("message", "lib", "goal"):
         return _part(ctx, obj, name)
@@ -175,6 +175,13 @@ def bind_class(ctx: Interpreter, value: Value, cls: Obj) -> Value:
         return value
     bound = [method(ctx, o, cls, cls) if _binding(o) == "classmethod" else o for o in value.pts]
     return Value(value.deps, frozenset(bound), value.consts)
+
+
+def read_or_hold(ctx: Interpreter, base: Value, name: str) -> Value:
+    """Return an attribute; for an unknown object, also a method that makes a subscription or the like."""
+    if base.pts or name not in MAKERS:
+        return read(ctx, base, name)
+    return Value(base.deps, held_method(ctx, recency.intern(ctx, "lib", ("unknown",)), name).pts)
 
 
 def held_method(ctx: Interpreter, owner: Obj, name: str) -> Value:

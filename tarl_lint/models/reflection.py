@@ -27,7 +27,7 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
         ]  # `reduce(getattr, parts, message)` returns a part of the message; storing there fills it
     if not names and len(it.call.arguments) > 1:
         return _method_by_beginning(ctx, it) or ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
-    return join_all([heap.read(ctx, plain[0], n) for n in names] + plain[2:])
+    return join_all([heap.read_or_hold(ctx, plain[0], n) for n in names] + plain[2:])
 
 
 def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
