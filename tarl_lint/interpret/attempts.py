@@ -31,8 +31,9 @@ def try_statement(ctx: Interpreter, s: ir.Try, frame: Frame) -> bool:
     for leaving in _together(ctx, around.leaving):
         ctx.store.push(leaving[0].state)
         if ctx.ops.block(ctx, s.final, frame):
+            states: dict[int, Delta] = {}
             for one in leaving:
-                _leave(ctx, one, frame)
+                _leave(ctx, one, frame, states)
         ctx.store.cut(depth)
     if ends:
         joins.merge(ctx, ends)
@@ -49,11 +50,11 @@ def _together(ctx: Interpreter, leaving: list[Leaving]) -> list[list[Leaving]]:
     return list(groups.values())
 
 
-def _leave(ctx: Interpreter, leaving: Leaving, frame: Frame) -> None:
+def _leave(ctx: Interpreter, leaving: Leaving, frame: Frame, states: dict[int, Delta]) -> None:
     """Continue an exception, a `return` or a jump after a `finally`."""
     cause = leaving.cause
     if isinstance(cause, Escape):
-        exceptions.leave(ctx, cause, frame)
+        exceptions.leave(ctx, cause, frame, states)
     elif isinstance(cause, Value):
         returned(ctx, cause, frame)
     else:

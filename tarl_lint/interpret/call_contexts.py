@@ -120,12 +120,13 @@ def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) ->
     ctx.guards = guards
     ctx.store.cut(depth)
     reads = ctx.store.reads
-    ends = [lasting(d, frame, _handed(frame, v), ctx.given, reads) for d, v in frame.returns]
+    handed = _handed(frame)
+    ends = [lasting(d, frame, [*v.pts, *handed], ctx.given, reads) for d, v in frame.returns]
     frame.thrown = None
     if frame.escapes:
-        raising = [(e.state, e.value) for e in frame.escapes]
+        raising = {id(e.state): e.state for e in frame.escapes}  # exceptions of one statement share a state
         frame.thrown = joins.joined(
-            ctx, [lasting(d, frame, _handed(frame, v), ctx.given, reads) for d, v in raising]
+            ctx, [lasting(d, frame, handed, ctx.given, reads) for d in raising.values()]
         )
         for escape in frame.escapes:
             escape.state = {}
@@ -295,10 +296,10 @@ def _initialise(
         ctx.ops.fill(ctx, obj, cls, arguments, frame, call)
 
 
-def _handed(frame: Frame, returned: Value) -> list[Obj]:
-    """Return the objects that a function returns, yields or raises."""
+def _handed(frame: Frame) -> list[Obj]:
+    """Return the objects that a function yields or raises."""
     raised = (o for escape in frame.escapes for o in escape.value.pts)
-    return [*returned.pts, *frame.yielded.pts, *raised]
+    return [*frame.yielded.pts, *raised]
 
 
 def carries(ctx: Interpreter, arguments: Arguments) -> bool:

@@ -11,34 +11,40 @@ from tarl_lint.memory.values import BOTTOM, Nodes, Value, join
 from tarl_lint.models.ros import publications
 
 
-def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:
+def leave(ctx: Interpreter, escape: Escape, frame: Frame, states: dict[int, Delta] | None = None) -> None:
     """Pass an exception to the handlers of the function that may catch it, and to the caller unless one certainly does.
 
-    A `finally` on the way is executed first (`branches.py`).
+    A `finally` on the way is executed first (`attempts.py`). `states` has the states that earlier exceptions at the
+    same point have passed on, by the number of layers below; they share these states.
     """
+    states = {} if states is None else states
     for attempt in reversed(frame.tries):
         if attempt.final:
-            attempt.leaving.append(Leaving(_state(ctx, attempt.depth), escape))
+            attempt.leaving.append(Leaving(_state(ctx, attempt.depth, states), escape))
             return
         caught = attempt.catches(escape.name, ctx.exception_types)
         if caught is not False:
             attempt.raised[escape.name] = join(attempt.raised.get(escape.name, BOTTOM), escape.value)
-            attempt.states.append(_state(ctx, attempt.depth))
+            attempt.states.append(_state(ctx, attempt.depth, states))
         if caught:
             return
-    escape.state = _state(ctx, frame.depth_of_layers)
+    escape.state = _state(ctx, frame.depth_of_layers, states)
     frame.escapes.append(escape)
 
 
-def _state(ctx: Interpreter, depth: int) -> Delta:
+def _state(ctx: Interpreter, depth: int, states: dict[int, Delta]) -> Delta:
     """Return the state that an exception passes on, without the object whose `__init__` it has left.
 
     Nothing refers to this object, unless its `__init__` has stored it elsewhere before.
     """
+    known = states.get(depth)
+    if known is not None:
+        return known
     state = ctx.store.since(depth)
     for obj, height in ctx.building:
         if len(ctx.stack) <= height and not any(obj in v.pts for k, v in state.items() if k[0] is not obj):
             state = {k: v for k, v in state.items() if k[0] is not obj}
+    states[depth] = state
     return state
 
 
@@ -90,6 +96,7 @@ def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
     if statement is None:
         return
     ctx.store.push(frame.thrown)
+    by_name: dict[str, Escape] = {}  # an exception that several calls below raise leaves the caller once
     for escape in frame.escapes:
         if (caller.jumps or _bare(escape.statement)) and not _handled(ctx, escape.name):
             continue
@@ -101,7 +108,11 @@ def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
         publications.under(ctx, escape.frame, escape.statement, decision)
         if escape.decision is not None:
             ctx.graph.depend(decision, (escape.decision,))
-        leave(ctx, Escape(caller, statement, escape.name, escape.value, decision), caller)
+        same = by_name.setdefault(escape.name, Escape(caller, statement, escape.name, escape.value, decision))
+        same.value = join(same.value, escape.value)
+    states: dict[int, Delta] = {}
+    for escape in by_name.values():
+        leave(ctx, escape, caller, states)
     ctx.store.pop()
 
 

@@ -31,6 +31,8 @@ def merge(ctx: Interpreter, deltas: Sequence[Delta]) -> None:
 
 def joined(ctx: Interpreter, deltas: Sequence[Delta]) -> Delta:
     """Return the join of continuations of the current state."""
+    if len(deltas) > 1:
+        deltas = [*{id(delta): delta for delta in deltas}.values()]
     if len(deltas) == 1:
         return deltas[0]
     keys: dict[tuple[Obj, str], None] = {}

@@ -298,3 +298,22 @@ def test_an_instance_that_a_library_calls_is_not_passed_to_its_own_call():
     machine = work(NET.replace("LAYERS", layers).replace("BODY", body))
     called = [frame for frame in machine.frames.values() if frame.function.name == "__call__"]
     assert len(called) == 2  # called by `on` and by the library
+
+
+def test_escapes_of_nested_calls_do_not_multiply() -> None:
+    levels = "\n".join(
+        f"    def step_{n}(self, x):\n        if x > {n}:\n            self.step_{n + 1}(x)\n"
+        f"        self.step_{n + 1}(x)\n"
+        for n in range(5)
+    )
+    last = (
+        "    def step_5(self, x):\n        if x > 1:\n            raise ValueError(x)\n"
+        "        if x > 2:\n            raise KeyError(x)\n        self.send(x)\n"
+    )
+    machine = work(node(levels + last))
+    escapes = {
+        frame.function.name: len(frame.escapes)
+        for frame in machine.frames.values()
+        if frame.function.name.startswith("step_")
+    }
+    assert escapes == {f"step_{n}": 4 for n in range(5)} | {"step_5": 2}
