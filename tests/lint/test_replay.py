@@ -70,6 +70,35 @@ Filter().run()
 """
 
 
+RAISING = f"""{HEAD}
+class Limits:
+    def __init__(self):
+        self.state, self.speeds = 0.0, []
+        self.pub = rospy.Publisher("out", Float64, queue_size=1)
+        rospy.Subscriber("in", Float64, self.heard)
+        rospy.Subscriber("other", Float64, self.heard_too)
+
+    def heard(self, msg):
+        self.pub.publish(self.total(msg.data) + self.state)
+        self.state = self.speeds[0]
+
+    def heard_too(self, msg):
+        self.speeds = [msg.data]
+
+    def total(self, values):
+        total = 0.0
+        for value in values:
+            last = self.speeds
+            total += value * len(last)
+            if value > 3:
+                raise ValueError(value)
+        return total
+
+Limits()
+rospy.spin()
+"""
+
+
 def linked(text: str, *, checking: bool = False) -> Linker:
     machine = Linker([Module("node.py", "node", text, ast.parse(text))], Config(), thorough=False)
     machine.checking = checking
@@ -154,6 +183,10 @@ def test_calls_with_unchanged_reads_run_once(monkeypatch):
 
 def test_a_replay_equals_an_execution():
     assert flows(linked(HELPERS, checking=True)) == flows(linked(HELPERS))
+
+
+def test_a_replay_equals_an_execution_with_fewer_passes_of_a_loop_that_raises():
+    linked(RAISING, checking=True)
 
 
 def test_a_replay_that_differs_is_reported(monkeypatch):
