@@ -78,7 +78,8 @@ def _executed(
     if reads.waits:  # reads after a wait may include values of other roots
         reads.stored |= reads.keys
     found, stored = store.found_by(reads)
-    reads.finish()
+    reads.finish(found.keys(), stored.keys())
+    frame.returns = [({}, value) for value in returned]  # the states are in `delta` now
     return Run(
         passed, mode, reads, found, stored, ctx.work.spent - before,
         join_all(returned), returned, list(frame.escapes), frame.thrown, delta, ctx.graph.edges - edges,

@@ -23,9 +23,10 @@ class Reads:
     """
 
     keys: set[Key] = field(default_factory=set)  # keys whose value was read
-    stored: set[Key] = field(
-        default_factory=set
-    )  # keys for which the call asked whether the run has stored to them
+    # keys for which the call asked whether the run has stored to them
+    stored: set[Key] = field(default_factory=set)
+    # `keys` and `stored` once the call has finished; the sets themselves are then empty
+    finished: tuple[Set[Key], Set[Key]] | None = None
     written: set[Key] = field(default_factory=set)  # keys to which the call has stored on the current path
     objects: dict[Obj, int] = field(
         default_factory=dict
@@ -81,13 +82,19 @@ class Reads:
         if taken == self.left:
             return
         self.taken[inner] = self.left
-        self.keys.update(inner.keys - self.written)
-        self.stored.update(inner.stored - self.written)
+        keys, stored = inner.finished or (inner.keys, inner.stored)
+        self.keys.update(keys - self.written)
+        self.stored.update(stored - self.written)
         if taken is None:
             self._add_rest(inner)
 
-    def finish(self) -> None:
-        """Drop what is needed only while the call runs; `taken` would keep the reads of earlier runs in memory."""
+    def finish(self, keys: Set[Key], stored: Set[Key]) -> None:
+        """Drop what is needed only while the call runs; `taken` would keep the reads of earlier runs in memory.
+
+        `keys` and `stored` equal the sets with these names, and share the memory of a table that is kept anyway.
+        """
+        self.finished = keys, stored
+        self.keys, self.stored = set(), set()
         self.taken, self.arrivals, self.written = {}, set(), set()
 
     def _add_rest(self, inner: Reads) -> None:

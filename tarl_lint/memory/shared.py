@@ -56,6 +56,8 @@ class Shared:
     certain: dict[Obj, dict[Root, None]] = field(default_factory=dict)
     several: set[Obj] = field(default_factory=set)  # objects that have ceased to be one concrete object
     dirty: set[Root] = field(default_factory=set)
+    # key → the tuple that stands for it in the records of calls, which would otherwise keep a tuple for each read
+    one: dict[Key, Key] = field(default_factory=dict)
     edition: int = 0  # number of changes so far of a class, a `from … import *` or a `__dict__`
 
     def read(self, key: Key, root: Root) -> None:

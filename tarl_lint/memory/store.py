@@ -161,14 +161,15 @@ class Store:
 
     def found_by(self, reads: Reads) -> tuple[dict[Key, Value | None], dict[Key, bool]]:
         """Return the current values of the keys read and, for the keys in `stored`, whether this run stored to them."""
-        now, found = self.now, self.found
+        now, found, one = self.now, self.found, self.shared.one
         values: dict[Key, Value | None] = {}
         for key in reads.keys:
+            key = one.setdefault(key, key)
             value = now.get(key)
             if value is None:
                 value = found[key] if key in found else self.peek(key)
             values[key] = None if value is ABSENT else value
-        return values, {key: key in now for key in reads.stored}
+        return values, {one.setdefault(key, key): key in now for key in reads.stored}
 
     def stored(self, key: Key) -> bool:
         """Return whether this run has stored here. Records the read."""

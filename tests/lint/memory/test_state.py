@@ -224,8 +224,8 @@ def test_finished_reads_keep_what_a_replay_needs_and_drop_values_that_the_call_s
     outer.add(inner)
     outer.arrivals.add("cached")
     assert inner in outer.taken
-    outer.finish()
-    assert (outer.keys, outer.stored) == ({here}, {here})
+    outer.finish(outer.keys, outer.stored)
+    assert outer.finished == ({here}, {here})
     assert (outer.taken, outer.arrivals, outer.written) == ({}, set(), set())
 
 
