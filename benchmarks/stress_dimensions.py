@@ -8,7 +8,7 @@
 
 The worlds of stress_worlds.py and stress_worlds_2.py are formulas; those of stress_worlds_3.py and stress_worlds_4.py
 are small simulations, written without knowledge of the search; so are those of stress_worlds_5.py to
-stress_worlds_7.py, whose drifts have units and whose nominal values are not always in the middle or at an end of the
+stress_worlds_8.py, whose drifts have units and whose nominal values are not always in the middle or at an end of the
 range. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the task,
 and three faults of the topic of its first numeric sensor (bias, latency, dropout), of the same relative size in every
 task. Each method may run BUDGET episodes. A peer receives a cost for each drift that it proposes. If the guarantee
@@ -52,13 +52,14 @@ from stress_worlds_5 import MACHINES as FIFTH_MACHINES  # noqa: E402
 from stress_worlds_5 import Machine  # noqa: E402
 from stress_worlds_6 import QUIET_MACHINES, SIXTH_MACHINES  # noqa: E402
 from stress_worlds_7 import SEVENTH_MACHINES  # noqa: E402
+from stress_worlds_8 import EIGHTH_MACHINES  # noqa: E402
 
 from pytest_tarl import faults  # noqa: E402
 from pytest_tarl.designation import Designation  # noqa: E402
 from pytest_tarl.drifts import Drift  # noqa: E402
 from pytest_tarl.rollout import EpisodePlan, Rollout  # noqa: E402
 from pytest_tarl.seeds import episode_seeds, generator  # noqa: E402
-from pytest_tarl.spaces import Point, Space, Span, nominal  # noqa: E402
+from pytest_tarl.spaces import Choice, Point, Space, Span, nominal  # noqa: E402
 from pytest_tarl.stressing.combinations import Together  # noqa: E402
 from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, outcome  # noqa: E402
 from pytest_tarl.stressing.findings import Curve, confirmed  # noqa: E402
@@ -67,7 +68,7 @@ from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
 from pytest_tarl.stressing.search import divided, explore  # noqa: E402
 
 FORMULAS = {**WORLDS, **FRESH_WORLDS, **NEW_WORLDS, **FOURTH_WORLDS}
-MACHINES = {**FIFTH_MACHINES, **SIXTH_MACHINES, **SEVENTH_MACHINES}
+MACHINES = {**FIFTH_MACHINES, **SIXTH_MACHINES, **SEVENTH_MACHINES, **EIGHTH_MACHINES}
 HARMLESS: Mapping[str, World | Machine] = {  # worlds in which no point of the space breaks the guarantee
     "harmless": harmless,
     **QUIET_WORLDS,
@@ -251,7 +252,9 @@ def placed(space: Space, numbers: Sequence[float]) -> Point:
     """Return the point of coordinates from -1 to 1, where 0 is nominal."""
     found = {}
     for (name, extent), number in zip(space.extents.items(), numbers, strict=True):
-        assert isinstance(extent, Span)
+        if isinstance(extent, Choice):
+            found[name] = _option(extent, number)
+            continue
         usual = nominal(extent)
         low, high = usual - extent.low, extent.high - usual
         # nominal is an end of the range: both signs of a coordinate lead into the range
@@ -260,6 +263,13 @@ def placed(space: Space, numbers: Sequence[float]) -> Point:
         else:
             found[name] = usual + (high if number > 0 else low) * min(max(number, -1.0), 1.0)
     return found
+
+
+def _option(extent: Choice, number: float) -> float:
+    """Return the index of the option at a coordinate: each has an equal part, and the nominal one is in the middle."""
+    others = [index for index in range(len(extent.options)) if index != extent.usual]
+    others.insert(len(others) // 2, extent.usual)
+    return float(others[min(int((number + 1.0) / 2.0 * len(others)), len(others) - 1)])
 
 
 def peer_run(one: Arena, seed: int, method: str, home: Path, seconds: float = 600.0) -> list[Point]:

@@ -22,7 +22,7 @@ from stress_worlds import finished
 from pytest_tarl.designation import Designation
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 from pytest_tarl.seeds import generator
-from pytest_tarl.spaces import Point, Space, Span
+from pytest_tarl.spaces import Choice, Point, Space, Span, nominal
 
 Mission = Callable[..., tuple[bool, float]]
 GRAVITY = 9.81
@@ -33,7 +33,7 @@ class Machine:
     """A mission with the ranges of its drifts, and the test's markers."""
 
     mission: Mission
-    directions: Mapping[str, Span]
+    directions: Mapping[str, Span | Choice]
     min_success: float
     tolerance: float
 
@@ -51,7 +51,7 @@ class Machine:
 
     def run(self, seed: int, point: Point) -> tuple[bool, float]:
         """Return whether the mission with this seed passes at a point, and its reward."""
-        return self.mission(generator(seed, "world"), **point)
+        return self.mission(generator(seed, "world"), **self.space.world(point))
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         """Run one episode."""
@@ -333,18 +333,30 @@ def fails(machine: Machine, usual: float, found: tuple[float, float]) -> bool:
     return found[0] < machine.min_success or found[1] < usual - machine.tolerance
 
 
+def _ends(extent: Span | Choice) -> list[float]:
+    """Return the ends of a range, or the indices of options, except the nominal one."""
+    every = range(len(extent.options)) if isinstance(extent, Choice) else (extent.low, extent.high)
+    return [float(end) for end in every if end != nominal(extent)]
+
+
+def _drawn(extent: Span | Choice, draws: np.random.Generator) -> float:
+    """Return a random value of a range, or the index of a random option."""
+    if isinstance(extent, Choice):
+        return float(draws.integers(len(extent.options)))
+    return float(draws.uniform(extent.low, extent.high))
+
+
 def told(name: str, machine: Machine, drifts: int = 400, episodes: int = 40) -> str:
     """Return a line on a machine: nominal, the ends of each range, random drifts."""
     usual = rates(machine, machine.space.nominal, 1000)
     ends: dict[str, Any] = {}
     for direction, extent in machine.directions.items():
-        for end in {extent.low, extent.high} - {extent.nominal}:
+        for end in _ends(extent):
             there = {**machine.space.nominal, direction: end}
             ends[f"{direction}={end:g}"] = "{:.2f}, {:.2f}".format(*rates(machine, there, 200))
     draws = np.random.default_rng(5)
     drawn = [
-        {way: float(draws.uniform(extent.low, extent.high)) for way, extent in machine.directions.items()}
-        for _ in range(drifts)
+        {way: _drawn(extent, draws) for way, extent in machine.directions.items()} for _ in range(drifts)
     ]
     failing = fmean(fails(machine, usual[1], rates(machine, point, episodes)) for point in drawn)
     return f"{name}: nominal {usual[0]:.3f}, {usual[1]:.2f}; of random drifts {failing:.0%} fail; {ends}"
