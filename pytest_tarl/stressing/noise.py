@@ -28,9 +28,11 @@ def typical_variance(every: Sequence[Vector]) -> float:
     """Return the mean variance of the losses of several drifts, with a cap so that noisy drifts do not dominate.
 
     The losses are cut off. If all losses of a drift are cut off, it lies far beyond the boundary and does not count.
+    The cap depends on the drifts whose losses differ: the rewards of a mission may be the same at all others.
     """
     found = [float(np.var(one, ddof=1)) for one in every if len(one) > 1 and one.min() < HIGHEST]
-    return max(fmean(min(one, 4.0 * median(found)) for one in found), 1e-6) if found else 1e-6
+    differ = [one for one in found if one > 0.0]
+    return max(fmean(min(one, 4.0 * median(differ)) for one in found), 1e-6) if differ else 1e-6
 
 
 def nominal_variance(given: Guarantee, typical: float) -> float:
