@@ -55,13 +55,13 @@ NEXT = Plan(0.35, 1.05, ((0.9, 1.03),))
 def chain(nearest: Nearest, plan: Plan, limit: float) -> list[Point]:
     """Return the drifts of a chain, nearer than `limit`, those farthest from nominal first.
 
-    If the nearest failing drift has an option that is not nominal, the model does not cover it, and the chain has only
-    this drift. The chain is empty if no tried drift fails. Raise BudgetSpentError.
+    If the model does not cover the nearest failing drift because of its options, the chain has only this drift. The
+    chain is empty if no tried drift fails. Raise BudgetSpentError.
     """
     best, limit = nearest.best, NEARER * limit
     if best is None:
         return []
-    if not nearest.nominal.covers(best):
+    if not nearest.coordinates.covers(best):
         return [best] if nearest.distance(best) < limit else []
     near = _vetted(nearest, plan) or best
     if nearest.distance(near) >= limit:
@@ -74,7 +74,7 @@ def part_of(nearest: Nearest, chain: Sequence[Point]) -> Part:
 
     The nearest drift of the chain decides, which is the last one. If the model is not clear, both parts are tested.
     """
-    coordinates = nearest.nominal
+    coordinates = nearest.coordinates
     if not chain or not all(map(coordinates.covers, chain)):
         return "both"
     by_loss, by_rate = nearest.model().shown_by(np.array([coordinates.vector(point) for point in chain]))
@@ -89,13 +89,15 @@ def finer(nearest: Nearest, chain: list[Point]) -> list[Point]:
     Each takes few episodes if the same seeds fail under all drifts. If they do not, according to the model, the steps
     are longer.
     """
-    coordinates, near = nearest.nominal, nearest.nominal.vector(chain[-1])
+    coordinates, near = nearest.coordinates, nearest.coordinates.vector(chain[-1])
     before = nearest.distance(chain[-2]) if len(chain) > 1 else inf
     length = nearest.distance(chain[-1])
     alike = nearest.model().luck > 0.0
-    outward = [share for share in OUTWARD if share * length < before] if alike else []
+    outward = [
+        coordinates.point(np.clip(share * near, coordinates.low, coordinates.high)) for share in OUTWARD
+    ]
+    found = [point for point in outward if length < nearest.distance(point) < before] if alike else []
     inward = INWARD if alike else INWARD[1::2]
-    found = [coordinates.point(np.clip(share * near, coordinates.low, coordinates.high)) for share in outward]
     return [*chain[:-1], *found, chain[-1], *(coordinates.point(share * near) for share in inward)]
 
 
@@ -110,7 +112,7 @@ def clear(nearest: Nearest) -> list[Point]:
     found = [
         point
         for point in nearest.tried
-        if nearest.nominal.covers(point)
+        if nearest.coordinates.covers(point)
         and sum(point[name] != usual[name] for name in usual) > 1
         and evaluator.known(point).result == "fails"
     ]
@@ -133,7 +135,7 @@ def _vetted(nearest: Nearest, plan: Plan) -> Point | None:
             return point
         evaluator.common(point, SIZES[2])
         nearest.tried.append(point)
-        vector = nearest.nominal.vector(point)
+        vector = nearest.coordinates.vector(point)
         if nearest.model().deeper(plan.depth).excess(vector[None, :], plan.errors)[0] >= 0.0:
             return point
     return None
@@ -145,9 +147,9 @@ def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Poi
     The drifts are multiples of `near` or have been tried before. A step takes the nearest drift that is likely enough
     to be confirmed, or else the likeliest one. The plan ends early if no drift is at least `POSSIBLE`.
     """
-    coordinates = nearest.nominal
+    coordinates = nearest.coordinates
     vectors = _sorted([*_multiples(nearest, near), *nearest.vectors()])
-    lengths = np.linalg.norm(vectors, axis=1)
+    lengths = np.sqrt((vectors**2).sum(axis=1) + coordinates.options)
     chances = _chances(nearest, near, vectors)
     found: list[Point] = []
     last = nearest.distance(near)
@@ -174,7 +176,7 @@ def _chances(nearest: Nearest, near: Point, vectors: Vector) -> Vector:
 
 
 def _multiples(nearest: Nearest, near: Point) -> list[Vector]:
-    coordinates = nearest.nominal
+    coordinates = nearest.coordinates
     vector = coordinates.vector(near)
     return [np.clip(stretch * vector, coordinates.low, coordinates.high) for stretch in STRETCHES]
 

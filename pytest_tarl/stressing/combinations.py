@@ -16,7 +16,7 @@ from pytest_tarl.stressing.boundary import COARSE, bisect
 from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, Evaluator
 from pytest_tarl.stressing.findings import Curve, Failure, MarginMap, confirmed, failure
 from pytest_tarl.stressing.guarantee import Part
-from pytest_tarl.stressing.nearest import EXPECTED, Nearest
+from pytest_tarl.stressing.nearest import EXPECTED, LARGEST, ROUNDS, Nearest
 from pytest_tarl.stressing.rate_tests import RateTests
 from pytest_tarl.stressing.rays import Ray, distance, joined
 
@@ -25,6 +25,7 @@ INSIDE = 0.9
 FIRST = 0.5  # share of the budget for the first search for the nearest failing drift
 CONFIRMED = 0.95  # share of the budget that the tests of a nearer failing drift may use
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
+ALONE = 3  # number of rounds of the search with nominal options before the others are searched
 REFINED = 0.08  # share of the budget for the search between the first chains of tests
 ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first one that confirms a drift
 # shares of the whole risk that the first chains get; each further chain gets half of the rest
@@ -138,11 +139,20 @@ def _at_most(one: Point, other: Point, evaluator: Evaluator) -> bool:
 
 
 class Combined:
-    """The search in several directions: `begin` runs before the single directions are examined, `end` afterwards."""
+    """The search in several directions: `begin` runs before the single directions are examined, `end` afterwards.
+
+    If no near drift fails with nominal options, a search of its own follows for each other option.
+    """
 
     def __init__(self, evaluator: Evaluator, together: Together) -> None:
         self.evaluator, self.together = evaluator, together
-        self.nearest = Nearest(evaluator, together.curves, risk=together.risk * _share(1))
+        risk = together.risk * _share(1)
+        self.nearest = Nearest(evaluator, together.curves, risk=risk)
+        self.options = [
+            Nearest(evaluator, together.curves, self.nearest.tried, risk=risk, base=curve.ray.farthest)
+            for curve in together.curves
+            if not curve.ray.continuous and len(self.nearest.coordinates.spans) > 1
+        ]
 
     def begin(self) -> None:
         """Run a few episodes on each ray, search for the nearest failing drift, and confirm it.
@@ -153,19 +163,19 @@ class Combined:
             for curve in self.together.curves:
                 for t in curve.ray.places:
                     curve.evidence[t] = self.evaluator.glance(curve.ray.point(t))
-            self.nearest.approach()
+            self._approach()
         if not any(self._confirm(chains.FIRST) for _ in range(ATTEMPTS)):
-            self._test(chains.clear(self.nearest))
+            self._test(chains.clear(self._leading))
         with self.evaluator.limited(CONFIRMED):
             with self.evaluator.limited(self.evaluator.spent / self.evaluator.budget + REFINED):
-                self.nearest.refine()
+                self._leading.refine()
             self._confirm(chains.NEXT)
 
     def end(self) -> None:
         """Search for nearer failing drifts, test pairs, and confirm the results. Raise BudgetSpentError."""
         proposed: list[Point] = []
         with self.evaluator.limited(LAST):
-            self.nearest.improve()
+            self._leading.improve()
             pairs(self.evaluator, self.together, proposed)
         self._confirm(chains.NEXT)
         self._test(sorted(proposed, key=lambda one: -distance(self.evaluator.space, one)))
@@ -173,24 +183,59 @@ class Combined:
     def draw(self) -> None:
         """Predict the map and the nearest failures from all episodes, if every ray has some."""
         if all(curve.evidence for curve in self.together.curves):
-            found = self.nearest.expected(EXPECTED)
+            found = self._leading.expected(EXPECTED)
             self.together.expected = [failure(self.evaluator.space, point) for point in found]
             self.together.margin_map = self.nearest.map()
+
+    def _approach(self) -> None:
+        """Search with nominal options, and with the others as long as they may be nearer. Raise BudgetSpentError."""
+        if not self.options:
+            self.nearest.approach()
+            return
+        self.nearest.approach(ALONE)
+        for _ in range(ROUNDS):
+            best = self._leading.best
+            limit = LARGEST if best is None else self.nearest.distance(best)
+            nearer = [
+                one
+                for one in self.options
+                if one.coordinates.options < limit**2
+                and self.evaluator.known(one.coordinates.base).result != "fails"
+            ]
+            for one in (self.nearest, *nearer):
+                one.ceiling = limit
+                one.explore(1)
+
+    @property
+    def _leading(self) -> Nearest:
+        """Return the search with the nearest failing drift; the one with nominal options if no drift fails."""
+        leading, least = self.nearest, inf
+        for one in (*self.options, self.nearest):
+            best = one.best
+            if best is None or any(
+                other is not one and other.coordinates.covers(best) for other in self.options
+            ):
+                continue  # the model of the other search decides
+            if one.distance(best) < least:
+                leading, least = one, one.distance(best)
+        return leading
 
     def _confirm(self, plan: chains.Plan) -> bool:
         """Test a chain that leads nearer to nominal than every confirmed drift. Raise BudgetSpentError."""
         limit = min((one.distance for one in self.together.confirmed), default=inf)
-        return self._test(chains.chain(self.nearest, plan, limit))
+        return self._test(chains.chain(self._leading, plan, limit))
 
     def _test(self, chain: Sequence[Point]) -> bool:
         self.together.tried = len(self.nearest.tried)
         try:
-            part = chains.part_of(self.nearest, chain)
+            leading = self._leading
+            part = chains.part_of(leading, chain)
             if part == "rate":
-                chain = chains.finer(self.nearest, [*chain])
+                chain = chains.finer(leading, [*chain])
             return self.together.confirm(chain, self.evaluator, part)
         finally:
-            self.nearest.tested = self.together.tested
+            for one in (self.nearest, *self.options):
+                one.tested = self.together.tested
 
 
 def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> None:

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
 from math import sqrt
-from statistics import fmean
 
 import numpy as np
 
@@ -23,17 +22,11 @@ from pytest_tarl.stressing.coordinates import Coordinates, Vector
 from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, Evaluator
 from pytest_tarl.stressing.evolving import evolve
 from pytest_tarl.stressing.findings import Curve, MarginMap
+from pytest_tarl.stressing.fitting import fitted
 from pytest_tarl.stressing.generating import generate
 from pytest_tarl.stressing.guarantee import most_passed
 from pytest_tarl.stressing.mapping import margin_map
-from pytest_tarl.stressing.noise import (
-    cut_off,
-    nominal_variance,
-    standard_error,
-    typical_variance,
-    variance_near,
-)
-from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
+from pytest_tarl.stressing.prediction import Prediction, Shown
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
 from pytest_tarl.stressing.spreading import around, spread
@@ -84,10 +77,12 @@ class Nearest:
     tried: list[Point] = field(default_factory=list)
     tested: list[Point] = field(default_factory=list)  # drifts at which fresh episodes ran
     risk: float = 0.01  # error probability of a test on fresh seeds; limits which failures can be shown
+    base: Point | None = None  # a drift with the options that all drifts of the search have; None is nominal
+    ceiling: float = LARGEST  # maximum distance of the drifts that are explored
     _spread: Iterator[Vector] | None = None
     _fitted: tuple[int, Prediction] | None = None  # (number of episodes that the model was fitted to, model)
 
-    def approach(self) -> None:
+    def approach(self, rounds: int = ROUNDS) -> None:
         """Try predicted drifts; if none fails so far, let Hypothesis explore first.
 
         Raise BudgetSpentError; the drifts tried so far are kept.
@@ -96,7 +91,7 @@ class Nearest:
         if self.best is None:
             self._generate()
             self._predict()
-        self._explore_and_predict(ROUNDS)
+        self.explore(rounds)
 
     def refine(self) -> None:
         """Predict again, and try drifts around the best one. Raise BudgetSpentError."""
@@ -110,7 +105,7 @@ class Nearest:
         Raise BudgetSpentError; the drifts tried so far are kept.
         """
         self._predict()
-        self._explore_and_predict(AGAIN)
+        self.explore(AGAIN)
         self._evolve()
         if self.best is not None:
             self.tried.append(shrunk(self.best, self.evaluator))
@@ -120,14 +115,15 @@ class Nearest:
         """Return the nearest known failing drift, from `tried` and the rays, or None.
 
         The model of all episodes decides whether a drift fails, unless the drift's own episodes show it clearly. A
-        drift with an option that is not nominal is outside the model; only its own episodes decide.
+        drift with an option that is not nominal is outside the nominal model; only its own episodes decide. With a
+        base, only drifts with its options count.
         """
-        coordinates = self.nominal
+        coordinates = self.coordinates
         own = [point for point in self._known() if coordinates.covers(point) and self.distance(point) > 0.0]
         other = [
             point
             for point in self._known()
-            if not coordinates.covers(point) and self.evaluator.examine(point, SIZES[0]).result == "fails"
+            if self.base is None and not coordinates.covers(point) and self._fails(point)
         ]
         if own and coordinates.spans:
             model = self.model()
@@ -146,7 +142,7 @@ class Nearest:
         vector = model.shortest(errors, LARGEST, draws)
         if vector is None:
             return None
-        return self.nominal.point(_without_trifles(vector, model, errors))
+        return self.coordinates.point(_without_trifles(vector, model, errors))
 
     def expected(self, steps: Steps) -> list[Point]:
         """Return for each step the nearest drift that fails according to the model.
@@ -154,7 +150,7 @@ class Nearest:
         A step allows for errors of the model and demands an excess over the guarantee. Drifts that hardly differ are
         skipped. The result is empty if no tried drift fails.
         """
-        best, coordinates = self.best, self.nominal
+        best, coordinates = self.best, self.coordinates
         if best is None or not coordinates.covers(best):
             return []
         draws = seeds.generator(self.evaluator.seed, f"stress {self.evaluator.drift} chain {len(self.tried)}")
@@ -169,7 +165,12 @@ class Nearest:
 
     def map(self) -> MarginMap | None:
         """Return the map of margins that the model predicts, or None with fewer than two ranges."""
-        return margin_map(self.curves, self.model(), self.nominal)
+        return margin_map(self.curves, self.model(), self.coordinates)
+
+    def _fails(self, point: Point) -> bool:
+        """Return whether a point's own episodes show a failure; run a few more if they suggest one."""
+        evaluator = self.evaluator
+        return evaluator.glance(point).failing and evaluator.examine(point, SIZES[0]).result == "fails"
 
     def _clearly_fails(self, point: Point) -> bool:
         """Return whether a point's own episodes clearly show a failure, without the help of the model."""
@@ -178,45 +179,23 @@ class Nearest:
 
     def vectors(self) -> list[Vector]:
         """Return the vectors of all known drifts that the model covers."""
-        return [self.nominal.vector(point) for point in self._known() if self.nominal.covers(point)]
+        return [self.coordinates.vector(point) for point in self._known() if self.coordinates.covers(point)]
 
     def _known(self) -> list[Point]:
         single = [curve.ray.point(t) for curve in self.curves for t in curve.evidence]
         tested = [point for point in self.tested if self.evaluator.knows(point)]
         return [*single, *self.tried, *tested]
 
-    @property
-    def nominal(self) -> Coordinates:
-        """Return the coordinates of the drifts with nominal options, which the model covers."""
-        return Coordinates(self.evaluator.space, self.evaluator.space.nominal)
+    @cached_property
+    def coordinates(self) -> Coordinates:
+        """Return the coordinates of the drifts with the options of the base, which the model covers."""
+        return Coordinates(self.evaluator.space, self.base or self.evaluator.space.nominal)
 
     def model(self) -> Prediction:
-        """Return the model of the drifts with nominal options, fitted to all drifts known so far."""
+        """Return the model of the drifts with the options of the base, fitted to all drifts known so far."""
         if self._fitted is None or self._fitted[0] != self.evaluator.spent:
-            evaluator, coordinates = self.evaluator, self.nominal
-            unique = {tuple(point.values()): point for point in self._known() if coordinates.covers(point)}
-            points = list(unique.values())
-            measured = [evaluator.losses(point) for point in points]
-            within = [cut_off(losses) for losses, _ in measured]
-            typical = typical_variance(within)
-            samples = [
-                Sample(
-                    coordinates.vector(point),
-                    fmean(losses),
-                    standard_error(cut, typical),
-                    failed,
-                    evaluator.sources(point),
-                )
-                for point, (losses, failed), cut in zip(points, measured, within, strict=True)
-            ]
-            shown = self._shown(sqrt(variance_near(1.0, within, typical)))
-            paired = nominal_variance(evaluator.guarantee, typical)
-            counts = [
-                (coordinates.vector(point), failed, episodes)
-                for point, failed, episodes in evaluator.counts
-                if coordinates.covers(point)
-            ]
-            model = Prediction(coordinates, evaluator.guarantee, samples, shown, typical, paired, counts)
+            evaluator = self.evaluator
+            model = fitted(evaluator, self.coordinates, self._known(), self._shown)
             self._fitted = evaluator.spent, model
         return self._fitted[1]
 
@@ -255,7 +234,7 @@ class Nearest:
 
     def _predict(self) -> None:
         """Try the nearest drifts that the model predicts to fail, with varying optimism, and learn from each."""
-        evaluator, coordinates = self.evaluator, self.nominal
+        evaluator, coordinates = self.evaluator, self.coordinates
         draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} prediction {len(self.tried)}")
         if len(coordinates.spans) < 2:
             return
@@ -270,7 +249,8 @@ class Nearest:
                     continue
             self._probe(coordinates.point(vector))
 
-    def _explore_and_predict(self, rounds: int) -> None:
+    def explore(self, rounds: int) -> None:
+        """Explore and predict in turn. Raise BudgetSpentError; the drifts tried so far are kept."""
         for _ in range(rounds):
             self._explore()
             self._predict()
@@ -281,13 +261,13 @@ class Nearest:
         Some are chosen by the model, because losses that are tolerated show where a failing region may be. Then try a
         few drifts around the best one.
         """
-        evaluator, coordinates = self.evaluator, self.nominal
+        evaluator, coordinates = self.evaluator, self.coordinates
         if len(coordinates.spans) < 2:
             return
         if self._spread is None:
             draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} exploration")
             self._spread = spread(coordinates, draws)
-        limit = min(self._limit(), LARGEST)
+        limit = sqrt(max(min(self._limit(), self.ceiling) ** 2 - coordinates.options, 0.0))
         vectors = [limit * vector for vector in islice(self._spread, EXPLORED)]
         among = np.array([limit * vector for vector in islice(self._spread, GUIDED * AMONG)])
         hopes = self.model().excess(np.clip(among, coordinates.low, coordinates.high), -HOPE)
@@ -298,7 +278,7 @@ class Nearest:
 
     def _descend(self) -> None:
         """Try a few drifts around the best one."""
-        evaluator, coordinates, best = self.evaluator, self.nominal, self.best
+        evaluator, coordinates, best = self.evaluator, self.coordinates, self.best
         if best is not None and coordinates.covers(best):
             draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} descent {len(self.tried)}")
             for vector in islice(around(coordinates, coordinates.vector(best), draws), DESCENDED):

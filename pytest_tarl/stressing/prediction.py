@@ -80,16 +80,19 @@ class Prediction:
         typical: float,
         paired: float,
         counted: Sequence[tuple[Vector, float, int]] = (),
+        origin: float = 0.0,
     ) -> None:
         """Fit the model; `typical` is the variance of a loss, `paired` the part of it that the nominal episode adds.
 
         `counted` are further drifts with fresh seeds of their own: vector, number of failures, number of episodes.
+        `origin` is the loss at the zero vector, which is not 0 if the drifts have options that are not nominal.
         """
         self.coordinates, self.given, self.shown = coordinates, given, shown
+        self._origin = min(max(origin, LOWEST), 1.0 - LOWEST)
         self._vectors = np.array([one.vector for one in samples]).reshape(
             len(samples), len(coordinates.spans)
         )
-        losses = np.array([min(max(one.loss, LOWEST), 1.0 - LOWEST) for one in samples])
+        losses = np.array([min(max(one.loss, LOWEST), 1.0 - LOWEST) - self._origin for one in samples])
         counts = np.array([float(len(one.sources)) for one in samples])
         # drifts with the same seeds share the nominal episodes, so their errors are correlated
         places = {
@@ -179,7 +182,7 @@ class Prediction:
     @one_thread
     def shown_by(self, vectors: Vector) -> tuple[Vector, Vector]:
         """Return the probabilities that fresh episodes show too large a loss, and too many failures, at vectors."""
-        mean, deviation = self._losses.moments(*self._prior(vectors, 0))
+        mean, deviation = self._loss(vectors)
         by_loss = _normal((mean - 1.0 - self.shown.depth) / deviation)
         if self._rates is None:
             return by_loss, np.zeros_like(by_loss)
@@ -193,7 +196,7 @@ class Prediction:
         Of the two excesses, the larger one counts; it is in units of the tolerated loss. The prediction is first
         lowered by `errors` standard deviations. The result has the shape (drifts,).
         """
-        mean, deviation = self._losses.moments(*self._prior(vectors, 0))
+        mean, deviation = self._loss(vectors)
         found: Vector = mean - errors * deviation - 1.0 - self.shown.depth
         if self._rates is not None:
             logits, spreads = self._rates.moments(*self._prior(vectors, 1))
@@ -203,7 +206,7 @@ class Prediction:
     @one_thread
     def moments(self, vectors: Vector) -> tuple[Vector, Vector]:
         """Return the means and the standard deviations of the margins at vectors, as two arrays of shape (drifts,)."""
-        mean, deviation = self._losses.moments(*self._prior(vectors, 0))
+        mean, deviation = self._loss(vectors)
         margins: Vector = np.maximum(1.0 - mean, LOWEST)
         if self._rates is not None:
             logits, spreads = self._rates.moments(*self._prior(vectors, 1))
@@ -216,6 +219,11 @@ class Prediction:
     def margins(self, vectors: Vector) -> Vector:
         """Return the predicted margins at vectors of shape (drifts, ranges)."""
         return self.moments(vectors)[0]
+
+    def _loss(self, vectors: Vector) -> tuple[Vector, Vector]:
+        """Return the predicted means and standard deviations of the losses at vectors."""
+        mean, deviation = self._losses.moments(*self._prior(vectors, 0))
+        return mean + self._origin, deviation
 
     def _prior(self, vectors: Vector, field: int) -> tuple[Matrix, Vector]:
         """Return prior covariances with the tried drifts, and prior variances.
