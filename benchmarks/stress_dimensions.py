@@ -316,11 +316,11 @@ def offered(
 
 
 def compare(
-    one: Arena, methods: Sequence[str], seeds: int, home: Path, seconds: float
+    one: Arena, methods: Sequence[str], seeds: Sequence[int], home: Path, seconds: float
 ) -> dict[str, list[float | None]]:
     """Return the verified distance of each method at each seed."""
     found: dict[str, list[float | None]] = {method: [] for method in methods}
-    for seed in range(seeds):
+    for seed in seeds:
         run = searched(one, seed) if set(OWN) & set(methods) else None
         for method in methods:
             found[method].append(verified(one, seed, offered(one, seed, method, run, home, seconds)))
@@ -364,6 +364,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("tasks", nargs="*", metavar="TASK", help="default: all")
     parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--first", type=int, default=0, help="the first seed (default: 0)")
     parser.add_argument("--methods", nargs="+", default=[*OWN, "random", "CMA-ES", *PEERS])
     parser.add_argument("--home", type=Path, default=Path.home() / ".cache" / "tarl-stress-peers")
     parser.add_argument(
@@ -380,15 +381,16 @@ def main() -> None:
             print(harmless_runs(arguments.harmless, name), flush=True)
         return
     methods: list[str] = arguments.methods
+    seeds = range(arguments.first, arguments.first + arguments.seeds)
     every: dict[str, list[float | None]] = {method: [] for method in methods}
     print(f"| task | {' | '.join(methods)} |\n|---|{'---|' * len(methods)}")
     for task in arguments.tasks or [*FORMULAS, *MACHINES, *TASKS]:
 
         def visitor(stage: Stage) -> dict[str, list[float | None]]:
-            return compare(arena(stage), methods, arguments.seeds, arguments.home, arguments.peer_seconds)
+            return compare(arena(stage), methods, seeds, arguments.home, arguments.peer_seconds)
 
         if task in FORMULAS or task in MACHINES:
-            found = compare(formula(task), methods, arguments.seeds, arguments.home, arguments.peer_seconds)
+            found = compare(formula(task), methods, seeds, arguments.home, arguments.peer_seconds)
         else:
             found = visit(task, visitor, None, HERE / "drift")
         print(row(task, found), flush=True)
