@@ -31,7 +31,7 @@ class Told:
     by_rate: dict[float, float]
     luck: float = 0.0
 
-    nominal = Coordinates(SQUARE, SQUARE.nominal)
+    coordinates = Coordinates(SQUARE, SQUARE.nominal)
 
     def model(self) -> Told:
         return self
