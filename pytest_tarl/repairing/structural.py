@@ -83,6 +83,7 @@ class Structures:
                 self._told(known, places, self._telling()),
                 lambda share, left: min(max(share, LEAST), left // 3),
             ),
+            self._once(known, places),
             self._at_commands(known, places),
             _Group(self._at_the_best(known, places), lambda share, left: max(share, left // 2)),
         ]
@@ -91,13 +92,15 @@ class Structures:
     def early(self, most: int) -> Iterator[Candidate]:
         """Yield confirmed candidates of the changes with symptoms; spend `most` episodes, more if one gains much.
 
-        Among them are the templates with a telling sensor that varies, because no constant fits all its values.
+        Among them are the templates with a telling sensor that varies, because no constant fits all its values, and the
+        changes without parameters, which take one episode each.
         """
         order = self.order
         known, places = templates(order.root), list(spots(order))
         varying = [one for one in self._telling() if order.goal.ranged or varies(order, one)]
         found = [self._evident(known, places), self._told(known, places, varying)]
-        groups = [_Group(operands, lambda share, _: share // 2) for operands in found]
+        once = self._once(known, places)
+        groups = [once, *(_Group(operands, lambda share, _: share // 2) for operands in found)]
         trials = self.trials
         budget, reserve, worth, spent = trials.budget, trials.reserve, trials.worth, trials.spent
         trials.budget = min(spent + 2 * most, budget)
@@ -213,6 +216,15 @@ class Structures:
                         self._found[operand] = form
                         found += [] if fixed(form) else [operand]
         return found
+
+    def _once(self, known: Sequence[Template], among: Sequence[Spot]) -> _Group:
+        """Return the operands of the templates without parameters, such as swapped axes, at the first expressions.
+
+        Each takes one episode, and none has a value that could be nearly right, so nothing leads the search to them.
+        """
+        bare = [one for one in known if not one.parameters and one.on not in OF_SENSORS]
+        found = [operand for one in bare for operand in self._at(one, among, first=True)]
+        return _Group(found, lambda share, left: min(max(share, len(found)), left))
 
     def _at_commands(self, known: Sequence[Template], among: Sequence[Spot]) -> _Group:
         """Return the operands of the templates for any number at the values that are published."""

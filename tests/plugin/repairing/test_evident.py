@@ -230,6 +230,24 @@ def test_changes_with_symptoms_come_before_all_other_structural_changes(tmp_path
     assert set(labels) > {"confirmed"}
 
 
+def test_changes_without_parameters_are_tried_first_and_once_without_any_symptom(tmp_path: Path) -> None:
+    order = order_of(tmp_path)
+    names: list[str] = []
+
+    def run(candidate: Candidate, _: int) -> Outcome:
+        form = candidate.mutations[0].form
+        assert form is not None
+        names.append(form.template.name)
+        return Outcome(1.0, passed=False)
+
+    structures = Structures(order, (ALWAYS,), Trials(run, 40))
+    assert list(structures.early(20)) == []
+    assert sorted(names) == ["comparison", "sign", "sign"]
+    names.clear()
+    assert list(_quietly(structures)) == []
+    assert not {"comparison", "sign"} & set(names[:8])  # their results are known
+
+
 def _quietly(structures: Structures) -> list[Candidate]:
     from pytest_tarl.searching.search import BudgetSpentError
 
