@@ -42,14 +42,15 @@ class Early:
 
         `best` is the largest gain of a constant so far.
         """
-        begin = LATER if best >= PARTLY * self.order.goal.wanted else FROM
+        partly = best >= PARTLY * self.order.goal.wanted
+        begin = LATER if partly else FROM
         if self._structures is not None or self.trials.spent < begin:
             return
         begun = self.trials.spent
         found = self.signs(self.trials)
         self._structures = Structures(self.order, self.guards, self.trials, signs=found)
         try:
-            for candidate in self._structures.early(MOST):
+            for candidate in self._structures.early(MOST, once=not partly):
                 self.spent = self.trials.spent - begun
                 self.waiting = True
                 yield candidate

@@ -89,18 +89,18 @@ class Structures:
         ]
         yield from self._searched([group for group in first if group.operands] + self._groups(known, places))
 
-    def early(self, most: int) -> Iterator[Candidate]:
+    def early(self, most: int, once: bool = True) -> Iterator[Candidate]:
         """Yield confirmed candidates of the changes with symptoms; spend `most` episodes, more if one gains much.
 
-        Among them are the templates with a telling sensor that varies, because no constant fits all its values, and the
-        changes without parameters, which take one episode each.
+        Among them are the templates with a telling sensor that varies, because no constant fits all its values. With
+        `once`, the changes without parameters come first, one episode each.
         """
         order = self.order
         known, places = templates(order.root), list(spots(order))
         varying = [one for one in self._telling() if order.goal.ranged or varies(order, one)]
         found = [self._evident(known, places), self._told(known, places, varying)]
-        once = self._once(known, places)
-        groups = [once, *(_Group(operands, lambda share, _: share // 2) for operands in found)]
+        bare = [self._once(known, places)] if once else []
+        groups = [*bare, *(_Group(operands, lambda share, _: share // 2) for operands in found)]
         trials = self.trials
         budget, reserve, worth, spent = trials.budget, trials.reserve, trials.worth, trials.spent
         trials.budget = min(spent + 2 * most, budget)

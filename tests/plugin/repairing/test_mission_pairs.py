@@ -13,7 +13,7 @@ import pytest
 from pytest_tarl.instrumentation.sites import plan
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.repairing import early as module
-from pytest_tarl.repairing.early import FROM, MOST, Early
+from pytest_tarl.repairing.early import FROM, LATER, MOST, PARTLY, Early
 from pytest_tarl.repairing.mission_pairs import NO_SIGNS, Signs, signs
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 from pytest_tarl.searching.accept import Outcome
@@ -151,11 +151,11 @@ class Fake:
     def __init__(self, order: Any, guards: Any, trials: Trials, signs: Signs) -> None:
         self.given = (order, guards, trials, signs)
         self.trials = trials
-        self.most = 0
+        self.most, self.once = 0, False
         Fake.made.append(self)
 
-    def early(self, most: int) -> Iterator[Candidate]:
-        self.most = most
+    def early(self, most: int, once: bool) -> Iterator[Candidate]:
+        self.most, self.once = most, once
         for by in (2.0, 3.0):
             for _ in range(3):
                 self.trials.charge()
@@ -171,7 +171,7 @@ def early(monkeypatch: pytest.MonkeyPatch) -> Early:
     monkeypatch.setattr(Fake, "made", [])
     monkeypatch.setattr(module, "Structures", Fake)
     monkeypatch.setattr(module, "signs", lambda order, trials: [trials.charge(), Signs({"x": {}})][1])
-    order: Any = SimpleNamespace()
+    order: Any = SimpleNamespace(goal=SimpleNamespace(wanted=10.0))
     return Early(order, (), Trials(lambda *_: Outcome(0.0, False), 1000))
 
 
@@ -197,6 +197,15 @@ def test_the_episodes_of_the_changes_are_counted_with_those_of_the_pairs(early: 
     assert (early.spent, early.waiting) == (12, True)
     assert list(found) == []
     assert (early.spent, early.waiting) == (13, False)
+
+
+@pytest.mark.parametrize(("best", "once"), [(0.0, True), (PARTLY * 10.0, False)])
+def test_changes_without_parameters_are_left_out_while_a_constant_gains_a_part(
+    early: Early, best: float, once: bool
+) -> None:
+    list(charged(early, LATER).candidates(best))
+    (made,) = Fake.made
+    assert made.once is once
 
 
 def test_an_accepted_candidate_leaves_the_search_waiting(early: Early) -> None:
