@@ -39,7 +39,6 @@ def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, gua
 
     There are at most `OTHERS` constants. Constants that never changed a mission are left out, and so are steps larger
     than `LESS` times the change found.
-
     """
     most, tried = LESS * change_size(found, factor), gains.under(guard)
     others = [

@@ -11,7 +11,8 @@ import pytest
 from pytest_tarl.design import AS_WRITTEN
 from pytest_tarl.errors import NodeError, RecordingError, SettingsError, StuckNodeError, TarlError
 from pytest_tarl.instrumentation.trace import Trace
-from pytest_tarl.repeating import Episode, _first_paragraph, _outcome
+from pytest_tarl.item_episode import Episode, _first_paragraph
+from pytest_tarl.repeating import _outcome
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 
 TRACE = Trace((), *(np.zeros(0, np.int32), np.zeros(0), *(np.zeros(0, np.int32),) * 3), np.zeros(0), {})

@@ -120,6 +120,16 @@ def test_an_unset_attribute_of_a_library_object_is_its_bound_method(ctx, kind, n
     assert heap.held_method(ctx, obj, name) == pointer(method)
 
 
+@pytest.mark.parametrize(("name", "held"), [("create_subscription", True), ("name", False)])
+def test_only_a_ros_method_of_an_unknown_object_is_held(ctx, name, held):
+    value = heap.read_or_hold(ctx, ONE, name)
+    assert [(one.kind, one.info[1]) for one in value.pts] == ([("method", name)] if held else [])
+    assert value.deps == ONE.deps
+    instance = an_instance(ctx, a_class(ctx, "A"))
+    ctx.store.put((instance, name), TWO)
+    assert heap.read_or_hold(ctx, pointer(instance), name) is TWO
+
+
 def test_an_unset_field_has_the_default_of_its_kind_of_object(ctx):
     listed, ext = made(ctx, "sequence", "a"), recency.intern(ctx, "ext", "numpy", "numpy")
     instance = an_instance(ctx, cls := a_class(ctx, "A"))

@@ -141,7 +141,7 @@ def test_a_sweep_knows_the_operands_aside_and_whether_structural_changes_follow(
     assert found.given[4] == "goal"
     assert codes(found.named["aside"]) == ["20.0 in 29"]
     assert found.named["structure_follows"] is True
-    assert list(found.named["interlude"]()) == []
+    assert list(found.named["interlude"](0.0)) == []
     assert {*found.given[0], *found.named["late"]} == {*operands(order)}
 
 

@@ -20,7 +20,7 @@ from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.gentler import COARSE, FINE, another_way, gentler
 from pytest_tarl.searching.nearest import LEAST, MOST, STRONGER, WEAKER, nearest
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
-from pytest_tarl.searching.smaller import LEADING, STEPS, inside, milder, onward, smaller
+from pytest_tarl.searching.smaller import LEADING, OTHERS, STEPS, inside, milder, onward, smaller
 from pytest_tarl.searching.units import Unit
 from pytest_tarl.sensors import Sensor
 from tests.plugin.searching.test_gains import constant
@@ -211,11 +211,14 @@ def test_rivals_that_were_not_tried_are_included_and_others_are_not() -> None:
 def test_the_constant_that_gained_most_is_tried_first_and_untried_ones_last() -> None:
     gains = entered((B, 2.2, -1.0), (C, 2.2, 3.0), (C, 0.82, 1.0), (A, 9.0, 9.0))
     found = smaller(A, 9.0, [A, B, C, D], gains, ALWAYS)
-    (down, up), (further_down, further_up) = STEPS
-    assert found == [
-        *((C, up), (B, down), (B, up), (D, down), (D, up)),  # C was tried with the first step
-        *((one, step) for one in (C, B, D) for step in (further_down, further_up)),
-    ]
+    down, up = STEPS
+    assert found == [(C, up), (B, down), (B, up), (D, down), (D, up)]  # C was tried with the first step
+
+
+def test_small_steps_are_tried_on_a_limited_number_of_constants() -> None:
+    units = [Unit((constant(line, f"U{line}"),)) for line in range(11, 20)]
+    found = smaller(A, 9.0, units, Gains(0.1), ALWAYS)
+    assert {unit for unit, _ in found} == {*units[:OTHERS]}
 
 
 def test_booleans_other_scales_and_the_constant_itself_are_not_made_smaller() -> None:

@@ -149,7 +149,7 @@ def model_of(by_loss: Sequence[float], by_rate: Sequence[float], luck: float = 0
         high=np.array([1.0, 1.0]),
     )
     return SimpleNamespace(
-        model=lambda: shown, nominal=coordinates, distance=lambda point: hypot(point["a"], point["b"])
+        model=lambda: shown, coordinates=coordinates, distance=lambda point: hypot(point["a"], point["b"])
     )
 
 
