@@ -64,7 +64,7 @@ class Recorded:
     failures: tuple[str, ...]
     learner: str = "sarsa"
     notes: tuple[str, ...] = ()
-    simulator: bool = False  # whether an external simulator was the world
+    simulator: bool = False  # whether the world was an external simulator
 
     @property
     def success(self) -> float:

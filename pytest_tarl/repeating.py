@@ -160,7 +160,7 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
     if episode.trace is None:
         lost = "\n".join(report.longreprtext for report in broken)
         raise TarlError(
-            lost or "The test ended without its fixture `tarl`: do not give the argument a default."
+            lost or "The test ended without its fixture `tarl`: remove the default value of the argument."
         )
     return EpisodeRun(
         plan=episode.plan,

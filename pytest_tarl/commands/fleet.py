@@ -61,7 +61,13 @@ def add_ingest(commands: argparse._SubParsersAction[Parser]) -> None:
         help="logs of `tarl observe`, or bags with one mission each (.bag, .mcap, .db3, a ROS 2 bag's folder)",
     )
     flag("--to", required=True, metavar="DIR", help="data set: a folder, or a URL such as s3://bucket/folder")
-    flag("--fixture", type=Path, required=True, metavar="FILE", help="the recording that the robots observed")
+    flag(
+        "--fixture",
+        type=Path,
+        required=True,
+        metavar="FILE",
+        help="the recording that `tarl observe` used on the robots",
+    )
     flag(
         "--robot",
         required=True,

@@ -42,7 +42,7 @@ def merged(files: Sequence[Path], fixture: Path | None = None) -> tuple[Fixture,
     if first is None:
         raise FixtureError(
             "A log does not state the bins of the sensors.",
-            "Name the recording that the robots observed with --fixture FILE.",
+            "Use --fixture FILE to name the recording that `tarl observe` used on the robots.",
         )
     design = recordings.get(first) or load(first)
     for path, one in recordings.items():

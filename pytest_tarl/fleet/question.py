@@ -96,7 +96,8 @@ def answer(question: Question) -> Answer:
     if not fitting:
         raise FleetError(
             f"{where.shown('')} holds no mission that fits the recording of {fixture.test}: "
-            f"{'; '.join(_left_out(parts, own))}. Name the recording that the robots observed with --fixture."
+            f"{'; '.join(_left_out(parts, own))}. Use --fixture FILE to name "
+            "the recording that `tarl observe` used on the robots."
         )
     which = Filter(question.robot, question.since)
     with opened(where, fitting, question.by, which) as database:

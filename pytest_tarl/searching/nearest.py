@@ -32,7 +32,8 @@ def nearest(factor: float, deviation: Callable[[float], float]) -> tuple[float, 
     elif at(STRONGER) < at(1.0):
         _approach(1.0, STRONGER, at)
     else:
-        at(_between(1.0, min(WEAKER, STRONGER, key=at), at))  # distant values may fail, sooner on one side
+        # both sides are worse: try a value towards the better side, since distant values may fail on one side first
+        at(_between(1.0, min(WEAKER, STRONGER, key=at), at))
     power = min(tried, key=lambda one: (tried[one], abs(one - 1.0)))
     return (factor if power == 1.0 else _raised(factor, power)), tried[power]
 

@@ -30,7 +30,7 @@ OTHERS = 6  # maximum number of constants that are tried in small steps
 EPISODES = 20  # number of episodes after which no further constant is tried
 EARLY = 0.5  # share of the budget after which a repair is no longer compared
 LOST = 0.01  # maximum reward that a milder value of the same constant may lose, as a share of the wanted gain
-INSIDE = 0.85  # a change of this share of a milder or smaller change's size must hold, too
+INSIDE = 0.85  # a milder or smaller change is accepted only if a change of this share of its size passes, too
 WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
 
 

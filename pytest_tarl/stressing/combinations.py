@@ -27,7 +27,7 @@ CONFIRMED = 0.95  # share of the budget that the tests of a nearer failing drift
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 ALONE = 3  # number of rounds of the search with nominal options before the others are searched
 REFINED = 0.08  # share of the budget for the search between the first chains of tests
-ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first one that confirms a drift
+ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first chain that confirms a drift
 # shares of the whole risk that the first chains get; each further chain gets half of the rest
 SHARES = (0.2, 0.3, 0.2, 0.1)
 APART = 1.05  # minimum distance of a reported failure that contains another, as a multiple of the other's distance

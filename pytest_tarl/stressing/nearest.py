@@ -34,7 +34,7 @@ from pytest_tarl.stressing.spreading import around, spread
 NEARER = 0.98  # maximum distance of the next failing drift, as a share of the best distance
 LARGEST = 2.0  # maximum distance of the drifts that are searched
 PREDICTED = 3  # number of predicted drifts to try in a row
-GAIN = 0.01  # minimum expected gain of a drift that is tried, in units of the best distance
+GAIN = 0.01  # minimum expected reduction of the distance, as a share of the best distance, for a drift to be tried
 # numbers of standard deviations by which successive predictions are optimistic
 BOLD = (0.0, 1.0, 0.0, 0.5)
 # the predicted excess loss of a drift that counts as failing may be smaller than the detectable one by this share
@@ -77,7 +77,7 @@ class Nearest:
     tried: list[Point] = field(default_factory=list)
     tested: list[Point] = field(default_factory=list)  # drifts at which fresh episodes ran
     risk: float = 0.01  # error probability of a test on fresh seeds; limits which failures can be shown
-    base: Point | None = None  # a drift with the options that all drifts of the search have; None is nominal
+    base: Point | None = None  # drift whose options the whole search keeps; None: the nominal options
     ceiling: float = LARGEST  # maximum distance of the drifts that are explored
     _spread: Iterator[Vector] | None = None
     _fitted: tuple[int, Prediction] | None = None  # (number of episodes that the model was fitted to, model)

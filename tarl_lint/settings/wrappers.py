@@ -29,8 +29,8 @@ def _fact(wrapper: Wrapper) -> Fact:
     known = {name: fact for name, fact in every if fact.kind in KINDS}
     if wrapper.like not in known:
         raise ConfigError(
-            f"The wrapper {wrapper.name!r} has like = {wrapper.like!r}, which cannot be wrapped"
-            f"{suggestion(wrapper.like, known)} It can be like {', '.join(sorted(known))}."
+            f"The wrapper {wrapper.name!r} has like = {wrapper.like!r}, which is not a function that can be wrapped"
+            f"{suggestion(wrapper.like, known)} Use one of {', '.join(sorted(known))}."
         )
     fact = known[wrapper.like]
     return replace(

@@ -18,7 +18,10 @@ _Topics = tuple[Sequence[str], Sequence[str]]
 
 
 def _named(words: Sequence[str], number: int, suffix: str) -> _Topics:
-    """Return the topics of a program whose argument `number` is the output; without it, the input has a suffix."""
+    """Return the input and output topics of a program.
+
+    Argument `number` names the output. If it is missing, the output is the input's name with the suffix.
+    """
     return words[:1], words[number : number + 1] or [f"{words[0]}{suffix}"]
 
 

@@ -79,7 +79,7 @@ def test_some_missions_cross_the_patch_and_some_do_not() -> None:
     assert 90 < met < 150
 
 
-def test_the_patch_is_harmless_in_the_designed_world() -> None:
+def test_the_patch_of_ground_is_harmless_in_the_designed_world() -> None:
     for seed in SEEDS:
         assert mission(seed, patch=True).total == mission(seed, patch=False).total
 

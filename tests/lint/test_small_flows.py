@@ -262,7 +262,10 @@ def test_by_default_a_wrapper_has_the_argument_positions_of_its_model():
     assert usual.topic != other.topic
     assert usual.extra == other.extra
     assert usual.kind == other.kind == "subscribe"
-    with pytest.raises(ConfigError, match=r"'a\.b' has like = 'rospy\.Subscribe', which cannot be wrapped"):
+    with pytest.raises(
+        ConfigError,
+        match=r"'a\.b' has like = 'rospy\.Subscribe', which is not a function that can be wrapped",
+    ):
         facts((Wrapper("a.b", "rospy.Subscribe"),))
 
 

@@ -11,7 +11,7 @@ SPEED = 1.5  # m/s of the chain
 TILT = math.radians(32)
 LEVEL = 0.0
 HOLD = 1.0  # s that the tray stays tilted
-LEAD = 0.20  # s before the edge of the chute
+LEAD = 0.20  # time before the edge of the chute (s)
 JAM_TIME = 20.0  # s without motion
 
 

@@ -10,7 +10,7 @@ from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Bool, String
 
 CAPACITY = 3.0  # Ah of a pack
-RESERVE = 0.2  # Ah, never to be used
+RESERVE = 0.2  # charge that is never used (Ah)
 DRIVE_CURRENT = 11.0  # A, brush and pump off
 
 LANES = 8

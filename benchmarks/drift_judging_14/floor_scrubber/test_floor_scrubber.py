@@ -11,7 +11,7 @@ BatteryState = message_type("sensor_msgs/BatteryState")
 Point = message_type("geometry_msgs/Point")
 
 DT = 2.0
-CELL = 1.0  # m of a lane
+CELL = 1.0  # length of the lane in a cell (m)
 LANES, LENGTH = 8, 24
 TIME_BOUND = 800.0
 YOUNG, OLD = 3.0, 1.95  # Ah

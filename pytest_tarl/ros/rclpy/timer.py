@@ -69,7 +69,7 @@ class Timer:
         self.cancel()
 
     def run(self) -> Any:
-        """Begin the next future period and call the callback."""
+        """Start the next period that ends in the future, then call the callback."""
         expected, self._last = self.due, self._clock.time
         self._begin_period()
         callback = self._callback

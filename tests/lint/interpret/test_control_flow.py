@@ -279,5 +279,5 @@ CASES = dict(one.split("\n", 1) for one in PROGRAMS.removeprefix("### ").split("
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_dependences_on_data_and_decisions_follow_the_control_flow(title):
+def test_data_and_control_dependences_are_tracked_through_control_flow(title):
     assert differing(in_callback(CASES[title], HEAD)) == {}

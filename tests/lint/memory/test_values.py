@@ -218,7 +218,7 @@ def test_an_unqualified_base_defines_no_methods():
     assert inherited_from(pointer(instance(made_class("a", external=("Unknown",))))) == set()
 
 
-def test_a_bound_method_has_the_function_of_its_closure(ctx):
+def test_the_function_of_a_bound_method_is_that_of_its_closure(ctx):
     (program,) = ctx.programs.values()
     closure, bound = Obj("closure", "f"), Obj("bound", "f")
     closure.info = (program.function, None, program, None)

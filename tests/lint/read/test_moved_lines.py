@@ -36,7 +36,7 @@ def moved(new: str, old: str = OLD, *, unread=UNREAD, answers=(), whole: bool = 
     return moved_lines(dedent(old), dedent(new), Reading(frozenset(unread), tuple(answers), whole))
 
 
-def test_in_an_equal_text_all_lines_that_were_read_have_the_same_numbers():
+def test_in_an_unchanged_text_all_read_lines_keep_their_numbers():
     found = moved(OLD)
     assert found == {line: line for line in (1, 3, 4, 5, 7, 10, 11, 12, 14, 15)}
 

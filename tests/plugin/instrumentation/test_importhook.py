@@ -280,7 +280,7 @@ def test_errors_point_at_the_lines_of_the_text_that_runs(project):
     assert (last.lineno, last.line) == (12, "vel = gain(data) / (data - 1.5)")
 
 
-def test_a_syntax_error_is_raised_as_by_an_import(project):
+def test_a_syntax_error_is_raised_just_as_an_import_raises_it(project):
     (project / "node.py").write_text("x = (\n")
     with imports(project, Recorder()) as node, pytest.raises(SyntaxError) as caught:
         node.run_script(project / "node.py")

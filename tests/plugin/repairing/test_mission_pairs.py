@@ -208,7 +208,7 @@ def test_changes_without_parameters_are_left_out_while_a_constant_gains_a_part(
     assert made.once is once
 
 
-def test_an_accepted_candidate_leaves_the_search_waiting(early: Early) -> None:
+def test_the_search_keeps_its_waiting_state_if_a_candidate_is_accepted(early: Early) -> None:
     found = charged(early, FROM).candidates()
     next(found)
     charged(early, 2)

@@ -328,7 +328,7 @@ def test_candidates_that_work_in_a_part_of_the_range_are_named_once(monkeypatch:
         ("larger", "other", 2.0, False),
     ],
 )
-def test_a_template_states_whether_a_larger_factor_weakens_its_parameter(
+def test_a_template_states_which_factors_weaken_its_parameter(
     stronger: str, parameter: str, factor: float, expected: bool
 ) -> None:
     structures = Structures.__new__(Structures)

@@ -44,7 +44,7 @@ def test_a_mission_that_earns_its_reward_later_deviates_more_from_the_designed_o
     assert deviation(STEADY, (0.0, 0.0)) == 0.0
 
 
-def test_plainer_alternatives_include_only_constants_changed_on_the_same_scale() -> None:
+def test_rival_constants_have_the_same_scale_as_the_repaired_one() -> None:
     units = [Unit((LEAK,)), Unit((POWER,)), Unit((POWER,), SHARE)]
     tried = {unit for unit, _ in rivals(units[0], 2.0, units, Gains(0.1), ALWAYS)}
     assert tried == {units[1]}

@@ -92,7 +92,7 @@ def test_smaller_changes_that_gain_much_are_refined_before_a_large_one(
     assert nearby(tried, table, 4.0) == [(UNITS[at], ALWAYS) for at in expected]
 
 
-def test_a_small_change_is_found_although_five_times_another_constant_nearly_suffices() -> None:
+def test_a_small_change_is_found_although_a_fivefold_change_of_another_constant_nearly_suffices() -> None:
     """A robot drives by the clock on worn tyres: it must drive for a third longer, or by chance five times as fast."""
     wait, speed = GAINS[2], GAINS[0]
 

@@ -43,7 +43,7 @@ def test_drifts_far_beyond_the_boundary_do_not_affect_the_typical_variance() -> 
     assert typical_variance([cut_off([0.3])]) == 1e-6  # one episode shows no variance
 
 
-def test_drifts_without_any_noise_do_not_hide_that_of_the_others() -> None:
+def test_drifts_without_noise_do_not_hide_the_noise_of_the_others() -> None:
     quiet = [cut_off([0.0, 0.0])] * 30
     noisy = [cut_off([0.2, 0.6]), cut_off([0.5, 0.9])]
     assert typical_variance([*quiet, *noisy]) == pytest.approx(2 * 0.08 / 32)
