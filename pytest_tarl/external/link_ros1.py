@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import threading
 import warnings
@@ -14,16 +15,27 @@ from typing import Any
 from urllib.parse import urlparse
 
 from pytest_tarl.external.plain import filled, to_plain
+from pytest_tarl.processors import available
 
 NAME = "/tarl_link"
 OWN = ("/rosout", "/rosout_agg")
 DEPTH = 1000
 LOST = "transport error"  # the start of rospy's error message for a broken connection
 PATIENCE = 5.0  # maximum time until a service reports its type (s)
-# pause (s) between a command and a service call; the call has its own connection and could arrive first
+# pause (s) between a command and a service call on an idle machine; the call has its own connection and could arrive
+# first
 PAUSE = 0.005
 
 Say = Callable[[dict[str, Any]], None]
+
+
+def _pause() -> float:
+    """Return the pause, which is longer on a busy machine, since ROS 1 does not confirm that a message has arrived."""
+    try:
+        waiting = os.getloadavg()[0] / available()
+    except OSError:
+        waiting = 1.0
+    return PAUSE * max(waiting, 1.0)
 
 
 class LinkROS1:
@@ -79,9 +91,9 @@ class LinkROS1:
             self._sent = True
 
     def call(self, asked: dict[str, Any]) -> None:
-        """Call a service now, or as soon as it exists. First wait PAUSE, so that earlier commands arrive first."""
+        """Call a service now, or as soon as it exists. First pause, so that earlier commands arrive first."""
         if self._sent:
-            sleep(PAUSE)
+            sleep(_pause())
             self._sent = False
         self._calls.append(asked)
         self._start_calls()

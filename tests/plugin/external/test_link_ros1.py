@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 from types import ModuleType, SimpleNamespace
@@ -10,7 +11,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.external import link_ros1
-from pytest_tarl.external.link_ros1 import LinkROS1
+from pytest_tarl.external.link_ros1 import PAUSE, LinkROS1
 from pytest_tarl.ros import message_type
 
 
@@ -205,3 +206,23 @@ def test_a_broken_connection_does_not_count_as_an_answer(linked: Linked) -> None
     link.call({"id": 7, "service": "/step", "request": {"data": -2.0}})
     assert answers(link, said) == []
     link.close()
+
+
+@pytest.mark.parametrize(
+    ("load", "cores", "expected"),
+    [(0.5, 2, PAUSE), (2.0, 2, PAUSE), (12.0, 2, 6 * PAUSE), (12.0, 4, 3 * PAUSE)],
+)
+def test_a_service_call_waits_longer_after_a_command_on_a_busy_machine(
+    monkeypatch: pytest.MonkeyPatch, load: float, cores: int, expected: float
+) -> None:
+    monkeypatch.setattr(os, "getloadavg", lambda: (load, 0.0, 0.0), raising=False)
+    monkeypatch.setattr(link_ros1, "available", lambda: cores)
+    assert link_ros1._pause() == pytest.approx(expected)
+
+
+def test_the_pause_is_the_shortest_where_the_load_is_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unknown() -> tuple[float, float, float]:
+        raise OSError
+
+    monkeypatch.setattr(os, "getloadavg", unknown, raising=False)
+    assert link_ros1._pause() == PAUSE
