@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from pytest_tarl.instrumentation.recorder import Recorder
     from pytest_tarl.instrumentation.trace import Trace
     from pytest_tarl.outputs import Outputs
+    from pytest_tarl.parameter_files import Parameters
     from pytest_tarl.ros import Bus, Ros
     from pytest_tarl.starting import Replacement
 
@@ -129,7 +130,7 @@ class Tarl:
         *,
         name: str | None = None,
         argv: Sequence[str] = (),
-        parameters: Mapping[str, Any] | None = None,
+        parameters: Parameters | None = None,
         entry: str | None = None,
         launch: str | Literal[False] | None = None,
     ) -> None:
@@ -137,12 +138,12 @@ class Tarl:
 
         `entry` names the function to call if the node is an entry point in `setup.py`: `entry="main"` for
         `driver = robot.driver:main`. `argv` is the node's command line, including remappings. `parameters` apply to all
-        nodes of the episode. Further parameters, and the command line if `argv` is empty, come from the launch file
-        `launch`. Without `launch`, TARL searches the workspace for launch files that start the script; with
-        `launch=False`, it reads no launch file.
+        nodes of the episode: a mapping, or the path of a YAML file relative to the test's folder. Further parameters,
+        and the command line if `argv` is empty, come from the launch file `launch`. Without `launch`, TARL searches the
+        workspace for launch files that start the script; with `launch=False`, it reads no launch file.
         """
         self.drives_ros = True
-        self._starter.start(script, name, argv, parameters or {}, entry, launch)
+        self._starter.start(script, name, argv, parameters, entry, launch)
 
     def launch(
         self,
@@ -151,7 +152,7 @@ class Tarl:
         arguments: Mapping[str, Any] | None = None,
         only: Sequence[str] | None = None,
         replace: Mapping[str, Replacement] | None = None,
-        parameters: Mapping[str, Any] | None = None,
+        parameters: Parameters | None = None,
     ) -> None:
         """Start the Python nodes of a launch file, with their names, namespaces, remappings and parameters.
 
@@ -159,12 +160,13 @@ class Tarl:
         `arguments` are its launch arguments, and `only` holds the names of the nodes to start. `replace` maps the name
         of a node to a function that runs in its place. The function receives a `StandIn`, which publishes and
         subscribes under the topic names in the node's code. A note names the nodes that are neither Python nor
-        replaced. `parameters` apply to all nodes and take precedence over those of the launch file.
+        replaced. `parameters`, a mapping or the path of a YAML file, apply to all nodes and take precedence over those
+        of the launch file.
 
         Raise SettingsError for an unknown file, argument or node, NodeError if a node fails.
         """
         self.drives_ros = True
-        self._starter.launch(file, arguments or {}, only, replace or {}, parameters or {})
+        self._starter.launch(file, arguments or {}, only, replace or {}, parameters)
 
     def external(
         self,

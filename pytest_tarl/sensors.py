@@ -13,6 +13,7 @@ from numbers import Real
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.message_fields import dotted, field_value
 from pytest_tarl.ros_names import objection
 from pytest_tarl.variables import prefixes
 
@@ -61,8 +62,10 @@ class Sensor:
                 f"Sensor {self.name!r} has a topic or a field but not both: give both, or neither "
                 f"and report it with tarl.observe({self.name}=…)."
             )
-        dotted = None if callable(self.field) else self.field
-        for given, what in ((self.topic, "topic"), (dotted, "field")):
+        if isinstance(self.field, str):
+            self._set(field=dotted(self.field))
+        path = None if callable(self.field) else self.field
+        for given, what in ((self.topic, "topic"), (path, "field")):
             if given is not None and (not isinstance(given, str) or not given.strip("/.")):
                 raise SettingsError(
                     f"Sensor {self.name!r}: {what} must be a string such as topic='/odom', "
@@ -265,21 +268,6 @@ def as_number(value: Any) -> float | None:
         return math.inf if value > 0 else -math.inf
     except (TypeError, ValueError):
         return None
-
-
-def field_value(message: Any, field: str) -> Any:
-    """Follow a dotted field; a number indexes a sequence (`ranges.0`).
-
-    Raise AttributeError or IndexError if the message has no such field or element, and KeyError if a mapping has none.
-    """
-    for part in field.split("."):
-        if isinstance(message, Mapping):
-            message = message[part]
-        elif part.lstrip("-").isdigit() and hasattr(message, "__getitem__"):
-            message = message[int(part)]
-        else:
-            message = getattr(message, part)
-    return message
 
 
 def reading(message: Any, field: str | Callable[[Any], Any]) -> Any:

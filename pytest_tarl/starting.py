@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.parameter_files import parameters_of
 
 if TYPE_CHECKING:
     from pytest_tarl.instrumentation.importhook import NodeImports
+    from pytest_tarl.parameter_files import Parameters
     from pytest_tarl.ros import Ros
     from pytest_tarl.ros.launch_plan import Launched
     from pytest_tarl.ros.stand_in import StandIn
@@ -32,20 +34,21 @@ class Starter:
         script: str,
         name: str | None,
         argv: Sequence[str],
-        parameters: Mapping[str, Any],
+        parameters: Parameters | None,
         entry: str | None,
         launch: str | Literal[False] | None,
     ) -> None:
         """Start a file with the parameters of its launch file, and with its arguments if `argv` is empty.
 
-        Raise SettingsError if there is no such file.
+        Raise SettingsError if there is no such file, or for invalid parameters.
         """
         path = (self._folder / script).resolve()
         if not path.is_file():
             raise SettingsError(f"tarl.start: {script!r}: no such file in {self._folder}.")
+        values = parameters_of(parameters, self._folder, "tarl.start")
         ros = self._ros()
         ros.use_definitions_around(path.parent)
-        ros.give(parameters)
+        ros.give(values)
         if launch is not False:
             from pytest_tarl.ros.launched import given
 
@@ -60,18 +63,19 @@ class Starter:
         arguments: Mapping[str, Any],
         only: Sequence[str] | None,
         replaced: Mapping[str, Replacement],
-        parameters: Mapping[str, Any],
+        parameters: Parameters | None,
     ) -> None:
         """Call the functions that replace nodes of a launch file, then start its Python nodes in file order."""
         from pytest_tarl.ros.launch_plan import launch_path, launch_plan, named
         from pytest_tarl.ros.stand_in import StandIn
 
-        _check(only, arguments, replaced, parameters)
+        _check(only, arguments, replaced)
+        values = parameters_of(parameters, self._folder, "tarl.launch")
         plan = launch_plan(launch_path(file, self._folder), arguments)
         chosen = plan.chosen(only, replaced)
         ros = self._ros()
         ros.use_definitions_around(plan.file.parent)
-        ros.give(parameters)
+        ros.give(values)
         if ros.scheduler.entering is None:
             ros.scheduler.entering = self._imports.separate().enter
         for note in (*plan.notes, *_left_out(plan.file, chosen, replaced)):
@@ -94,11 +98,11 @@ class Starter:
         return program
 
 
-def _check(only: object, arguments: object, replaced: object, parameters: object) -> None:
+def _check(only: object, arguments: object, replaced: object) -> None:
     """Raise SettingsError for an argument of `tarl.launch` that is not of the required type."""
     if isinstance(only, str):
         raise SettingsError(f'tarl.launch: only takes a list of node names, such as only=["{only}"].')
-    for name, value in (("arguments", arguments), ("replace", replaced), ("parameters", parameters)):
+    for name, value in (("arguments", arguments), ("replace", replaced)):
         if not isinstance(value, Mapping):
             raise SettingsError(f"tarl.launch: {name} takes a mapping, not {value!r:.60}.")
     for node, function in replaced.items() if isinstance(replaced, Mapping) else ():

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.faults.fields import store
 from pytest_tarl.faults.topic import OFF_ON, Arrivals, Channel, TopicFault, require_text
-from pytest_tarl.sensors import field_value
+from pytest_tarl.message_fields import dotted, field_value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,6 +20,7 @@ def swapped(topic: str, first: str, second: str) -> TopicFault:
     """
     for what, value in (("topic", topic), ("field", first), ("field", second)):
         require_text("swapped", what, value)
+    first, second = dotted(first), dotted(second)
 
     def exchange(message: Any, _now: float) -> Arrivals:
         copy = deepcopy(message)

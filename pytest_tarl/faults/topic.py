@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.faults.fields import altered, no_such_field
 from pytest_tarl.finite_numbers import finite_number
+from pytest_tarl.message_fields import dotted
 from pytest_tarl.ros_names import objection
 from pytest_tarl.spaces import Choice, Span, span
 
@@ -66,6 +67,7 @@ def of_field(
     """Return a fault that changes each number of a field separately. Raise SettingsError for invalid arguments."""
     require_text(kind, "topic", topic)
     require_text(kind, "field", field)
+    field = dotted(field)
 
     def begin(size: float, draws: np.random.Generator) -> Channel:
         changed = change(size, draws)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.message_fields import dotted
 from pytest_tarl.ros_names import objection
 from pytest_tarl.sensors import CALLED, as_number
 
@@ -39,6 +40,8 @@ class Signal:
                 f"Signal {self.name!r} has a topic or a field but not both: give both, or neither and "
                 f"report it with tarl.observe({self.name}=…)."
             )
+        if isinstance(self.field, str):
+            object.__setattr__(self, "field", dotted(self.field))
         for given, what in ((self.topic, "topic"), (None if callable(self.field) else self.field, "field")):
             if given is not None and (not isinstance(given, str) or not given.strip("/.")):
                 raise SettingsError(

@@ -12,7 +12,8 @@ from math import isfinite
 from operator import attrgetter
 from typing import Any
 
-from pytest_tarl.sensors import Sensor, field_value
+from pytest_tarl.message_fields import field_value
+from pytest_tarl.sensors import Sensor
 
 Read = Callable[[Any], Any]
 Bin = Callable[[Any], int | None]

@@ -39,11 +39,17 @@ def next_steps(comparison: Comparison) -> Iterator[str]:
     if not comparison.lists:
         yield shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record"])
     elif comparison.repair and comparison.repair.accepted and comparison.repair.patch:
-        yield shlex.join(["git", "apply", comparison.repair.patch])
+        yield shlex.join(["tarl", "apply", f"{_folder(comparison)}{comparison.repair.patch}"])
         if comparison.permanent:
             yield recording(comparison)
     elif _repairable(comparison):
         yield command(comparison, "--tarl-repair")
+
+
+def _folder(comparison: Comparison) -> str:
+    """Return the path from the folder where pytest was started to the root, ending with "/", or ""."""
+    target = comparison.target
+    return target.removesuffix(comparison.test) if target.endswith(comparison.test) else ""
 
 
 def _repairable(comparison: Comparison) -> bool:

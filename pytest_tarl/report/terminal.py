@@ -35,9 +35,8 @@ def lines(comparison: Comparison, *, width: int, root: Path, page: Path | None =
     name = f"{comparison.test}[{comparison.drift or 'online'}]"
     told = [f"{name}: {comparison.verdict.result}"]
     for label, texts in _entries(comparison, width, root, page):
-        for text in texts:
-            told += _labelled(label, text, width, whole=label in ("page", "again", "next"))
-            label = ""
+        for at, text in enumerate(texts):
+            told += _labelled("" if at else label, text, width, whole=label in ("page", "again", "next"))
     return told
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from array import array
 from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
@@ -17,7 +16,7 @@ from hypothesis import strategies as st
 from pytest_tarl import Sensor
 from pytest_tarl.errors import RecordingError, SettingsError
 from pytest_tarl.learning.binning import learned_edges
-from pytest_tarl.sensors import declared, field_value, reading, stored, with_edges
+from pytest_tarl.sensors import declared, reading, stored, with_edges
 
 X = Sensor("x", topic="/odom", field="pose.x", low=-1.0, high=3.0, bins=8, unit="m")
 
@@ -117,13 +116,6 @@ def test_an_unknown_category_is_reported() -> None:
         Sensor("mode", categories=("dry", "wet")).bin("icy")
 
 
-def test_fields_are_followed_through_attributes_items_and_indices() -> None:
-    message = SimpleNamespace(pose=SimpleNamespace(x=2.0), ranges=[5.0, 6.0])
-    assert field_value(message, "pose.x") == 2.0
-    assert field_value(message, "ranges.1") == 6.0
-    assert field_value({"a": {"b": 3}}, "a.b") == 3
-
-
 def test_bins_have_readable_names() -> None:
     assert X.label(2) == "0-0.5 m"
     assert Sensor("mode", categories=("dry", "wet")).label(1) == "wet"
@@ -141,11 +133,6 @@ def test_infinite_bounds_and_fractions_of_bins_are_refused(bounds: tuple[float, 
     low, high, bins = bounds
     with pytest.raises(SettingsError, match="finite"):
         Sensor("x", low=low, high=high, bins=bins)
-
-
-def test_a_field_indexes_arrays_of_any_kind() -> None:
-    assert field_value({"ranges": np.array([1.0, 2.0])}, "ranges.1") == 2.0
-    assert field_value({"ranges": array("d", [1.0, 2.0])}, "ranges.-1") == 2.0
 
 
 HEADING = Sensor("heading", topic="/pose", field="theta", bins=8, angle=True, unit="rad")
@@ -213,3 +200,9 @@ def test_a_single_edge_is_a_threshold() -> None:
 def test_invalid_edges_are_reported_in_one_sentence(wrong: dict[str, Any]) -> None:
     with pytest.raises(SettingsError, match=r"edges must be|tilings must be"):
         Sensor("x", **wrong)
+
+
+def test_a_field_may_be_indexed_as_in_python() -> None:
+    assert Sensor("ahead", topic="/scan", field="ranges[2]") == Sensor(
+        "ahead", topic="/scan", field="ranges.2"
+    )

@@ -16,6 +16,7 @@ from pytest_tarl.ros.rclpy.entities import NodeEntities
 from pytest_tarl.ros.rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from pytest_tarl.ros.rclpy.graph import NodeGraph
 from pytest_tarl.ros.rclpy.logging import RcutilsLogger
+from pytest_tarl.ros.rclpy.parameter_overrides import overrides
 from pytest_tarl.ros.rclpy.parameter_services import offer_parameter_services, parameter_event
 from pytest_tarl.ros.rclpy.parameters import NodeParameters
 from pytest_tarl.ros.rclpy.qos import as_profile
@@ -73,12 +74,12 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         self._logger = RcutilsLogger(self._full_name.strip("/").replace("/", "."))
         self.context.nodes.append(self)
         given = {parameter.name: parameter.value for parameter in parameter_overrides or ()}
-        overrides = {
-            **self._overrides(self.process.launched.private),
-            **self._overrides(self.process.ros.parameters),
-            **self._overrides(self._command_line.parameters),
+        values = {
+            **overrides(self.process.launched.private, self._full_name),
+            **overrides(self.process.ros.parameters, self._full_name),
+            **overrides(self._command_line.parameters, self._full_name),
         }
-        NodeParameters.__init__(self, {**overrides, **given}, allow_undeclared_parameters)
+        NodeParameters.__init__(self, {**values, **given}, allow_undeclared_parameters)
         if automatically_declare_parameters_from_overrides:
             self.declare_all_overrides()
         if start_parameter_services:
@@ -115,21 +116,6 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
             if self._event_publisher is None:
                 self._event_publisher = Publisher(self, type(event), place, as_profile(1000))
             self._event_publisher.publish(event)
-
-    def _overrides(self, given: Any) -> dict[str, Any]:
-        """Return the overrides for this node: plain names, and those under its own name or `/**`."""
-        chosen: dict[str, Any] = {}
-        for key, value in given.items():
-            owner = key.strip("/")
-            if isinstance(value, dict) and owner in (self._name, self._full_name.strip("/"), "**"):
-                chosen.update(_flat(value.get("ros__parameters", value)))
-            elif ":" in key:
-                node, _, name = key.partition(":")
-                if node.strip("/") in (self._name, self._full_name.strip("/")):
-                    chosen[name] = value
-            elif not key.startswith("/"):
-                chosen[key.removeprefix("~")] = value
-        return chosen
 
     def get_name(self) -> str:
         """Return the name without namespace."""
@@ -295,10 +281,3 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         if name in _NOT_YET:
             raise unsupported(f"Node.{name}")
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-
-
-def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    flat: dict[str, Any] = {}
-    for key, value in tree.items():
-        flat.update(_flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value})
-    return flat

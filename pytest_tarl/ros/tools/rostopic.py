@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from pytest_tarl.message_fields import field_value
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.messages import find_class
 from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.process import current_process
 from pytest_tarl.ros.tools import graph
 from pytest_tarl.ros.tools.topic_rates import ROSTopicHz
-from pytest_tarl.sensors import field_value
 
 __all__ = ["ROSTopicException", "ROSTopicHz", "ROSTopicIOException", "get_topic_class", "get_topic_type"]
 

@@ -116,7 +116,7 @@ def test_markup_in_notes_code_and_categories_is_escaped(two_lists):
 def test_the_page_contains_the_patch_and_the_command_that_applies_it(shuttle):
     text = Page(render(shuttle)).text
     assert "vel = ( 12.0 if terrain and 4.167 <= pos <= 7.083 else 5 ) * delta" in text
-    assert "git apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch" in text
+    assert "tarl apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch" in text
 
 
 def test_several_lists_are_tabs_with_panels(two_lists):

@@ -58,7 +58,7 @@ def test_an_accepted_patch_is_applied_and_a_permanent_drift_recorded(
 ) -> None:
     repair = shuttle.repair
     assert repair is not None
-    apply = "git apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch"
+    apply = "tarl apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch"
     assert [*next_commands.next_steps(shuttle)] == [apply]
     assert [*next_commands.next_steps(varied(permanent=True))] == [
         apply,
@@ -67,6 +67,16 @@ def test_an_accepted_patch_is_applied_and_a_permanent_drift_recorded(
     assert next_commands.recording(varied(drift=None, target="t.py")) == "pytest t.py --tarl-record"
     for nothing in (replace(repair, accepted=False), replace(repair, patch="")):
         assert [*next_commands.next_steps(varied(repair=nothing))] == []
+
+
+@pytest.mark.parametrize("folder", ["src/robot/", "../robot/"])
+def test_the_path_of_a_patch_is_relative_to_the_folder_where_pytest_was_started(
+    varied: Varied, folder: str
+) -> None:
+    one = varied(test=TEST, target=f"{folder}{TEST}")
+    assert [*next_commands.next_steps(one)] == [
+        f"tarl apply {folder}.tarl/patches/test-delivers-mud-1a2b3c4d.patch"
+    ]
 
 
 def test_a_degraded_test_is_repaired_next_unless_its_missions_cannot_run_again(

@@ -39,7 +39,7 @@ def test_the_shuttle_gives_one_short_section(shuttle):
         "  note     The site `err = abs(delta)` is only reached by a condition.",
         "  page     .tarl/report/delivers.html",
         f"  again    {again}",
-        "  next     git apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch",
+        "  next     tarl apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch",
     ]
 
 
@@ -53,7 +53,7 @@ def test_a_refused_repair_has_its_reason_and_the_best_candidate_so_far(two_lists
     text = told(two_lists, 200)
     assert "none accepted: the best change found gains too little" in text
     assert "best so far: self.kp × 2.2 at src/follower/node.py:63 where light == 'dusk <&>'" in text
-    assert "git apply" not in text
+    assert "tarl apply" not in text
 
 
 def test_unrecorded_situations_are_listed_separately(two_lists):
@@ -145,3 +145,9 @@ def test_no_line_of_the_report_starts_with_a_percent_sign(varied):
         note = "x" * length + " 100 % of 12 % are 12 %."
         found = lines(varied(notes=(note,)), width=60, root=ROOT)
         assert not [line for line in found if line.strip().startswith("%")]
+
+
+def test_every_command_of_the_next_steps_stays_on_one_line(varied):
+    name = "a/very/long/path/of/tests/" * 5 + "test_traveller.py::test_delivers"
+    lines = told(varied(permanent=True, test=name, target=name), 80).splitlines()
+    assert f"           pytest {name} --tarl-record --tarl-drift mud" in lines

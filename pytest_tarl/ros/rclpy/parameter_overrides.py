@@ -1,0 +1,34 @@
+"""Select the parameters that are meant for one node, from values that a test, a launch file or a file gives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from tarl_lint.workspace.parameter_yaml import dotted, matches, sections
+
+
+def overrides(given: Mapping[str, Any], full_name: str) -> dict[str, Any]:
+    """Return the values for the node with an absolute name; nested mappings become dotted names.
+
+    Names without a node are for all nodes. Sections with `ros__parameters` are for the nodes that their keys match; a
+    node in a namespace also gets the section of its own name. Mappings without `ros__parameters` are a section if their
+    key is the node's name or `**`, and nested parameters otherwise. Later values win.
+    """
+    name = full_name.rpartition("/")[2]
+    chosen: dict[str, Any] = {}
+    for key, value in given.items():
+        owner = key.strip("/")
+        if isinstance(value, dict) and (found := list(sections({key: value}))):
+            for pattern, values in found:
+                if matches(pattern, full_name) or pattern.strip("/") == name:
+                    chosen.update(dotted(values))
+        elif isinstance(value, dict) and owner in (name, full_name.strip("/"), "**"):
+            chosen.update(dotted(value))
+        elif ":" in key:
+            node, _, own = key.partition(":")
+            if node.strip("/") in (name, full_name.strip("/")):
+                chosen[own] = value
+        elif not key.startswith("/"):
+            chosen.update(dotted({key.removeprefix("~"): value}))
+    return chosen
