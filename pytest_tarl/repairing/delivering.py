@@ -14,7 +14,6 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Attempt, Comparison, Edit, Guarantee, Partial, Repair
 from pytest_tarl.patching import patch
-from pytest_tarl.patching.dependencies import undeclared
 from pytest_tarl.patching.merge import CONSTANT
 from pytest_tarl.patching.mutate import Mutation, guard_text
 from pytest_tarl.patching.reading import read
@@ -25,9 +24,9 @@ from pytest_tarl.repairing.ledger import Refused, Tried
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.partial import Best
 from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.reviewing import remarks
 from pytest_tarl.repairing.template_forms import form_words
 from pytest_tarl.report import amounts, guarantees, next_commands, repair_words, words
-from pytest_tarl.searching.plainness import edges
 from pytest_tarl.searching.search import Candidate, effective_value
 from tarl_lint import __version__
 
@@ -221,33 +220,6 @@ def _constants(candidate: Candidate) -> Iterator[str]:
         span = operand.definition or operand.span
         if mutation.form is None:
             yield words.one_line(f"{span.path}:{span.line} column {span.column}")
-
-
-def remarks(mutants: Mutants, candidate: Candidate) -> list[str]:
-    """Return remarks for the reviewer of an accepted repair, in addition to its figures."""
-    return [*_jumps(candidate), *undeclared(mutants.source(candidate), mutants.order.root)]
-
-
-def _jumps(candidate: Candidate) -> list[str]:
-    """Describe by how much constants jump at the threshold of a numeric condition; empty if there is none."""
-    sensors = edges(candidate.guard)
-    if not sensors:
-        return []
-    moved = []
-    for mutation in candidate.mutations:
-        value, new = mutation.operand.value, effective_value(mutation)
-        if mutation.form is not None:
-            continue
-        if value is None or isinstance(value, bool):
-            moved.append(f"{mutation.operand.code} × {float(mutation.value):g}")
-        else:
-            times = f" (× {new / value:.3g})" if value else ""
-            moved.append(
-                f"{mutation.operand.code} from {amounts.expected(float(value)):g} to {amounts.expected(new):g}{times}"
-            )
-    if not moved:
-        return []
-    return [f"jump at the threshold of {' and '.join(sensors)}: {', '.join(moved)}"]
 
 
 def _designed_and_repaired(order: Order, nominal: Sequence[float]) -> str:

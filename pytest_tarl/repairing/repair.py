@@ -13,7 +13,7 @@ from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.accepting import Accepted, Examiner
 from pytest_tarl.repairing.budget import Purse
 from pytest_tarl.repairing.confirmed_effects import with_confirmed
-from pytest_tarl.repairing.delivering import attempts, delivered, partial, remarks, withheld
+from pytest_tarl.repairing.delivering import attempts, delivered, partial, withheld
 from pytest_tarl.repairing.early import Early
 from pytest_tarl.repairing.enriching import enriched
 from pytest_tarl.repairing.exceeding import exceeding
@@ -26,6 +26,7 @@ from pytest_tarl.repairing.partial import best
 from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, repaired_sizes
 from pytest_tarl.repairing.ranking_confidence import ranking_confidence
 from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.reviewing import remarks
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.repairing.unsearched_modules import unnamed_modules
 from pytest_tarl.searching import candidates

@@ -20,7 +20,6 @@ from pytest_tarl.repairing.delivering import (
     _designed_and_repaired,
     _edit,
     _edits,
-    _jumps,
     _recorded,
     _verify,
     attempts,
@@ -45,50 +44,19 @@ def test_uses_of_one_definition_share_the_edit_of_that_definition() -> None:
     assert len(_edits(NO_ORDER, apart)) == 2
 
 
+def numeric(name: str, low: float, high: float) -> Conjunct:
+    return Conjunct(Sensor(name, topic=f"/{name}", field="data", low=0, high=10, bins=5), low, high)
+
+
 def order(**changed: Any) -> Any:
     sample = SimpleNamespace(test="t.py::test", topics={})
     usual = {"permanent": False, "fixture": sample, "recorded": None, "drift": "mud"}
     return SimpleNamespace(**{**usual, **changed})
 
 
-def numeric(name: str, low: float, high: float) -> Conjunct:
-    return Conjunct(Sensor(name, topic=f"/{name}", field="data", low=0, high=10, bins=5), low, high)
-
-
-WET = Conjunct(Sensor("wet", topic="/wet", field="data"), 1, 1)
-GAIN, OFFSET, EAGER = operand(3, "2.0", 2.0), operand(4, "0.0", 0.0), operand(5, "True", True)
+GAIN, EAGER = operand(3, "2.0", 2.0), operand(5, "True", True)
 UNKNOWN = replace(operand(6, "self.kp", 1.0), value=None, definition=None)
 NAMED = replace(operand(7, "LIMIT", 4.0), definition=operand(1, "4.0", 4.0).span)
-
-
-@pytest.mark.parametrize(
-    ("mutations", "expected"),
-    [
-        ([Mutation(GAIN, 3.0)], "2.0 from 2 to 3 (× 1.5)"),
-        ([Mutation(OFFSET, 0.25)], "0.0 from 0 to 0.25"),
-        ([Mutation(UNKNOWN, 1.25)], "self.kp × 1.25"),
-        ([Mutation(EAGER, False)], "True × 0"),
-        ([Mutation(NAMED, 0.5)], "LIMIT from 4 to 2 (× 0.5)"),
-        ([Mutation(GAIN, 3.0), Mutation(OFFSET, -1.0)], "2.0 from 2 to 3 (× 1.5), 0.0 from 0 to -1"),
-        ([Mutation(GAIN, 0.1 * 3)], "2.0 from 2 to 0.3 (× 0.15)"),
-    ],
-)
-def test_the_jump_of_each_constant_at_a_threshold_is_described(
-    mutations: list[Mutation], expected: str
-) -> None:
-    guard = Guard((numeric("depth", 2.0, math.inf), WET, numeric("speed", -math.inf, 4.0)))
-    told = f"jump at the threshold of depth and speed: {expected}"
-    assert _jumps(Candidate(tuple(mutations), guard)) == [told]
-
-
-def test_a_condition_without_a_threshold_has_no_jump() -> None:
-    for guard in (ALWAYS, Guard((WET,))):
-        assert _jumps(Candidate((Mutation(GAIN, 3.0),), guard)) == []
-    form: Any = SimpleNamespace(parameter="", defaults=())
-    structural = Mutation(GAIN, True, form=form)
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(delivering, "effective_value", lambda _: 1.0)
-        assert _jumps(Candidate((structural,), Guard((numeric("depth", 2.0, math.inf),)))) == []
 
 
 def test_constants_are_named_where_they_are_defined() -> None:
