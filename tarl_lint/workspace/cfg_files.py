@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
-from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.model import Problem
-from tarl_lint.workspace.statements import Interpreter
+from tarl_lint.workspace.python.evaluator import Library, Unknown
+from tarl_lint.workspace.python.interpreter import Interpreter
 
 _TYPES: Final[Mapping[str, type]] = {"str": str, "int": int, "double": float, "bool": bool}
 _LOWEST: Final[Mapping[str, Any]] = {"int": -(2**31), "double": -math.inf, "str": "", "bool": False}

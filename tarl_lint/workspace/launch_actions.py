@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from tarl_lint.workspace.expressions import Unknown
 from tarl_lint.workspace.launch_values import performed, truth
+from tarl_lint.workspace.python.evaluator import Unknown
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from tarl_lint.workspace.conditions import combined
-from tarl_lint.workspace.expressions import Unknown
 from tarl_lint.workspace.launch_actions import Action
 from tarl_lint.workspace.launch_values import Substitution
-from tarl_lint.workspace.python_values import plain
+from tarl_lint.workspace.python.elements import plain
+from tarl_lint.workspace.python.evaluator import Unknown
 
 LONGEST: Final = 60  # maximum length of a condition, and of a value, in a symbolic text (characters)
 ABSENT: Final = Unknown(

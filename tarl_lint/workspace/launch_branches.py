@@ -6,13 +6,12 @@
 from __future__ import annotations
 
 import ast
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, Final
 
 from tarl_lint.workspace.conditions import combined
-from tarl_lint.workspace.expressions import Library, Unknown
-from tarl_lint.workspace.jumps import Left, Raised, Returned
 from tarl_lint.workspace.launch_actions import Action
 from tarl_lint.workspace.launch_alternatives import (
     ABSENT,
@@ -24,11 +23,15 @@ from tarl_lint.workspace.launch_alternatives import (
     one_of,
 )
 from tarl_lint.workspace.launch_paths import Branch, Frame, Loop, Names
-from tarl_lint.workspace.match_patterns import fits
-from tarl_lint.workspace.python_values import Bound, Class, Function, Made, Scope
-from tarl_lint.workspace.statements import Interpreter
+from tarl_lint.workspace.python.elements import Unique
+from tarl_lint.workspace.python.evaluator import Library, Unknown
+from tarl_lint.workspace.python.interpreter import Interpreter
+from tarl_lint.workspace.python.jumps import Left, Raised, Returned
+from tarl_lint.workspace.python.match_patterns import fits
+from tarl_lint.workspace.python.objects import Class, Function, Made
+from tarl_lint.workspace.python.values import Bound, Scope, Stream
 
-_ADDING: Final = frozenset(["append", "extend", "insert", "add_action", "add_entity"])
+_ADDING: Final = frozenset(["append", "appendleft", "extend", "insert", "add", "add_action", "add_entity"])
 
 _Runs = tuple[Callable[[], None], Callable[[], None]]  # functions that interpret the two branches
 
@@ -55,17 +58,17 @@ class BranchingInterpreter(Interpreter):
     def _do_if(self, statement: ast.If, names: Scope) -> None:
         test = self.value(statement.test, names)
         if not isinstance(test, Unknown | Library):
-            self._body(statement.body if test else statement.orelse, names)
+            self.body(statement.body if test else statement.orelse, names)
             return
         text, line = ast.unparse(statement.test)[:LONGEST], statement.lineno
         both = "; both branches are read" if statement.orelse else ""
         for kept, left in ((statement.orelse, statement.body), (statement.body, statement.orelse)):
             if left and isinstance(left[-1], ast.Raise):
                 self.problem(line, f"the condition `{text}` is not constant", hides=False)
-                self._body(kept, names)
+                self.body(kept, names)
                 return
         self.problem(line, f"the condition `{text}` is not constant{both}", hides=False)
-        runs = (lambda: self._body(statement.body, names)), (lambda: self._body(statement.orelse, names))
+        runs = (lambda: self.body(statement.body, names)), (lambda: self.body(statement.orelse, names))
         self._alternatives(runs, text, line, names)
 
     def _do_match(self, statement: ast.Match, names: Scope) -> None:
@@ -84,13 +87,13 @@ class BranchingInterpreter(Interpreter):
                 compared = "==" if isinstance(case.pattern, ast.MatchValue) else "matches"
                 text = f"{ast.unparse(statement.subject)[:LONGEST]} {compared} {pattern}"
                 runs = (
-                    lambda body=case.body: self._body(body, names),
+                    lambda body=case.body: self.body(body, names),
                     lambda rest=index: self._cases(statement, rest, subject, names),
                 )
                 self._alternatives(runs, text, line, names)
                 return
             if fit:
-                self._body(case.body, names)
+                self.body(case.body, names)
                 return
 
     def _alternatives(self, runs: _Runs, text: str, line: int, names: Scope) -> None:
@@ -191,7 +194,7 @@ class BranchingInterpreter(Interpreter):
         pending: list[Any] = [one for scope in names.values for one in scope.values()]
         while pending:
             one = pending.pop()
-            if isinstance(one, list | tuple | dict | Made | Action) and id(one) not in found:
+            if isinstance(one, list | tuple | dict | Unique | deque | Made | Action) and id(one) not in found:
                 found[id(one)] = one
                 pending += _inside(one)
         self.spend(len(found) // 10)
@@ -211,8 +214,9 @@ class BranchingInterpreter(Interpreter):
             bound = isinstance(called, Bound)
             owner = called.of if bound else getattr(called, "__self__", None)
             name = called.name if bound else getattr(called, "__name__", "")
-            if name in _ADDING and isinstance(owner, list | Action):
-                args = [*args[:-1], self.kept(owner, args[-1])]
+            if name in _ADDING and isinstance(owner, list | deque | Unique | Action):
+                last = list(args[-1]) if isinstance(args[-1], Stream) and not args[-1].endless else args[-1]
+                args = [*args[:-1], self.kept(owner, last)]
         return super().call(called, args, keywords, node)
 
     def _ifexp(self, node: ast.IfExp, names: Scope) -> Any:
@@ -315,7 +319,7 @@ class BranchingInterpreter(Interpreter):
             if self._returned() == returned:
                 del self._branches[count:]
             if not test:
-                self._body(statement.orelse, names)
+                self.body(statement.orelse, names)
 
     def _returned(self) -> int:
         return len(self._frames[-1].returned) if self._frames else 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -101,6 +102,7 @@ def _node(entity: Entity) -> dict[str, Any]:
     }
 
 
+_TRUTHS: Final[Mapping[str, bool]] = {"true": True, "True": True, "false": False, "False": False}
 _NODE: Final = ("node", _node)
 _NAMESPACE: Final = ("namespace", lambda e: {"namespace": e.get("namespace")})
 _MAKERS: Final[Mapping[str, tuple[str, Callable[[Entity], dict[str, Any]]]]] = {
@@ -142,8 +144,21 @@ def _stated(entity: Entity) -> Any:
     return {one.get("name"): _stated(one) for one in inner} if inner else _value(entity)
 
 
-def _value(entity: Entity) -> Quoted:
-    return Quoted(entity.get("value"), "str" if entity.attributes.get("type") == "str" else "")
+def _value(entity: Entity) -> Any:
+    kind, separator = entity.attributes.get("type"), entity.attributes.get("value-sep")
+    if separator:
+        return _separated(entity.attributes.get("value", "").split(separator), kind == "list_of_str")
+    return Quoted(entity.get("value"), "str" if kind == "str" else "")
+
+
+def _separated(parts: list[str], texts: bool) -> list[Any]:
+    """Return the list of an attribute with a separator: numbers or truth values if all parts are, otherwise texts."""
+    if any("$(" in one for one in parts):
+        return [[substitutions(one)] for one in parts]
+    for kind in () if texts else (int, float, _TRUTHS.__getitem__):
+        with contextlib.suppress(ValueError, KeyError):
+            return [kind(one) for one in parts]
+    return parts
 
 
 def _condition(entity: Entity) -> dict[str, Condition]:

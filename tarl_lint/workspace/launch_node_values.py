@@ -9,11 +9,11 @@ from collections.abc import ItemsView, Iterator, Mapping
 from typing import Any, Final
 
 from tarl_lint.workspace import ros_arguments
-from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.launch_actions import Quoted
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.launch_values import Anonymous, Context, Joined, Substitution, performed, symbolic
-from tarl_lint.workspace.python_values import FilePath
+from tarl_lint.workspace.python.evaluator import Library, Unknown
+from tarl_lint.workspace.python.paths import FilePath
 
 _SIMPLE: Final = re.compile(r"[\w./+-]+")  # matches a text that stays one value inside a list of YAML
 
@@ -84,7 +84,7 @@ def private(given: ros_arguments.Given) -> Iterator[tuple[str, str]]:
 
 def pairs(remaps: Any, context: Context) -> Iterator[tuple[str, str]]:
     """Yield the remappings of a list of pairs."""
-    for one in remaps if isinstance(remaps, list | tuple) else ():
+    for one in remaps if isinstance(remaps, list | tuple | ItemsView) else ():
         if isinstance(one, tuple | list) and len(one) == 2:
             yield performed(one[0], context), performed(one[1], context)
 

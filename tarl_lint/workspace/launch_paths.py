@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from tarl_lint.workspace.python_values import Scope
+from tarl_lint.workspace.python.values import Scope
 
 
 @dataclass

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace import launch_reads
-from tarl_lint.workspace.expressions import Unknown
 from tarl_lint.workspace.launch_actions import Action, Condition, Quoted, gz_bridge
 from tarl_lint.workspace.launch_branches import BranchingInterpreter
 from tarl_lint.workspace.launch_values import (
@@ -26,7 +25,11 @@ from tarl_lint.workspace.launch_values import (
     Package,
 )
 from tarl_lint.workspace.model import Problem, Workspace
-from tarl_lint.workspace.python_values import FilePath, Function, Method, bounded
+from tarl_lint.workspace.python.elements import bounded
+from tarl_lint.workspace.python.evaluator import Unknown
+from tarl_lint.workspace.python.objects import Function, Method
+from tarl_lint.workspace.python.paths import FilePath
+from tarl_lint.workspace.python.values import Partial
 
 _ACTIONS: Final = {
     "launch.LaunchDescription": ("group", "actions"),
@@ -204,7 +207,7 @@ class _File:
         def made(context: Context) -> Any:
             given = args if isinstance(args, list | tuple) else ()
             stated = named if isinstance(named, dict) else {}
-            if not isinstance(function, Function | Method):
+            if not isinstance(function, Function | Method | Partial):
                 return Unknown(line, "OpaqueFunction")
             return self.file.entered(function, [context, *given], dict(stated))
 

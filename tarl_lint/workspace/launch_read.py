@@ -18,7 +18,7 @@ from tarl_lint.workspace.launch_script import is_script, read_script
 from tarl_lint.workspace.launch_values import Context
 from tarl_lint.workspace.launch_xml import read_xml
 from tarl_lint.workspace.model import Problem, Workspace
-from tarl_lint.workspace.python_values import SpentError
+from tarl_lint.workspace.python.values import SpentError
 
 _YAML: Final = (".yaml", ".yml")
 _OF_ROS2: Final = re.compile(

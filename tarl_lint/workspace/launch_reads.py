@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import csv
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,10 +11,13 @@ from pathlib import Path
 from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
+from tarl_lint.workspace.launch_folders import listings
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
-from tarl_lint.workspace.python_values import FilePath, Unknown, bounded, normal
+from tarl_lint.workspace.python.elements import bounded
+from tarl_lint.workspace.python.paths import FilePath, normal
+from tarl_lint.workspace.python.values import OpaqueError, Unknown
 
 LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
 
@@ -22,14 +27,26 @@ class OpenFile:
     """The result of `open` for a file of the workspace."""
 
     path: Path
-    readable: ClassVar = frozenset({"read", "close", "name"})
+    readable: ClassVar = frozenset({"read", "readlines", "close", "name"})
 
     def read(self, *_: Any) -> Any:
-        """Return the text; Unknown if the file cannot be read."""
+        """Return the text; Unknown if the file cannot be read. Raises FileNotFoundError."""
+        if not self.path.exists():
+            raise FileNotFoundError(2, "No such file or directory", str(self.path))
         try:
             return read_text(self.path, LARGEST)
         except UnreadableError as reason:
             return Unknown(0, f"{self.path.name}: {reason}")
+
+    def looped(self) -> list[str] | None:
+        """Return the lines; None if the file cannot be read."""
+        text = self.read()
+        return text.splitlines(keepends=True) if isinstance(text, str) else None
+
+    def readlines(self) -> Any:
+        """Return the lines; Unknown if the file cannot be read."""
+        lines = self.looped()
+        return Unknown(0, self.path.name) if lines is None else lines
 
     def close(self) -> None:
         """Do nothing."""
@@ -50,6 +67,8 @@ def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
     def opened(path: Any, mode: Any = "r", *_: Any, **__: Any) -> Any:
         place = inside(path)
         reads = mode in ("r", "rt", "rb")
+        if place is not None and reads and not place.exists():
+            raise FileNotFoundError(2, "No such file or directory", str(place))
         return OpenFile(place) if place is not None and reads else Unknown(0, f"open({path!s:.60})")
 
     def text(path: Any, *_: Any, **__: Any) -> Any:
@@ -64,6 +83,8 @@ def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
         return tested
 
     return {
+        **listings(inside),
+        "csv.reader": _rows, "csv.DictReader": _records,
         "builtins.open": opened, "io.open": opened, "codecs.open": opened,
         "pathlib.Path.read_text": text, "pathlib.Path.open": opened,
         **{f"pathlib.Path.{kind}": test(kind) for kind in ("exists", "is_file", "is_dir")},
@@ -71,6 +92,19 @@ def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
         **{f"yaml.{name}": _yaml for name in ("safe_load", "load", "full_load", "unsafe_load")},
         "json.load": _json, "json.loads": _json,
     }  # fmt: skip
+
+
+def _rows(source: Any, **given: Any) -> list[list[str]]:
+    lines = source.looped() if isinstance(source, OpenFile) else source
+    if not isinstance(lines, list) or not all(isinstance(one, str) for one in lines):
+        raise OpaqueError("unknown lines")
+    return list(csv.reader(lines, **given))
+
+
+def _records(source: Any, fieldnames: Any = None, **given: Any) -> list[dict[str, str]]:
+    rows = _rows(source, **given)
+    head, rest = (fieldnames, rows) if fieldnames is not None else (rows[0], rows[1:])
+    return [dict(zip(head, row, strict=False)) for row in rest if row]
 
 
 def _text(source: Any) -> str | None:
@@ -83,7 +117,8 @@ def _yaml(source: Any, *_: Any, **__: Any) -> Any:
     if text is None:
         return Unknown(0, "yaml.load")
     try:
-        return _kept(content(Setting("", Path(), yaml=text)))
+        # a copy, since the file may change what it reads, and the content of a text is kept
+        return copy.deepcopy(_kept(content(Setting("", Path(), yaml=text))))
     except (NoYamlError, UnreadableError):
         return Unknown(0, "yaml.load")
 

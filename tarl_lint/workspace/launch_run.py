@@ -13,13 +13,13 @@ from typing import Any, Final
 from tarl_lint.workspace import ros_arguments
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.conditions import combined
-from tarl_lint.workspace.expressions import Unknown
 from tarl_lint.workspace.launch_actions import Action, Condition, Quoted, gz_bridge
 from tarl_lint.workspace.launch_entities import substitutions
 from tarl_lint.workspace.launch_model import Kind, LaunchedNode, Setting
 from tarl_lint.workspace.launch_node_values import anonymous, command, items_of, pairs, private, setting
 from tarl_lint.workspace.launch_values import Context, performed, symbolic, truth
 from tarl_lint.workspace.model import Problem
+from tarl_lint.workspace.python.evaluator import Unknown
 from tarl_lint.workspace.ros_arguments import first_of_each
 from tarl_lint.workspace.ros_names import joined
 
@@ -135,16 +135,15 @@ class Runner:
             context.environment[name] = text("value")
         elif kind == "remap":
             pair = performed(values.get("src"), context), text("dst")
-            context.remaps = (*context.remaps, pair)
+            context.remaps.append(pair)
         elif kind == "parameter":
             stated = {values.get("name"): values.get("value")}
             given = self._stated(stated, context, action.line, "")
             if condition:
                 given = (Setting(one.name, one.file, unknown=True) for one in given)
-            context.settings = (*context.settings, *given)
+            context.settings.extend(given)
         elif kind == "parameter file":
-            given = self._settings([values.get("filename")], context, action.line)
-            context.settings = (*context.settings, *given)
+            context.settings.extend(self._settings([values.get("filename")], context, action.line))
 
     def _declare(self, name: str, default: Any, context: Context, condition: str) -> None:
         """Declare an argument. Its default is unknown if different conditions give it different defaults."""

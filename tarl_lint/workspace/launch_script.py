@@ -9,13 +9,13 @@ from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace import launch_reads
 from tarl_lint.workspace.conditions import combined
-from tarl_lint.workspace.expressions import Unknown
 from tarl_lint.workspace.launch_branches import BranchingInterpreter
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_py import module_file
 from tarl_lint.workspace.launch_xml import read_xml
 from tarl_lint.workspace.model import Problem, Workspace
-from tarl_lint.workspace.python_values import FilePath
+from tarl_lint.workspace.python.evaluator import Unknown
+from tarl_lint.workspace.python.paths import FilePath
 from tarl_lint.workspace.ros_arguments import ros1
 from tarl_lint.workspace.ros_names import joined
 

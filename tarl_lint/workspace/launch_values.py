@@ -12,11 +12,12 @@ from pathlib import Path
 from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
-from tarl_lint.workspace.expressions import Library, Unknown, constant
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.model import Workspace
-from tarl_lint.workspace.python_library import LIBRARIES
-from tarl_lint.workspace.python_values import FilePath, SpentError
+from tarl_lint.workspace.python.evaluator import Library, Unknown, constant
+from tarl_lint.workspace.python.libraries import LIBRARIES
+from tarl_lint.workspace.python.paths import FilePath
+from tarl_lint.workspace.python.values import SpentError
 from tarl_lint.workspace.substitutions import ALWAYS_SET
 
 TRUE: Final = frozenset({"true", "1"})
@@ -37,8 +38,10 @@ class Context:
     file: Path
     configurations: dict[str, str] = field(default_factory=dict)
     namespace: str = "/"
-    remaps: tuple[tuple[str, str], ...] = ()
-    settings: tuple[Setting, ...] = ()  # parameters that all following nodes get
+    # remappings and parameters that all following nodes get. launch_ros appends to lists that a group shares with its
+    # surroundings if they are not empty, so what a group adds to them also applies after it
+    remaps: list[tuple[str, str]] = field(default_factory=list)
+    settings: list[Setting] = field(default_factory=list)
     # names of the launch configurations that were read; shared by all groups
     asked: set[str] = field(default_factory=set)
     # number of substitutions that may still be replaced; shared by all groups
@@ -69,8 +72,8 @@ class Context:
             self.file,
             dict(self.configurations),
             self.namespace,
-            self.remaps,
-            self.settings,
+            self.remaps or [],
+            self.settings or [],
             self.asked,
             self.left,
             environment=dict(self.environment),
@@ -79,7 +82,7 @@ class Context:
     def reset(self) -> None:
         """Forget all launch configurations. launch keeps namespace, remappings and parameters among them."""
         self.configurations = {}
-        self.namespace, self.remaps, self.settings = "/", (), ()
+        self.namespace, self.remaps, self.settings = "/", [], []
 
     def restore(self, other: Context) -> None:
         """Take the launch configurations of another context."""

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Setting
-from tarl_lint.workspace.python_values import bounded
+from tarl_lint.workspace.python.elements import bounded
 
 DEEPEST: Final = 50  # maximum nesting of parameters; needed because a YAML mapping may contain itself
 MOST: Final = 300_000  # maximum number of values of a YAML text

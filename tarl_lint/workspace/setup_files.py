@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
-from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.model import Problem
-from tarl_lint.workspace.statements import Interpreter
+from tarl_lint.workspace.python.evaluator import Library, Unknown
+from tarl_lint.workspace.python.interpreter import Interpreter
 
 LARGEST: Final = 200_000  # maximum size of setup.cfg (bytes)
 _CONSOLE: Final = re.compile(r"^\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*(?:\[.*\])?\s*$")

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from tarl_lint.workspace.expressions import Library, Unknown, constant
 from tarl_lint.workspace.launch_model import Scalar
 from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.python.evaluator import Library, Unknown, constant
 
 _ARGUMENT: Final = re.compile(r"\$\(((?:[^()]|\([^()]*\))*)\)")
 ALWAYS_SET: Final = frozenset({"HOME", "USER", "PATH"})  # environment variables whose defaults never count

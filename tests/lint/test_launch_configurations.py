@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from tarl_lint.workspace.expressions import constant
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_parameters import stated
 from tarl_lint.workspace.launch_read import read_launch
-from tarl_lint.workspace.python_library import BITS
-from tarl_lint.workspace.python_values import Unknown
+from tarl_lint.workspace.python.evaluator import constant
+from tarl_lint.workspace.python.operators import BITS
+from tarl_lint.workspace.python.values import Unknown
 from tarl_lint.workspace.read import read
 from tarl_lint.workspace.ros_names import joined
 

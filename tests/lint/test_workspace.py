@@ -12,12 +12,12 @@ import pytest
 
 from tarl_lint.workspace.cfg_files import configurations
 from tarl_lint.workspace.cmake import cmake
-from tarl_lint.workspace.expressions import Unknown
 from tarl_lint.workspace.manifests import manifest
 from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.python.evaluator import Unknown
+from tarl_lint.workspace.python.interpreter import Interpreter
 from tarl_lint.workspace.read import read
 from tarl_lint.workspace.setup_files import setup
-from tarl_lint.workspace.statements import Interpreter
 
 
 def write(folder: Path, **texts: str) -> Path:

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from tarl_lint.workspace.expressions import Library, Unknown
-from tarl_lint.workspace.statements import Interpreter
+from tarl_lint.workspace.python.evaluator import Library, Unknown
+from tarl_lint.workspace.python.interpreter import Interpreter
 
 EXPRESSIONS = """
     7 // 2, -7 // 2, 7 % 3, 2 - 5, 3 * 4, 9 / 2, 6 & 3, 6 | 3, 6 ^ 3
@@ -481,7 +481,10 @@ OPEN = {
     "unpacking too few values": "a, r, *b = [1]",
     "unpacking an unknown value": "a, r = absent",
     "an argument that is not given": "def f(a):\n  return a\nr = f()",
-    "the text of a list": "r = f'{[1]}'",
+    "the text of a list with an unknown value": "r = f'{[absent]}'",
+    "the text of a set of texts": "r = f'{ {\"a\", \"b\"} }'",
+    "the text of an object": "class A:\n  pass\nr = f'{A()}'",
+    "the text of a function": "def f():\n  pass\nr = str(f)",
     "the text of an unknown value": "r = f'{absent}'",
     "a format with an unknown width": "r = f'{1:{absent}}'",
     "a format that reads an attribute": "r = '{0.real}'.format(1)",
@@ -581,7 +584,7 @@ PROBLEMS = {
     "a loop": ("\nfor x in absent:\n    y = 1", 2, "the loop over `absent` is not constant"),
     "a loop with a condition": ("while absent:\n    y = 1", 1, "the condition `absent` of a loop is not constant"),
     "a case": ("match absent:\n    case 1:\n        x = 1", 2, "the case `1` is not constant"),
-    "a case of a kind": ("match 1:\n    case int():\n        x = 1", 2, "the case `int()` is not constant"),
+    "a case of a kind": ("match 1:\n    case absent():\n        x = 1", 2, "the case `absent()` is not constant"),
     "a guard": ("match 1:\n    case 1 if absent:\n        x = 1", 2, "the case `1` is not constant"),
     "an exception": ("x = 1\nraise ValueError\ny = 2", 2, "it raises an exception here; what follows is not read"),
     "a syntax error": ("x = 1\ny = = 2", 2, "it is not Python 3: invalid syntax"),

@@ -19,8 +19,12 @@ class Left(Exception):  # noqa: N818 - control flow, never an error
         self.whole = whole
 
 
-class Raised(Exception):  # noqa: N818 - control flow of the file
-    """A `raise` of the file."""
+class Enough(Exception):  # noqa: N818 - control flow, never an error
+    """A generator of the file has yielded so many values that it may be endless."""
 
-    def __init__(self, line: int) -> None:
-        self.line = line
+
+class Raised(Exception):  # noqa: N818 - control flow of the file
+    """A `raise` of the file, or an exception of a constant operation; `error` is None if it is not known."""
+
+    def __init__(self, line: int, error: Any = None) -> None:
+        self.line, self.error = line, error

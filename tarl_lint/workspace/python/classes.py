@@ -1,0 +1,224 @@
+"""Classes of an interpreted file and their objects: data classes, named tuples, enumerations and others."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable
+from typing import Any, Final
+
+from tarl_lint.workspace.python.elements import as_data, items, settled
+from tarl_lint.workspace.python.evaluation import Evaluation, Execution, call_of, unknown
+from tarl_lint.workspace.python.objects import TUPLES, Class, Function, Made, Method
+from tarl_lint.workspace.python.values import Field, Library, OpaqueError, Partial, Scope, Unknown
+
+DATA: Final = "dataclasses.dataclass"
+_TOTAL: Final = "functools.total_ordering"
+AUTO: Final = Unknown(0, "auto()")  # the result of `enum.auto`
+
+
+def of_statement(run: Execution, statement: ast.ClassDef, names: Scope) -> Any:
+    """Return the class of a `class` statement, or what its decorators make of it."""
+    bases = tuple(run.value(one, names) for one in statement.bases)
+    inside = Scope({}, names, of_class=True)
+    run.body(statement.body, inside)
+    stated = []
+    for one in statement.decorator_list:
+        given = one.keywords if isinstance(one, ast.Call) else []
+        called = run.value(one.func if isinstance(one, ast.Call) else one, names)
+        stated.append((called, {key.arg: run.value(key.value, names) for key in given}))
+    made: Any = defined(statement, bases, stated, inside.names)
+    for node, (called, _) in reversed(list(zip(statement.decorator_list, stated, strict=True))):
+        if isinstance(called, Function | Method | Partial):
+            decorator = called if not isinstance(node, ast.Call) else run.value(node, names)
+            made = run.call(decorator, [made], {}, call_of(statement.name, statement.lineno))
+    return made
+
+
+def defined(
+    statement: ast.ClassDef,
+    bases: tuple[Any, ...],
+    decorators: Iterable[tuple[Any, Any]],
+    names: dict[str, Any],
+) -> Class:
+    """Return the class of a `class` statement, given its bases, its decorators with their keywords, and its `names`.
+
+    The values of an enumeration in `names` are replaced with its members.
+    """
+    libraries = {one.name for one in bases if isinstance(one, Library)}
+    stated = {one.name: given for one, given in decorators if isinstance(one, Library)}
+    is_data = DATA in stated or TUPLES in libraries
+    options = {**(stated.get(DATA) or {}), "total": _TOTAL in stated}
+    fields = tuple(_annotated(statement)) if is_data else None
+    shown = [name for name in fields or () if isinstance(names.get(name), Field) and not names[name].shown]
+    made = Class(
+        statement.name, bases, names, fields, TUPLES in libraries, {**options, "hidden": tuple(shown)}
+    )
+    if made.is_enumeration():
+        _enumerate(made)
+    return made
+
+
+def _annotated(statement: ast.ClassDef) -> Iterable[str]:
+    """Yield the names of the annotated attributes of a class, without class variables."""
+    for one in statement.body:
+        if isinstance(one, ast.AnnAssign) and isinstance(one.target, ast.Name):
+            text = ast.unparse(one.annotation)
+            if "ClassVar" not in text and not text.endswith("KW_ONLY"):
+                yield one.target.id
+
+
+def _enumerate(made: Class) -> None:
+    """Replace the values of an enumeration with its members."""
+    found: dict[int, Made] = {}
+    values: list[Any] = []
+    for name, value in list(made.names.items()):
+        if isinstance(value, Function | Class | Partial) or name.startswith("_"):
+            continue
+        if value is AUTO:
+            value = _automatic(made, name, values)
+        values.append(value)
+        same = next((one for one in found.values() if _equal(one.attributes["value"], value)), None)
+        member = Made(made, {"name": name, "value": value}) if same is None else same
+        found[id(member)] = member
+        made.names[name] = member
+
+
+def _equal(one: Any, other: Any) -> bool:
+    return bool(settled([one, other]) and type(one) is type(other) and one == other)
+
+
+def _automatic(made: Class, name: str, values: list[Any]) -> Any:
+    """Return the value of `auto()`."""
+    if made.mixed() is str:
+        return name.lower()
+    numbers = [one for one in values if isinstance(one, int)]
+    if made.is_flag():
+        return 1 if not numbers else 2 ** max(numbers).bit_length()
+    return max(numbers, default=0) + 1
+
+
+def instance(run: Evaluation, kind: Class, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
+    """Return a new object of a class of the file, or a member of an enumeration."""
+    if kind.is_enumeration():
+        return _member(run, kind, args, node)
+    made, fields = Made(kind, {}), kind.all_fields()
+    start = kind.find("__init__")
+    if start is not None and isinstance(start[0], Function):
+        if kind.error() is not None:
+            made.attributes["args"] = tuple(args)
+        start[0].run(start[0], [made, *args], keywords, start[1])
+    elif fields is not None:
+        _fill(run, made, fields, args, keywords, node)
+    elif kind.error() is not None:
+        made.attributes["args"] = tuple(args)
+    return made
+
+
+def _fill(
+    run: Evaluation,
+    made: Made,
+    fields: tuple[str, ...],
+    args: list[Any],
+    keywords: dict[str, Any],
+    node: ast.Call,
+) -> None:
+    """Set the fields of a data class or named tuple, and run what follows."""
+    kind = made.kind
+    positional = [name for name in fields if _takes(kind, name)]
+    given = {**dict(zip(positional, args, strict=False)), **keywords}
+    if run.trying and (len(args) > len(positional) or any(name not in fields for name in keywords)):
+        raise OpaqueError("an exception of a data class")
+    for name in fields:
+        made.attributes[name] = given[name] if name in given else _default(run, kind, name, node)
+    after = kind.find("__post_init__")
+    if after is not None and isinstance(after[0], Function):
+        after[0].run(after[0], [made], {}, after[1])
+
+
+def _takes(kind: Class, name: str) -> bool:
+    """Return whether a positional argument can set a field."""
+    found = kind.find(name)
+    value = found[0] if found is not None else None
+    return not (isinstance(value, Field) and (not value.init or value.keyword))
+
+
+def _default(run: Evaluation, kind: Class, name: str, node: ast.Call) -> Any:
+    found = kind.find(name)
+    value = found[0] if found is not None else unknown(node)
+    if isinstance(value, Field):
+        return value.default if value.factory is None else run.call(value.factory, [], {}, node)
+    return value
+
+
+def _member(run: Evaluation, kind: Class, args: list[Any], node: ast.Call) -> Any:
+    """Return the member of an enumeration with a value."""
+    if len(args) != 1 or not settled(args):
+        return unknown(node)
+    wanted = args[0]
+    if isinstance(wanted, Made) and wanted.kind is kind:
+        return wanted
+    same = [one for one in kind.members() if one.attributes["value"] == wanted]
+    if same:
+        return same[0]
+    missing = kind.find("_missing_")
+    if missing is not None and isinstance(missing[0], Function):
+        return missing[0].run(missing[0], [kind, wanted], {}, missing[1])
+    if run.trying:
+        raise ValueError(f"{wanted!r} is not a valid {kind.name}")
+    return unknown(node)
+
+
+def as_mapping(value: Any, **keywords: Any) -> Any:
+    """Return `dataclasses.asdict`: the fields of an object, with the data classes inside, as new dicts."""
+    if keywords:
+        raise OpaqueError("a function makes the dict")
+    return _converted(value, dict, 0)
+
+
+def as_values(value: Any, **keywords: Any) -> Any:
+    """Return `dataclasses.astuple`."""
+    if keywords:
+        raise OpaqueError("a function makes the tuple")
+    return _converted(value, tuple, 0)
+
+
+def _converted(value: Any, make: Any, depth: int) -> Any:
+    if depth > 30:
+        raise OpaqueError("too deep")
+    if isinstance(value, Made) and value.kind.fields is not None and not value.kind.unpacked:
+        pairs = {
+            name: _converted(value.attributes.get(name), make, depth + 1)
+            for name in value.kind.all_fields() or ()
+        }
+        return pairs if make is dict else tuple(pairs.values())
+    if isinstance(value, Made) and value.kind.unpacked:
+        inner = {key: _converted(one, make, depth + 1) for key, one in value.attributes.items()}
+        return Made(value.kind, inner)
+    if isinstance(value, list | tuple):
+        return type(value)(_converted(one, make, depth + 1) for one in value)
+    if isinstance(value, dict):
+        found = {key: _converted(one, make, depth + 1) for key, one in value.items()}
+        return found if type(value) is dict else as_data(found)
+    return value
+
+
+def replaced(value: Any, **changes: Any) -> Any:
+    """Return `dataclasses.replace`: a copy of an object with other values of some fields."""
+    if not isinstance(value, Made) or value.kind.all_fields() is None:
+        raise OpaqueError("no data class")
+    made = Made(
+        value.kind, {name: value.attributes.get(name) for name in value.kind.all_fields() or ()} | changes
+    )
+    after = value.kind.find("__post_init__")
+    if after is not None and isinstance(after[0], Function):
+        after[0].run(after[0], [made], {}, after[1])
+    return made
+
+
+def field_names(value: Any) -> list[Made]:
+    """Return `dataclasses.fields`: objects with the names of the fields."""
+    kind = value.kind if isinstance(value, Made) else value
+    if not isinstance(kind, Class):
+        raise OpaqueError("no data class")
+    shape = Class("Field", (), {})
+    return [Made(shape, {"name": name}) for name in items(kind.all_fields()) or ()]

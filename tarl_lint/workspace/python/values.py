@@ -1,0 +1,156 @@
+"""Values of interpreted Python files that are no data: unknown values, names of libraries, scopes, streams."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+LARGEST: Final = 100_000  # maximum size of a value: characters of a text, elements of nested lists
+
+
+class SpentError(Exception):
+    """An interpretation has used up its limit of steps. The message says so."""
+
+
+class OpaqueError(ValueError):
+    """The result of an operation is not constant, or too large. It is no exception of the interpreted file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """A value that is not constant: its line and its text."""
+
+    line: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """A name of another module: `os.path`, `launch_ros.actions.Node`."""
+
+    name: str
+
+
+MANY: Final = Unknown(0, "too many values")
+
+
+class Scope:
+    """The names of a module, class, function or comprehension, within those of the scopes around it."""
+
+    __slots__ = ("around", "elsewhere", "inner", "names", "of_class")
+
+    def __init__(
+        self,
+        names: dict[str, Any],
+        around: Scope | None = None,
+        *,
+        inner: bool = False,
+        of_class: bool = False,
+    ) -> None:
+        self.names, self.around = names, around
+        self.elsewhere: dict[str, Scope] = {}  # names that `global` and `nonlocal` bind in another scope
+        self.inner = inner  # whether the scope is that of a comprehension
+        self.of_class = of_class  # whether the scope is that of a class, which functions inside it do not see
+
+    def find(self, name: str) -> tuple[Any] | None:
+        """Return a tuple with the value of a name; None if no scope has the name."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.names:
+                return (scope.names[name],)
+            scope = scope.around
+        return None
+
+    def store(self, name: str, value: Any) -> None:
+        """Bind a name in this scope, or in the one that a `global` or `nonlocal` statement refers to."""
+        self.elsewhere.get(name, self).names[name] = value
+
+    def outside(self) -> Scope:
+        """Return the scope around comprehensions, where `:=` binds."""
+        scope = self
+        while scope.inner and scope.around is not None:
+            scope = scope.around
+        return scope
+
+    def seen(self) -> Scope:
+        """Return the scope that functions defined here see around them: not that of a class."""
+        scope = self
+        while scope.of_class and scope.around is not None:
+            scope = scope.around
+        return scope
+
+    def module(self) -> Scope:
+        """Return the outermost scope."""
+        scope = self
+        while scope.around is not None:
+            scope = scope.around
+        return scope
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bound:
+    """A method of a text, list, dict, match or other value of Python's library."""
+
+    of: Any
+    name: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Namespace:
+    """An imported module of the workspace, by its full name."""
+
+    module: str
+    names: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """The result of `dataclasses.field`."""
+
+    default: Any = field(default_factory=lambda: Unknown(0, "a field"))
+    factory: Any = None
+    init: bool = True
+    shown: bool = True  # whether `repr` shows the field
+    keyword: bool = False  # whether only a keyword sets it
+
+
+class Stream:
+    """An iterator: a generator, or the result of `iter`, `map`, `zip` and the like. Its elements are read once."""
+
+    __slots__ = ("endless", "values")
+
+    def __init__(self, values: Iterator[Any], *, endless: bool = False) -> None:
+        self.values, self.endless = values, endless
+
+    def __iter__(self) -> Iterator[Any]:
+        return self.values
+
+    def __next__(self) -> Any:
+        return next(self.values)
+
+    def rest(self) -> list[Any]:
+        """Return the elements that are left. Raises OpaqueError if there are too many."""
+        found = list(itertools.islice(self.values, 0 if self.endless else LARGEST + 1))
+        if self.endless or len(found) > LARGEST:
+            raise OpaqueError("too many values")
+        return found
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Suppressed:
+    """The result of `contextlib.suppress`: a block that ends with one of these exceptions."""
+
+    kinds: tuple[Any, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Partial:
+    """The result of `functools.partial` and of similar functions: a callable with arguments."""
+
+    run: Callable[..., Any]
+
+    def __call__(self, *args: Any, **keywords: Any) -> Any:
+        """Call it."""
+        return self.run(*args, **keywords)
