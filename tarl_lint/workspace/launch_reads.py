@@ -90,7 +90,7 @@ def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
         **{f"pathlib.Path.{kind}": test(kind) for kind in ("exists", "is_file", "is_dir")},
         "os.path.exists": test("exists"), "os.path.isfile": test("is_file"), "os.path.isdir": test("is_dir"),
         **{f"yaml.{name}": _yaml for name in ("safe_load", "load", "full_load", "unsafe_load")},
-        "json.load": _json, "json.loads": _json,
+        "json.load": _json,
     }  # fmt: skip
 
 

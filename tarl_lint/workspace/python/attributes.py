@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import ast
 import functools
+from collections import OrderedDict
 from pathlib import PurePosixPath
 from typing import Any
 
-from tarl_lint.workspace.python.builtin_functions import type_of
+from tarl_lint.workspace.python.containers import type_of
+from tarl_lint.workspace.python.elements import listed
 from tarl_lint.workspace.python.evaluation import Evaluation, call_of, unknown
 from tarl_lint.workspace.python.methods import METHODS, READ, method
 from tarl_lint.workspace.python.objects import Above, Class, Function, Made, Method
@@ -29,7 +31,7 @@ def attribute(run: Evaluation, base: Any, name: str, node: ast.AST) -> tuple[Any
         return _of_every_object(base, name) if found is None else found
     if isinstance(base, Function | Method):
         function = base if isinstance(base, Function) else base.function
-        names = {"__name__": function.node.name, "__qualname__": function.node.name}
+        names = {"__name__": function.called(), "__qualname__": function.called()}
         return (names[name],) if name in names else None
     return _of_library(run, base, name)
 
@@ -62,8 +64,8 @@ def _of_type(base: Any, name: str) -> tuple[Any] | None:
         return ({"Unique": "set", "FilePath": "PosixPath"}.get(kind.__name__, kind.__name__),)
     if kind is str and name == "maketrans":
         return (Partial(_translation),)
-    if kind is dict and name == "fromkeys":
-        return (Partial(lambda keys, value=None: dict.fromkeys(list(keys), value)),)
+    if kind in (dict, OrderedDict) and name == "fromkeys":
+        return (Partial(lambda keys, value=None: kind.fromkeys(listed(keys), value)),)
     if kind is FilePath and name in ("cwd", "home"):
         return None
     if name in METHODS.get(kind, ()):

@@ -7,12 +7,21 @@ constants.
 from __future__ import annotations
 
 import builtins
-from collections import ChainMap, Counter, OrderedDict, defaultdict, deque
+from collections import ChainMap, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Final
 
+from tarl_lint.workspace.python.containers import (
+    TYPES,
+    make_dict,
+    make_frozen,
+    make_list,
+    make_set,
+    make_tuple,
+    type_of,
+)
 from tarl_lint.workspace.python.elements import Unique, listed
-from tarl_lint.workspace.python.methods import checked, ordered, updated
+from tarl_lint.workspace.python.methods import checked, ordered
 from tarl_lint.workspace.python.objects import Class, Made
 from tarl_lint.workspace.python.operators import formatted, limited, power, written
 from tarl_lint.workspace.python.paths import FilePath
@@ -64,7 +73,7 @@ def _tested(name: str) -> Callable[..., Any]:
 
     def found(values: Any) -> Any:
         unsure = False
-        for one in listed(values):
+        for one in streamed(values):
             if isinstance(one, Unknown | Library):
                 unsure = True
             elif bool(one) is stops:
@@ -76,34 +85,16 @@ def _tested(name: str) -> Callable[..., Any]:
     return found
 
 
-def _dict(*args: Any, **keywords: Any) -> dict[Any, Any]:
-    made: dict[Any, Any] = {}
-    updated(made, list(args), keywords)
-    return made
-
-
-def _list(values: Any = ()) -> list[Any]:
-    return listed(values)
-
-
-def _tuple(values: Any = ()) -> tuple[Any, ...]:
-    return tuple(listed(values))
-
-
-def _set(values: Any = ()) -> Unique:
-    return Unique(listed(values))
-
-
 def streamed(value: Any) -> Iterator[Any]:
     """Return an iterator over a value; one over a stream that is not used up at once. Raises OpaqueError."""
     return value.values if isinstance(value, Stream) else iter(listed(value))
 
 
 def _combined(make: Callable[..., Iterator[Any]], *values: Any) -> Stream:
-    """Return the elements that an iterator over other iterators has; at once, unless all of those are endless."""
+    """Return the elements that an iterator over other iterators has; endless if all of those are."""
     parts = [streamed(one) for one in values]
-    found = Stream(make(*parts), endless=all(isinstance(one, Stream) and one.endless for one in values))
-    return found if found.endless or not values else Stream(iter(found.rest()))
+    endless = bool(values) and all(isinstance(one, Stream) and one.endless for one in values)
+    return Stream(make(*parts), endless=endless)
 
 
 def _map(function: Callable[..., Any], *values: Any) -> Stream:
@@ -156,23 +147,6 @@ def _reversed(value: Any) -> Stream:
     return Stream(iter(listed(value)[::-1]))
 
 
-def _types() -> dict[Any, Any]:
-    """Return the types of values, by the form that their names have in interpreted files."""
-    return {
-        str: str, int: int, float: float, bool: bool, bytes: bytes, _list: list, _tuple: tuple, _dict: dict,
-        _set: Unique, _frozen: Unique, _range: range, object: object, FilePath: FilePath, deque: deque,
-        OrderedDict: OrderedDict, defaultdict: defaultdict, Counter: Counter, ChainMap: ChainMap,
-    }  # fmt: skip
-
-
-def type_of(value: Any) -> type | None:
-    """Return the type that a built-in name stands for; None if it stands for a function."""
-    try:
-        return _types().get(value)
-    except TypeError:
-        return None
-
-
 def _isinstance(value: Any, kinds: Any) -> bool:
     for one in kinds if isinstance(kinds, tuple | list) else (kinds,):
         if isinstance(one, Class):
@@ -219,11 +193,7 @@ def _type(value: Any, *more: Any) -> Any:
         return type(value)
     if value is None:
         return type(None)
-    return next(made for made, kind in _types().items() if type(value) is kind)
-
-
-def _frozen(values: Any = ()) -> Unique:
-    return Unique(listed(values))
+    return next(made for made, kind in TYPES.items() if type(value) is kind)
 
 
 def _print(*_: Any, **__: Any) -> None:
@@ -251,7 +221,8 @@ def _number(kind: type, special: str) -> Callable[..., Any]:
 
 # Functions that only use the structure of their arguments; elements of the arguments may be unknown
 STRUCTURE: Final[Mapping[str, Any]] = {
-    "list": _list, "tuple": _tuple, "dict": _dict, "len": _len, "map": _map, "set": _set, "frozenset": _frozen,
+    "list": make_list, "tuple": make_tuple, "dict": make_dict, "len": _len, "map": _map, "set": make_set,
+    "frozenset": make_frozen,
     "filter": _filter, "isinstance": _isinstance, "sorted": ordered, "sum": _sum, "enumerate": _enumerate,
     "zip": _zip, "type": _type, "reversed": _reversed, "iter": _iter, "next": _next, "any": _tested("any"),
     "all": _tested("all"), "min": _extreme("min"), "max": _extreme("max"), "range": _range, "callable": _callable,

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from tarl_lint.workspace.python.elements import as_data, items, settled
 from tarl_lint.workspace.python.evaluation import Evaluation, Execution, call_of, unknown
-from tarl_lint.workspace.python.objects import TUPLES, Class, Function, Made, Method
+from tarl_lint.workspace.python.objects import ENUMERATIONS, FLAGS, TUPLES, Class, Function, Made, Method
 from tarl_lint.workspace.python.values import Field, Library, OpaqueError, Partial, Scope, Unknown
 
 DATA: Final = "dataclasses.dataclass"
@@ -19,7 +19,15 @@ AUTO: Final = Unknown(0, "auto()")  # the result of `enum.auto`
 def of_statement(run: Execution, statement: ast.ClassDef, names: Scope) -> Any:
     """Return the class of a `class` statement, or what its decorators make of it."""
     bases = tuple(run.value(one, names) for one in statement.bases)
-    inside = Scope({}, names, of_class=True)
+    kinds = {one.name for one in bases if isinstance(one, Library)} | {
+        base.name
+        for one in bases
+        if isinstance(one, Class)
+        for base in one.library_bases()
+        if isinstance(base, Library)
+    }
+    body = _Numbered(kinds) if kinds & ENUMERATIONS else {}
+    inside = Scope(body, names, of_class=True)
     run.body(statement.body, inside)
     stated = []
     for one in statement.decorator_list:
@@ -49,10 +57,10 @@ def defined(
     is_data = DATA in stated or TUPLES in libraries
     options = {**(stated.get(DATA) or {}), "total": _TOTAL in stated}
     fields = tuple(_annotated(statement)) if is_data else None
-    shown = [name for name in fields or () if isinstance(names.get(name), Field) and not names[name].shown]
-    made = Class(
-        statement.name, bases, names, fields, TUPLES in libraries, {**options, "hidden": tuple(shown)}
-    )
+    stated_fields = {name: names[name] for name in fields or () if isinstance(names.get(name), Field)}
+    options["hidden"] = tuple(name for name, one in stated_fields.items() if not one.shown)
+    options["ignored"] = tuple(name for name, one in stated_fields.items() if not one.compared)
+    made = Class(statement.name, bases, names, fields, TUPLES in libraries, options)
     if made.is_enumeration():
         _enumerate(made)
     return made
@@ -70,13 +78,9 @@ def _annotated(statement: ast.ClassDef) -> Iterable[str]:
 def _enumerate(made: Class) -> None:
     """Replace the values of an enumeration with its members."""
     found: dict[int, Made] = {}
-    values: list[Any] = []
     for name, value in list(made.names.items()):
         if isinstance(value, Function | Class | Partial) or name.startswith("_"):
             continue
-        if value is AUTO:
-            value = _automatic(made, name, values)
-        values.append(value)
         same = next((one for one in found.values() if _equal(one.attributes["value"], value)), None)
         member = Made(made, {"name": name, "value": value}) if same is None else same
         found[id(member)] = member
@@ -87,14 +91,23 @@ def _equal(one: Any, other: Any) -> bool:
     return bool(settled([one, other]) and type(one) is type(other) and one == other)
 
 
-def _automatic(made: Class, name: str, values: list[Any]) -> Any:
-    """Return the value of `auto()`."""
-    if made.mixed() is str:
-        return name.lower()
-    numbers = [one for one in values if isinstance(one, int)]
-    if made.is_flag():
-        return 1 if not numbers else 2 ** max(numbers).bit_length()
-    return max(numbers, default=0) + 1
+class _Numbered(dict[str, Any]):
+    """The names in the body of an enumeration, where `auto()` becomes a value at once."""
+
+    def __init__(self, kinds: set[str]) -> None:
+        super().__init__()
+        self._kinds = kinds
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        super().__setitem__(name, self._automatic(name) if value is AUTO else value)
+
+    def _automatic(self, name: str) -> Any:
+        if "enum.StrEnum" in self._kinds:
+            return name.lower()
+        numbers = [one for one in self.values() if isinstance(one, int)]
+        if self._kinds & FLAGS:
+            return 1 if not numbers else 2 ** max(numbers).bit_length()
+        return max(numbers, default=0) + 1
 
 
 def instance(run: Evaluation, kind: Class, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
@@ -157,9 +170,9 @@ def _member(run: Evaluation, kind: Class, args: list[Any], node: ast.Call) -> An
     wanted = args[0]
     if isinstance(wanted, Made) and wanted.kind is kind:
         return wanted
-    same = [one for one in kind.members() if one.attributes["value"] == wanted]
-    if same:
-        return same[0]
+    same = kind.with_value(wanted)
+    if same is not None:
+        return same
     missing = kind.find("_missing_")
     if missing is not None and isinstance(missing[0], Function):
         return missing[0].run(missing[0], [kind, wanted], {}, missing[1])

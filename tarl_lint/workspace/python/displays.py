@@ -80,9 +80,9 @@ def _list_of(run: Evaluation, node: ast.ListComp, names: Scope) -> Any:
 def _generator(run: Evaluation, node: ast.GeneratorExp, names: Scope) -> Any:
     first = run.value(node.generators[0].iter, names)
     values = (run.value(node.elt, inner) for inner in _loops(run, node.generators, names, first))
-    if isinstance(first, Stream) and first.endless:
-        return Stream(values, endless=True)
-    return Stream(iter(list(values)))
+    if not isinstance(first, Stream) and items(first) is None:
+        raise OpaqueError("unknown elements")
+    return Stream(values, endless=isinstance(first, Stream) and first.endless)
 
 
 def _set_of(run: Evaluation, node: ast.SetComp, names: Scope) -> Any:

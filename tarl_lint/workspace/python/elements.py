@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import re
 from collections import ChainMap, deque
 from collections.abc import Iterable, Iterator, MutableSet
 from pathlib import PurePosixPath
@@ -24,7 +25,8 @@ class Unique(MutableSet[Any]):
     """
 
     def __init__(self, values: Iterable[Any] = ()) -> None:
-        self._of = {_identity(one): one for one in values}
+        self._of: dict[Any, Any] = {}
+        self.update(values)
 
     def __contains__(self, value: object) -> bool:
         return _identity(value) in self._of
@@ -161,6 +163,8 @@ _CONSTANT: Final = (str, int, float, bool, bytes, type(None), PurePosixPath)
 _SETTLED: Final = (
     *_CONSTANT,
     Made,
+    re.Match,
+    re.Pattern,
     Class,
     Function,
     type,

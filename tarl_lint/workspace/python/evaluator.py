@@ -30,7 +30,6 @@ from tarl_lint.workspace.python.values import (
     Library,
     Namespace,
     OpaqueError,
-    Partial,
     Scope,
     SpentError,
     Unknown,
@@ -86,7 +85,7 @@ class Evaluator:
         bound = isinstance(called, Bound)
         if not bound and (isinstance(called, Unknown | Library) or not callable(called)):
             return unknown(node)
-        if bound or is_builtin(called) or isinstance(called, Partial):
+        if bound or is_builtin(called):
             args = [self.callable(one, node) for one in args]
             keywords = {key: self.callable(one, node) for key, one in keywords.items()}
         found = (method if bound else function)(called, args, keywords)
@@ -186,8 +185,8 @@ class Evaluator:
         ):
             same = left is right
             return same if kind in (ast.Is, ast.Eq) else not same if kind in (ast.IsNot, ast.NotEq) else MAYBE
-        if membership and isinstance(right, Made) and right.has("__contains__"):
-            return bool(right.run("__contains__", left)) is (kind is ast.In)
+        if membership and isinstance(right, Made) and (right.has("__contains__") or right.kind.is_flag()):
+            return (left in right) is (kind is ast.In)
         if membership and isinstance(right, dict | ChainMap) and settled([left, *right]):
             return COMPARE[kind](left, right)
         many = items(right) if membership and not isinstance(right, str) else None

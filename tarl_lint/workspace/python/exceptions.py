@@ -6,9 +6,9 @@ import ast
 from typing import Any
 
 from tarl_lint.workspace.python.evaluation import Evaluation, Execution, call_of, unknown
-from tarl_lint.workspace.python.jumps import Raised
+from tarl_lint.workspace.python.jumps import Left, Raised, Returned
 from tarl_lint.workspace.python.objects import Class, Made
-from tarl_lint.workspace.python.values import Scope, Suppressed, Unknown
+from tarl_lint.workspace.python.values import Scope, Suppressed, Suspended, Unknown
 
 
 def raised(run: Evaluation, statement: ast.Raise, names: Scope) -> Raised:
@@ -85,8 +85,12 @@ def run_with(run: Execution, statement: ast.With, names: Scope) -> None:
     """Interpret a `with` statement; the exceptions of `contextlib.suppress` end its body."""
     entered: list[Made] = []
     suppressed: list[Suppressed] = []
-    for item in statement.items:
+    for index, item in enumerate(statement.items):
         value = run.value(item.context_expr, names)
+        if isinstance(value, Suspended):
+            rest = ast.copy_location(ast.With(statement.items[index + 1 :], statement.body), statement)
+            _inside(run, value, item.optional_vars, rest, names)
+            return
         suppressed += [value] if isinstance(value, Suppressed) else []
         if isinstance(value, Made) and value.has("__enter__"):
             entered.append(value)
@@ -104,6 +108,25 @@ def run_with(run: Execution, statement: ast.With, names: Scope) -> None:
         for one in reversed(entered):
             if one.has("__exit__"):
                 _special(run, one, "__exit__", [None, None, None], statement.lineno)
+
+
+def _inside(
+    run: Execution, manager: Suspended, target: ast.expr | None, rest: ast.With, names: Scope
+) -> None:
+    """Interpret a block where the function of a context manager yields, and the rest of this function after it."""
+    left: list[Exception] = []
+
+    def entered(value: Any) -> None:
+        if target is not None:
+            run.bind(target, value, names)
+        try:
+            run_with(run, rest, names)
+        except (Returned, Left) as jump:
+            left.append(jump)
+
+    manager.run(entered)
+    if left:
+        raise left[0]
 
 
 def _special(run: Execution, value: Made, name: str, args: list[Any], line: int) -> Any:

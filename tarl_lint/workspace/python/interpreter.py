@@ -12,14 +12,15 @@ from typing import Any, Final
 
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.python import classes
+from tarl_lint.workspace.python.call_stack import OWN, CallStack
 from tarl_lint.workspace.python.elements import elements_if_known, items
 from tarl_lint.workspace.python.evaluation import call_of, unknown
 from tarl_lint.workspace.python.evaluator import FAILURES, Evaluator
 from tarl_lint.workspace.python.exceptions import raised, run_try, run_with
 from tarl_lint.workspace.python.files import parsed
-from tarl_lint.workspace.python.functions import arguments, decorated, lambda_of, made_function, yields
+from tarl_lint.workspace.python.functions import decorated, lambda_of, made_function
 from tarl_lint.workspace.python.importing import Modules, bind_modules, bind_names, bind_outside
-from tarl_lint.workspace.python.jumps import Enough, Left, Raised, Returned
+from tarl_lint.workspace.python.jumps import Left, Raised, Returned
 from tarl_lint.workspace.python.match_patterns import fits
 from tarl_lint.workspace.python.objects import Above, Class, Function, Interpreted, Made, Method
 from tarl_lint.workspace.python.operators import in_place
@@ -35,10 +36,7 @@ from tarl_lint.workspace.python.values import (
     Unknown,
 )
 
-DEEPEST: Final = 30  # maximum nesting of calls of the file's own functions
 MODULES: Final = 20  # maximum number of imported modules that are interpreted for a file
-YIELDED: Final = 1_000  # maximum number of values that are read from a generator
-_OWN: Final = "__class__"  # name under which the class of a method is stored, for `super()`
 _PARTLY: Final = "it was read in part: it has too many statements, or nests too deeply"
 
 
@@ -61,13 +59,8 @@ class Interpreter(Evaluator):
         self.line = 0  # line of the current call in this file
         self._modules = Modules(self.models, found)
         self._imported: dict[Path, Namespace] = {}
-        self._depth = 0
-        self._yielded: list[list[Any]] = []
+        self._calls = CallStack(file)
         self._handled: list[Raised] = []  # the exceptions whose handlers are being interpreted
-        self._generators: dict[
-            ast.FunctionDef, bool
-        ] = {}  # function that was called → whether it contains `yield`
-        self._files = [file]  # the files of the functions that are being interpreted
 
     def run(self) -> dict[str, Any]:
         """Interpret the file and return its global names."""
@@ -91,7 +84,7 @@ class Interpreter(Evaluator):
     def call(self, called: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
         """Return the value of a call of one of the file's functions or classes, or of a model."""
         before = self.line
-        if self._files[-1] == self.file:
+        if self._calls.file == self.file:
             self.line = node.lineno
         try:
             if isinstance(called, Function | Method | Class):
@@ -105,7 +98,7 @@ class Interpreter(Evaluator):
 
     def _run(self, called: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
         """Return the value of a call of one of the file's functions or classes."""
-        if self._depth >= DEEPEST:
+        if self._calls.is_full():
             return unknown(node)
         if isinstance(called, Class):
             return classes.instance(self, called, args, keywords, node)
@@ -119,7 +112,7 @@ class Interpreter(Evaluator):
         call = ast.Call(ast.Name(name or "a function", ast.Load()), [], [], lineno=line)
         try:
             found = self.call(function, args, keywords, call)
-            return items(found) if isinstance(found, Stream) and not found.endless else found
+            return elements_if_known(found) if isinstance(found, Stream) else found
         except Raised as left:
             self.problem(left.line, f"{name or 'a function'} raises an exception here")
         except (RecursionError, SpentError):
@@ -128,7 +121,7 @@ class Interpreter(Evaluator):
 
     def problem(self, line: int, reason: str, *, hides: bool = True) -> None:
         """Record a problem, once. `hides` says that nodes may be missing because of it."""
-        one = Problem(self._files[-1], line, reason, hides)
+        one = Problem(self._calls.file, line, reason, hides)
         if one not in self.problems:
             self.problems.append(one)
 
@@ -140,60 +133,28 @@ class Interpreter(Evaluator):
         )
 
     def _name(self, node: ast.Name, names: Scope) -> Any:
-        if node.id == "super" and names.find(_OWN) is not None:
+        if node.id == "super" and names.find(OWN) is not None:
             return lambda *_: self._above(names)
         return super()._name(node, names)
 
     def _above(self, names: Scope) -> Any:
-        owner = names.find(_OWN)
+        owner = names.find(OWN)
         first = next(iter(names.outside().names.values()), None)
         return Above(first, owner[0]) if owner is not None else Unknown(0, "super()")
 
     def _lambda(self, node: ast.Lambda, names: Scope) -> Any:
-        return made_function(self, lambda_of(node), names, self._files[-1], self._enter)
+        return made_function(self, lambda_of(node), names, self._calls.file, self._enter)
 
     def _yield(self, node: ast.Yield, names: Scope) -> Any:
-        self._give([None if node.value is None else self.value(node.value, names)])
+        self._calls.give([None if node.value is None else self.value(node.value, names)])
 
     def _yieldfrom(self, node: ast.YieldFrom, names: Scope) -> Any:
-        self._give(self._elements([ast.Starred(node.value)], names))
-
-    def _give(self, values: list[Any]) -> None:
-        """Add what the current generator yields. Raises Enough if it may be endless."""
-        self._yielded[-1] += values
-        if len(self._yielded[-1]) >= YIELDED:
-            raise Enough
+        self._calls.give(self._elements([ast.Starred(node.value)], names))
 
     def _enter(
         self, function: Function, args: list[Any], keywords: dict[str, Any], owner: Class | None = None
     ) -> Any:
-        if self._depth >= DEEPEST:
-            return Unknown(function.node.lineno, function.node.name)
-        inside = Scope(arguments(function, args, keywords), function.scope)
-        if owner is not None:
-            inside.names[_OWN] = owner
-        self._depth += 1
-        self._files.append(function.file)
-        self._yielded.append([])
-        returned: Any = None
-        endless = False
-        try:
-            self.body(function.node.body, inside)
-        except Returned as found:
-            returned = found.value
-        except Enough:
-            endless = True
-        except Left:
-            pass
-        finally:
-            self._depth -= 1
-            self._files.pop()
-            yielded = self._yielded.pop()
-        if function.node not in self._generators:
-            self._generators[function.node] = yields(function.node)
-        if function.kind == "contextmanager" and yielded:
-            return yielded[0]
-        return Stream(iter(yielded), endless=endless) if self._generators[function.node] else returned
+        return self._calls.enter(self, function, args, keywords, owner)
 
     def body(self, statements: Iterable[ast.stmt], names: Scope) -> None:
         """Interpret statements in order."""
@@ -326,7 +287,7 @@ class Interpreter(Evaluator):
         raise Returned(None if statement.value is None else self.value(statement.value, names))
 
     def _do_functiondef(self, statement: ast.FunctionDef, names: Scope) -> None:
-        made = made_function(self, statement, names, self._files[-1], self._enter)
+        made = made_function(self, statement, names, self._calls.file, self._enter)
         names.store(statement.name, decorated(self, made, names))
 
     def _do_classdef(self, statement: ast.ClassDef, names: Scope) -> None:
@@ -346,10 +307,10 @@ class Interpreter(Evaluator):
         if file not in self._imported:
             names = {"__file__": str(file), "__name__": module}
             self._imported[file] = Namespace(module, names)
-            self._files.append(file)
+            self._calls.push(file)
             try:
                 tree = parsed(file, self.problems)
                 self._module(tree.body if tree is not None else (), names)
             finally:
-                self._files.pop()
+                self._calls.pop()
         return self._imported[file]

@@ -13,7 +13,7 @@ from tarl_lint.workspace.python.builtin_functions import filtered, streamed
 from tarl_lint.workspace.python.elements import listed
 from tarl_lint.workspace.python.methods import checked
 from tarl_lint.workspace.python.operators import BINARY, COMPARE, binary, limited
-from tarl_lint.workspace.python.values import OpaqueError, Stream
+from tarl_lint.workspace.python.values import LARGEST, OpaqueError, Stream
 
 
 class _Chain:
@@ -50,21 +50,31 @@ def _chosen(make: Callable[..., Iterator[Any]], ways: Callable[[int, int], int])
     return found
 
 
+def _endless(values: Iterator[Any]) -> Stream:
+    """Return an endless iterator. Reading too many of its elements raises OpaqueError."""
+
+    def elements() -> Iterator[Any]:
+        yield from itertools.islice(values, LARGEST)
+        raise OpaqueError("too many values")
+
+    return Stream(elements(), endless=True)
+
+
 def _repeated(value: Any, times: int | None = None) -> Stream:
     if times is None:
-        return Stream(itertools.repeat(value), endless=True)
+        return _endless(itertools.repeat(value))
     limited(times)
     return Stream(itertools.repeat(value, times))
 
 
 def _cycle(values: Any) -> Stream:
     given = listed(values)
-    return Stream(itertools.cycle(given), endless=bool(given))
+    return _endless(itertools.cycle(given)) if given else Stream(iter(()))
 
 
 def _count(start: Any = 0, step: Any = 1) -> Stream:
     checked([start, step], {})
-    return Stream(itertools.count(start, step), endless=True)
+    return _endless(itertools.count(start, step))
 
 
 def _sliced(values: Any, *bounds: Any) -> Stream:
@@ -111,8 +121,7 @@ def _reduced(function: Any, values: Any, *start: Any) -> Any:
 def _while(values: Any, test: Any, *, take: bool) -> Stream:
     make = itertools.takewhile if take else itertools.dropwhile
     endless = isinstance(values, Stream) and values.endless
-    found = Stream(make(lambda one: _sure(test(one)), streamed(values)), endless=endless and not take)
-    return found if found.endless else Stream(iter(found.rest()))
+    return Stream(make(lambda one: _sure(test(one)), streamed(values)), endless=endless and not take)
 
 
 def _sure(value: Any) -> bool:

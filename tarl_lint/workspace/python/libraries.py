@@ -11,14 +11,22 @@ import math
 import shlex
 import string
 import textwrap
-from collections import ChainMap, Counter, OrderedDict, defaultdict, deque
+from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from tarl_lint.workspace.python.builtin_functions import BUILTINS, PLAIN, STRUCTURE, limits
+from tarl_lint.workspace.python.containers import (
+    make_chain,
+    make_counter,
+    make_defaults,
+    make_dict,
+    make_ordered,
+    make_queue,
+)
 from tarl_lint.workspace.python.elements import as_data, bounded, items, listed, settled
 from tarl_lint.workspace.python.iterators import OF_ITERATORS
-from tarl_lint.workspace.python.methods import checked, items_or_mapping, updated
+from tarl_lint.workspace.python.methods import checked
 from tarl_lint.workspace.python.objects import TUPLES, Class, Made
 from tarl_lint.workspace.python.operators import limited
 from tarl_lint.workspace.python.paths import OF_PATHS, FilePath
@@ -71,41 +79,13 @@ def _named_tuple(name: Any, fields: Any, defaults: Any = (), **_: Any) -> Class:
     )
 
 
-def _counter(values: Any = (), **keywords: Any) -> Counter[Any]:
-    given = items_or_mapping(values)
-    checked(given, keywords)
-    return Counter(given, **keywords)
-
-
-def _ordered(*args: Any, **keywords: Any) -> OrderedDict[Any, Any]:
-    found: OrderedDict[Any, Any] = OrderedDict()
-    updated(found, list(args), keywords)
-    return found
-
-
-def _defaults(factory: Any = None, *args: Any, **keywords: Any) -> defaultdict[Any, Any]:
-    found: defaultdict[Any, Any] = defaultdict(factory)
-    updated(found, list(args), keywords)
-    return found
-
-
-def _queue(values: Any = (), maxlen: int | None = None) -> deque[Any]:
-    return deque(listed(values), maxlen)
-
-
-def _chained(*maps: Any) -> ChainMap[Any, Any]:
-    if not all(isinstance(one, dict | ChainMap) for one in maps):
-        raise OpaqueError("unknown mappings")
-    return ChainMap(*maps)
-
-
 def _environment(name: Any, default: Any = None) -> Any:
     return Unknown(0, f"env {name}") if default is None else default
 
 
 def _field(default: Any = _NOTHING, default_factory: Any = None, **given: Any) -> Field:
-    shown, keyword = given.get("repr", True), given.get("kw_only", False)
-    return Field(default, default_factory, bool(given.get("init", True)), bool(shown), bool(keyword))
+    flags = [bool(given.get(key, key != "kw_only")) for key in ("init", "repr", "kw_only", "compare")]
+    return Field(default, default_factory, *flags)
 
 
 def _space(*_: Any, **given: Any) -> Made:
@@ -120,6 +100,17 @@ def _written(value: Any, **given: Any) -> str:
         raise OpaqueError("not a constant")
     given.pop("default", None)
     return json.dumps(as_data(value), **given)
+
+
+def _loaded(text: Any, **given: Any) -> Any:
+    import json
+
+    if given or not isinstance(text, str):
+        raise OpaqueError("not a constant")
+    found = json.loads(text)
+    if not bounded(found):
+        raise OpaqueError("too large")
+    return found
 
 
 def _literal(text: Any) -> Any:
@@ -213,27 +204,27 @@ _NUMPY: Final = {"deg2rad": math.radians, "rad2deg": math.degrees, "radians": ma
                  "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "tan": math.tan, "hypot": math.hypot,
                  "arctan2": math.atan2}  # fmt: skip
 _STRUCTURE: Final[Mapping[str, Any]] = {
-    **OF_ITERATORS, "copy.deepcopy": _copied, "copy.copy": _shallow, "collections.OrderedDict": _ordered,
-    "collections.defaultdict": _defaults, "collections.deque": _queue, "collections.ChainMap": _chained,
+    **OF_ITERATORS, **OF_EXPRESSIONS, "copy.deepcopy": _copied, "copy.copy": _shallow,
+    "collections.OrderedDict": make_ordered,
+    "collections.defaultdict": make_defaults, "collections.deque": make_queue, "collections.ChainMap": make_chain,
     "dataclasses.field": _field, "types.SimpleNamespace": _space, "argparse.Namespace": _space,
     "contextlib.suppress": lambda *kinds: Suppressed(kinds), "contextlib.nullcontext": lambda value=None: value,
     "types.MappingProxyType": lambda value: value, "typing.cast": lambda _, value: value,
-    "contextlib.closing": lambda value: value, "collections.UserDict": lambda *values, **given: STRUCTURE["dict"](
-        *values, **given),
+    "contextlib.closing": lambda value: value, "collections.UserDict": make_dict,
 }  # fmt: skip
 _OF_DATA: Final[Mapping[str, Any]] = {
     **{f"math.{name}": getattr(math, name) for name in _MATH},
     **{f"numpy.{name}": one for name, one in _NUMPY.items()},
     "math.factorial": _factorial, "math.prod": _prod, "math.isclose": _close, "math.pow": math.pow,
     **{f"statistics.{name}": _statistic(name) for name in ("mean", "median", "fmean", "stdev", "pstdev")},
-    **OF_PATHS, **OF_EXPRESSIONS,
+    **OF_PATHS,
     "os.environ.get": _environment, "os.getenv": _environment,
     "pathlib.Path": FilePath, "pathlib.PurePath": FilePath, "pathlib.PosixPath": FilePath,
     "pathlib.PurePosixPath": FilePath,
-    "collections.namedtuple": _named_tuple, "collections.Counter": _counter,
+    "collections.namedtuple": _named_tuple, "collections.Counter": make_counter,
     "string.Template": string.Template, "string.capwords": lambda text, sep=None: string.capwords(text, sep),
     **{f"textwrap.{name}": _wrapped(name) for name in ("dedent", "indent", "fill", "shorten", "wrap")},
-    "json.dumps": _written, "shlex.split": shlex.split, "shlex.quote": shlex.quote,
+    "json.dumps": _written, "json.loads": _loaded, "shlex.split": shlex.split, "shlex.quote": shlex.quote,
     "shlex.join": lambda words: shlex.join(listed(words)), "ast.literal_eval": _literal, "tomllib.loads": _toml,
     "fnmatch.fnmatch": _matching("fnmatch"), "fnmatch.fnmatchcase": _matching("fnmatchcase"),
     "fnmatch.filter": _matching("filter"),

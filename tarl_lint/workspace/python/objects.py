@@ -32,6 +32,11 @@ class Function:
     run: Callable[[Function, list[Any], dict[str, Any], Class | None], Any]
     kind: str = ""  # `staticmethod`, `classmethod`, `property`, `cached_property` or `contextmanager`
     setter: Function | None = None  # of a property
+    name: str = ""  # the name that `functools.wraps` gives it
+
+    def called(self) -> str:
+        """Return its name."""
+        return self.name or self.node.name
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,12 +105,24 @@ class Class:
     def members(self) -> list[Any]:
         """Return the members of an enumeration."""
         found = [one for one in self.names.values() if isinstance(one, Made) and one.kind is self]
+        if self.is_flag():  # neither combinations nor zero, as since Python 3.11
+            found = [one for one in found if _is_single(one.attributes["value"])]
         return list({id(one): one for one in found}.values())
+
+    def with_value(self, value: Any) -> Any:
+        """Return the member of an enumeration with a value, also a combination of flags; None if there is none."""
+        found = [one for one in self.names.values() if isinstance(one, Made) and one.kind is self]
+        return next((one for one in found if one.attributes["value"] == value), None)
 
     def error(self) -> type[BaseException] | None:
         """Return the built-in exception that the class is derived from; None if it is no exception."""
         known = [one for one in self.library_bases() if isinstance(one, type)]
         return next((one for one in known if issubclass(one, BaseException)), None)
+
+
+def _is_single(value: Any) -> bool:
+    """Return whether a flag is a single bit."""
+    return isinstance(value, int) and value > 0 and not value & (value - 1)
 
 
 class Made:
@@ -167,7 +184,7 @@ class Made:
         fields = self.kind.all_fields()
         if fields is None or self.kind.options.get("repr") is False:
             raise OpaqueError("its text contains an address")
-        hidden = self.kind.options.get("hidden", ())
+        hidden = {name for one in self.kind.order() for name in one.options.get("hidden", ())}
         values = {name: self.attributes.get(name) for name in fields if name not in hidden}
         if any(isinstance(one, Unknown | Library) for one in values.values()):
             raise OpaqueError("an unknown field")
@@ -231,7 +248,9 @@ class Made:
         return self.kind.fields is not None and bool(self.kind.options.get(option, default))
 
     def _values(self) -> tuple[Any, ...]:
-        found = tuple(self.attributes.get(name) for name in self.kind.all_fields() or ())
+        ignored = {name for one in self.kind.order() for name in one.options.get("ignored", ())}
+        fields = [name for name in self.kind.all_fields() or () if name not in ignored]
+        found = tuple(self.attributes.get(name) for name in fields)
         if any(isinstance(one, Unknown | Library) for one in found):
             raise OpaqueError("an unknown field")
         return found
@@ -241,7 +260,7 @@ class Made:
             return bool(self.run("__bool__"))
         if self.has("__len__"):
             return len(self) > 0
-        plain = self.plain()
+        plain = self.attributes["value"] if self.kind.is_flag() else self.plain()
         return plain is self or bool(plain)
 
     def __len__(self) -> int:
@@ -256,6 +275,9 @@ class Made:
     def __contains__(self, item: object) -> bool:
         if self.has("__contains__"):
             return bool(self.run("__contains__", item))
+        if self.kind.is_flag() and isinstance(item, Made):
+            value = item.attributes["value"]
+            return bool(self.attributes["value"] & value == value)
         return any(one is item or one == item for one in self)
 
     def __getitem__(self, key: Any) -> Any:

@@ -80,11 +80,10 @@ def _flags(kind: type[ast.operator], of: Made, left: Any, right: Any) -> Made:
     value = binary(
         kind, *(one.attributes["value"] if isinstance(one, Made) else one for one in (left, right))
     )
-    members = of.kind.members()
-    same = next((one for one in members if one.attributes["value"] == value), None)
-    if same is not None:
-        return same  # type: ignore[no-any-return] # a member
-    names = [one.attributes["name"] for one in members if one.attributes["value"] & value]
+    same = of.kind.with_value(value)
+    if isinstance(same, Made):
+        return same
+    names = [one.attributes["name"] for one in of.kind.members() if one.attributes["value"] & value]
     return Made(of.kind, {"name": "|".join(names) or None, "value": value})
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import dataclasses
 import functools
 from collections.abc import Callable
 from typing import Any, Final
@@ -11,7 +12,7 @@ from tarl_lint.workspace.python.classes import AUTO, as_mapping, as_values, fiel
 from tarl_lint.workspace.python.elements import listed
 from tarl_lint.workspace.python.evaluation import call_of
 from tarl_lint.workspace.python.evaluator import Evaluator
-from tarl_lint.workspace.python.objects import Class, Made
+from tarl_lint.workspace.python.objects import Class, Function, Made
 from tarl_lint.workspace.python.targets import set_attribute
 from tarl_lint.workspace.python.values import Library, OpaqueError, Partial, Unknown
 
@@ -24,6 +25,8 @@ def reflection(run: Evaluator) -> dict[str, Any]:
     return {
         "builtins.getattr": attribute, "builtins.hasattr": functools.partial(_has, run), "builtins.vars": _variables,
         "builtins.setattr": lambda of, name, value: set_attribute(run, of, name, value),
+        **{f"builtins.{kind}": functools.partial(_descriptor, kind) for kind in
+           ("property", "classmethod", "staticmethod")},
         "operator.attrgetter": lambda *names: _several(attribute, names),
         "operator.itemgetter": lambda *keys: _several(_element, keys),
         "operator.methodcaller": lambda name, *args, **keywords: Partial(
@@ -31,7 +34,7 @@ def reflection(run: Evaluator) -> dict[str, Any]:
         "operator.getitem": _element, "operator.contains": lambda many, one: one in listed(many),
         "dataclasses.asdict": as_mapping, "dataclasses.astuple": as_values, "dataclasses.replace": replaced,
         "dataclasses.fields": field_names, "dataclasses.is_dataclass": _is_data, "enum.auto": lambda: AUTO,
-        "functools.wraps": lambda *_, **__: Partial(lambda made: made),
+        "functools.wraps": lambda of, **_: Partial(functools.partial(_wrapped, of)),
         "functools.lru_cache": _cached, "functools.cache": Partial(lambda made: made),
         "enum.unique": Partial(lambda made: made),
     }  # fmt: skip
@@ -52,6 +55,20 @@ def _attribute(run: Evaluator, of: Any, name: Any, *default: Any) -> Any:
             raise OpaqueError("an unknown attribute")
         found = inner[0]
     return found
+
+
+def _descriptor(kind: str, of: Any, setter: Any = None, *_: Any, **__: Any) -> Function:
+    """Return `property(…)` and the like of a function of the file."""
+    if not isinstance(of, Function):
+        raise OpaqueError("an unknown function")
+    return dataclasses.replace(of, kind=kind, setter=setter if isinstance(setter, Function) else None)
+
+
+def _wrapped(of: Any, made: Any) -> Any:
+    """Return a function with the name of the function that it wraps."""
+    if isinstance(of, Function) and isinstance(made, Function):
+        return dataclasses.replace(made, name=of.called())
+    return made
 
 
 def _has(run: Evaluator, of: Any, name: Any) -> bool:

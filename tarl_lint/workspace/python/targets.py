@@ -6,7 +6,7 @@ import ast
 from collections import ChainMap, deque
 from typing import Any
 
-from tarl_lint.workspace.python.elements import items, settled
+from tarl_lint.workspace.python.elements import elements_if_known, items, settled
 from tarl_lint.workspace.python.evaluation import Evaluation, call_of, unknown
 from tarl_lint.workspace.python.objects import Class, Function, Made, Method
 from tarl_lint.workspace.python.values import Scope, Stream
@@ -28,7 +28,7 @@ def _taken(value: Any, target: ast.Tuple | ast.List) -> list[Any] | None:
     """Return the elements of a value that is unpacked; of an endless iterator only as many as there are targets."""
     if isinstance(value, Stream) and value.endless:
         return [next(value.values, unknown(target)) for _ in target.elts]
-    return items(value)
+    return elements_if_known(value)
 
 
 def _unpack(run: Evaluation, target: ast.Tuple | ast.List, values: list[Any] | None, names: Scope) -> None:

@@ -114,6 +114,7 @@ class Field:
     init: bool = True
     shown: bool = True  # whether `repr` shows the field
     keyword: bool = False  # whether only a keyword sets it
+    compared: bool = True  # whether comparisons use the field
 
 
 class Stream:
@@ -143,6 +144,16 @@ class Suppressed:
     """The result of `contextlib.suppress`: a block that ends with one of these exceptions."""
 
     kinds: tuple[Any, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Suspended:
+    """A call of a generator function that `contextlib.contextmanager` decorates.
+
+    `run` interprets the function, and calls its argument with what the function yields.
+    """
+
+    run: Callable[[Callable[[Any], None]], Any]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
