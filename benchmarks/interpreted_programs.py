@@ -188,7 +188,8 @@ class Programs:
             lambda: f"Path('/opt/v1', {one()} + '.py').with_suffix('.xml').name",
             lambda: f"PurePosixPath('a/b', {one()}).parent.as_posix()",
             lambda: f"str({self.shape()})",
-            lambda: f"f'{{{self.shape()}}}:{{{self.record()}.name}}'",
+            lambda: f"f'{{{self.inner(self.shape())}}}:{{{self.inner(self.record())}}}'",
+            lambda: f"format({self.shape()}, {self.random.choice(('u', ''))!r})",
             lambda: f"repr({self.record()})",
             lambda: f"repr({self.point()})",
             lambda: f"f'{{{self.level()}.name:*^12}}'",
@@ -550,6 +551,8 @@ class Programs:
                     self.parts = ['p'] * int(value)
                 def __str__(self):
                     return f'{self._name}({len(self)})'
+                def __format__(self, spec):
+                    return self._name.upper() if spec == 'u' else str(self)
                 def __len__(self):
                     return len(self.parts)
                 def __iter__(self):

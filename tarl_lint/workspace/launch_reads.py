@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.launch_folders import listings
+from tarl_lint.workspace.launch_ini import IniFile
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
@@ -84,6 +85,7 @@ def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
 
     return {
         **listings(inside),
+        "configparser.ConfigParser": lambda *_, **__: IniFile(inside),
         "csv.reader": _rows, "csv.DictReader": _records,
         "builtins.open": opened, "io.open": opened, "codecs.open": opened,
         "pathlib.Path.read_text": text, "pathlib.Path.open": opened,

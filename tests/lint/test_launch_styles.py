@@ -169,6 +169,117 @@ STYLES = {
         """,
         {"/read": {"~rate": 4.5, "~text": "hello", "~there": False}},
     ),
+    "files and folders of the package": (
+        """
+        import configparser, csv, glob, json
+        def generate_launch_description():
+            share = get_package_share_path("demo")
+            names = sorted(p.stem for p in (share / "config").glob("*.yaml"))
+            ini = configparser.ConfigParser()
+            ini.read(str(share / "config" / "robot.ini"))
+            with (share / "config" / "robots.csv").open() as file:
+                rows = list(csv.DictReader(file))
+            lines = [line.strip() for line in open(share / "config" / "a.txt")]
+            try:
+                absent = open(share / "config" / "absent.txt").read()
+            except FileNotFoundError:
+                absent = "nothing"
+            return LaunchDescription([
+                *[talker(name=row["name"], parameters=[{"rate": float(row["rate"])}]) for row in rows],
+                talker(name="files", parameters=[{
+                    "names": names, "lines": lines, "absent": absent, "speed": ini.getfloat("wheels", "speed"),
+                    "side": ini["wheels"]["side"], "found": len(glob.glob(str(share / "config" / "r*.csv"))),
+                    "listed": "robot.ini" in os.listdir(share / "config")}])])
+        """,
+        {
+            "/c1": {"~rate": 1.5},
+            "/c2": {"~rate": 2.0},
+            "/files": {"~names": ["gate"], "~lines": ["hello"], "~absent": "nothing", "~speed": 0.5, "~side": "left",
+                       "~found": 1, "~listed": True},
+        },
+    ),
+    "context managers": (
+        """
+        from contextlib import contextmanager
+        @contextmanager
+        def inside(ld, name):
+            actions = [PushRosNamespace(name)]
+            try:
+                yield actions
+            finally:
+                ld.add_action(GroupAction(actions))
+        def generate_launch_description():
+            ld = LaunchDescription()
+            with inside(ld, "left") as left, inside(ld, "right") as right:
+                left.append(talker(name="a"))
+                right.append(talker(name="b"))
+            return ld
+        """,
+        {"/left/a": {}, "/right/b": {}},
+    ),
+    "registry of decorated functions": (
+        """
+        from functools import wraps
+        MAKERS = {}
+        def maker(kind, **defaults):
+            def decorator(function):
+                @wraps(function)
+                def wrapper(*args, **given):
+                    return function(*args, **{**defaults, **given})
+                MAKERS[kind] = wrapper
+                return wrapper
+            return decorator
+        @maker("joy", rate=2.0)
+        def joystick(name, rate):
+            return talker(name=name, parameters=[{"rate": rate}])
+        def generate_launch_description():
+            return LaunchDescription([make(f"{kind}_{make.__name__}") for kind, make in MAKERS.items()])
+        """,
+        {"/joy_joystick": {"~rate": 2.0}},
+    ),
+    "objects with special methods": (
+        """
+        import re
+        from enum import Flag, auto
+        class Feature(Flag):
+            NONE = 0
+            SCAN = auto()
+            ARM = auto()
+        class Robot:
+            def __init__(self, name, features=Feature.NONE):
+                self.name, self.features = re.sub("[^a-z0-9]+", "_", name.lower()), features
+            def __str__(self):
+                return self.name
+            def __format__(self, spec):
+                return self.name.upper() if spec == "u" else str(self)
+            def __lt__(self, other):
+                return self.name < other.name
+            def __iter__(self):
+                yield talker(name=f"{self}", parameters=[{"label": f"{self:u}"}])
+                if Feature.ARM in self.features:
+                    yield talker(name=f"{self!s}_arm")
+        def generate_launch_description():
+            robots = [Robot("B 2", Feature.SCAN), Robot("a-1", Feature.SCAN | Feature.ARM)]
+            return LaunchDescription([node for robot in sorted(robots) for node in robot])
+        """,
+        {"/a_1": {"~label": "A_1"}, "/a_1_arm": {}, "/b_2": {"~label": "B_2"}},
+    ),
+    "containers as parameters": (
+        """
+        from collections import ChainMap, Counter, deque, namedtuple
+        from itertools import chain, count
+        Point = namedtuple("Point", "x y", defaults=[0.5])
+        def generate_launch_description():
+            kinds = Counter(["scan", "arm", "scan"])
+            return LaunchDescription(talker(name=name, parameters=[ChainMap({"rate": n}, {"rate": 9, "at": Point(1.5)}),
+                                                                   {"last": deque([1, 2, 3], maxlen=2)}])
+                                     for n, (name, _) in zip(count(1), kinds.most_common()))
+        """,
+        {
+            "/scan": {"~at": [1.5, 0.5], "~rate": 1, "~last": [2, 3]},
+            "/arm": {"~at": [1.5, 0.5], "~rate": 2, "~last": [2, 3]},
+        },
+    ),
     "function of an OpaqueFunction": (
         """
         from launch.utilities import perform_substitutions
@@ -226,6 +337,8 @@ def launched(tmp_path: Path, text: str) -> Launch:
         "launch/helper.py": "def name_of(number):\n    return f'n{number}'\n",
         "config/gate.yaml": "rate: 4.5\n",
         "config/a.txt": "hello",
+        "config/robot.ini": "[wheels]\nspeed = 0.5\nside = left\n",
+        "config/robots.csv": "name,rate\nc1,1.5\nc2,2\n",
         "launch/x.launch.py": HEAD + dedent(text),
     }
     for name, content in files.items():
@@ -300,6 +413,46 @@ def test_the_line_of_a_node_is_in_the_launch_file(tmp_path: Path) -> None:
     found = launched(tmp_path, STYLES["module of the package"][0])
     lines = (HEAD + dedent(STYLES["module of the package"][0])).splitlines()
     assert all("made(name)" in lines[one.line - 1] for one in found.nodes)
+
+
+def test_pairs_of_a_mapping_are_remappings(tmp_path: Path) -> None:
+    text = """
+        def generate_launch_description():
+            names = {"in": "/scan", "out": "/cmd"}
+            return LaunchDescription([talker(name="n", remappings={k: v for k, v in names.items()}.items())])
+        """
+    (node,) = launched(tmp_path, text).nodes
+    assert node.remaps == (("in", "/scan"), ("out", "/cmd"))
+
+
+def test_what_a_launch_file_changes_in_a_file_that_it_read_does_not_change_the_next_one(
+    tmp_path: Path,
+) -> None:
+    text = """
+        import yaml
+        def generate_launch_description():
+            with open(os.path.join(get_package_share_directory("demo"), "config", "gate.yaml")) as file:
+                config = yaml.safe_load(file)
+            config["rate"] += 1
+            return LaunchDescription([talker(name="n", parameters=[config])])
+        """
+    for _ in range(2):
+        (node,) = launched(tmp_path, text).nodes
+        assert private(node) == {"~rate": 5.5}
+
+
+def test_folders_outside_the_workspace_are_not_listed(tmp_path: Path) -> None:
+    (tmp_path / "secret.txt").write_text("")
+    text = f"""
+        from pathlib import Path
+        def generate_launch_description():
+            names = [p.name for p in Path("{tmp_path}").glob("*")]
+            return LaunchDescription([talker(name="n", parameters=[{{"names": names}}])])
+        """
+    (tmp_path / "inside").mkdir()
+    found = launched(tmp_path / "inside", text)
+    assert "secret" not in repr(found.nodes)
+    assert [one.reason for one in found.problems] == ["the parameter names is not constant"]
 
 
 def test_files_outside_the_workspace_are_not_read(tmp_path: Path) -> None:

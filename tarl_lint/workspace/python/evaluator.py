@@ -8,6 +8,7 @@ constant is an `Unknown`, never an error.
 from __future__ import annotations
 
 import ast
+import re
 from collections import ChainMap, deque
 from collections.abc import Mapping
 from pathlib import PurePosixPath
@@ -233,8 +234,10 @@ class Evaluator:
         key = key_of(self.value(node.slice, names))
         if isinstance(base, Class):
             return self._of_class(base, key, node)
-        if hasattr(base, "group") and hasattr(base, "span"):  # a match of a regular expression
+        if isinstance(base, re.Match):
             return base[key]
+        if hasattr(type(base), "section"):  # a model of a library whose elements have names
+            return base.section(key)
         known = isinstance(base, str | list | tuple | dict | range | bytes | deque | ChainMap | Made)
         return base[key] if known and not isinstance(key, Unknown | Library) else unknown(node)
 

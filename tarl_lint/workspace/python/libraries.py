@@ -28,7 +28,7 @@ from tarl_lint.workspace.python.elements import as_data, bounded, items, listed,
 from tarl_lint.workspace.python.iterators import OF_ITERATORS
 from tarl_lint.workspace.python.methods import checked
 from tarl_lint.workspace.python.objects import TUPLES, Class, Made
-from tarl_lint.workspace.python.operators import limited
+from tarl_lint.workspace.python.operators import limited, written
 from tarl_lint.workspace.python.paths import OF_PATHS, FilePath
 from tarl_lint.workspace.python.regular_expressions import OF_EXPRESSIONS
 from tarl_lint.workspace.python.values import Field, Library, OpaqueError, Partial, Suppressed, Unknown
@@ -262,7 +262,7 @@ def function(made: Any, args: list[Any], keywords: dict[str, Any]) -> Any:
         checked(args, {key: one for key, one in keywords.items() if key != "key"})
         limits(made, args)
         if made is str:
-            return BUILTINS["format"](*args[:1]) if args else ""
+            return written(args[0]) if args else ""
     elif id(made) in _OF_STRUCTURE:
         if any(isinstance(one, Unknown | Library) for one in args):
             raise OpaqueError("not a constant")

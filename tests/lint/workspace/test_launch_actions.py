@@ -226,6 +226,14 @@ def test_parameters_and_remappings_of_actions_apply_to_later_nodes(package):
     assert [(one.remaps, one.inherited) for one in found.nodes] == [((), 0), ((("x", "y"), ("z", "/w")), 1)]
 
 
+def test_a_remapping_in_a_group_applies_after_the_group_if_one_was_set_before(package):
+    inside = "GroupAction([SetRemap('x', 'y'), SetParameter('p', 1)]), node('a')"
+    alone = described(package, inside).nodes[0]
+    assert (alone.remaps, settings(alone)) == ((), {})
+    after = described(package, f"SetRemap('u', 'v'), SetParameter('q', 2), {inside}").nodes[0]
+    assert (after.remaps, settings(after)) == ((("u", "v"), ("x", "y")), {"~q": 2, "~p": 1})
+
+
 def test_arguments_of_ros2_nodes_set_names_remappings_and_parameters(package):
     found = described(
         package,

@@ -63,3 +63,22 @@ def test_less_common_xml_elements_and_substitutions_are_read(package):
     assert [(one.name, one.kind) for one in found.nodes] == [("x", "component"), ("z", "node")]
     assert settings(found.nodes[1]) == {"~w": "some words\n", "~k": "1"}
     assert found.nodes[1].arguments == "--a --ros-args -p k:=1"
+
+
+SEPARATED = (
+    ('value="a,b" value-sep=","', "['a', 'b']"),
+    ('value="1;2" value-sep=";"', "[1, 2]"),
+    ('value="1;2.5" value-sep=";"', "[1.0, 2.5]"),
+    ('value="true;False" value-sep=";"', "[True, False]"),
+    ('value="1;2" value-sep=";" type="list_of_str"', "['1', '2']"),
+    ('value="$(var k);2" value-sep=";"', "[7, 2]"),
+)
+
+
+@pytest.mark.parametrize(("attributes", "expected"), SEPARATED)
+def test_a_value_with_a_separator_is_a_list(package, attributes, expected):
+    text = f"""<launch><let name="k" value="7"/><node pkg="arm" exec="e" name="a">
+        <param name="l" {attributes}/></node></launch>"""
+    found = launched(package, text, "a.launch.xml")
+    assert settings(found.nodes[0]) == {"~l": expected}
+    assert reasons(found) == []
