@@ -102,6 +102,9 @@ class Programs:
             lambda: f"{self.converted()}({text()})",
             lambda: f"({self.shape()}).area()",
             lambda: f"len({self.shape()})",
+            lambda: f"abs({self.shape()})",
+            lambda: f"{self.planet()}.mass",
+            lambda: f"{self.configured()}.total",
             lambda: f"({self.shape()}).size",
             lambda: f"{self.level()} + {one()}",
             lambda: f"{self.level()}.value * {one()}",
@@ -189,6 +192,10 @@ class Programs:
             lambda: f"PurePosixPath('a/b', {one()}).parent.as_posix()",
             lambda: f"str({self.shape()})",
             lambda: f"f'{{{self.inner(self.shape())}}}:{{{self.inner(self.record())}}}'",
+            lambda: f"repr({self.shape()}[:2])",
+            lambda: f"str({self.shape()}.KNOWN)",
+            lambda: f"max(type({self.planet()}), key=lambda p: p.mass).title",
+            lambda: f"repr({self.configured()})",
             lambda: f"format({self.shape()}, {self.random.choice(('u', ''))!r})",
             lambda: f"repr({self.record()})",
             lambda: f"repr({self.point()})",
@@ -266,6 +273,8 @@ class Programs:
             lambda: f"textwrap.wrap({text()} + ' one two three', 8)",
             lambda: f"[str(p) for p in Path('/a/b/c').parents][:{self.small()}]",
             lambda: f"[x for x in {self.shape()}]",
+            lambda: "[key for _, key, _, _ in string.Formatter().parse('{a}-{b:>3}c')]",
+            lambda: f"list(asdict({self.configured()}))",
             lambda: f"[operator.attrgetter('name')(q) for q in sorted([{self.record()}, {self.record()}])]",
             lambda: f"list(itertools.takewhile(len, {one()}))",
             lambda: f"[t for t, keep in zip({one()}, itertools.cycle([True, False])) if keep]",
@@ -559,11 +568,22 @@ class Programs:
                     return iter(self.parts)
                 def __contains__(self, item):
                     return item in self.parts
+                def __getitem__(self, key):
+                    match key:
+                        case slice():
+                            return self.parts[key]
+                        case int() as index:
+                            return self.parts[index % len(self.parts)]
+                    raise TypeError(key)
+                def __abs__(self):
+                    return len(self._name)
+                def __init_subclass__(cls, **given):
+                    cls.KNOWN = {cls.__name__[:5]: given.get('kind', 'plain')}
                 def __add__(self, other):
                     return type(self)(self._name, *self.parts, *other.parts)
                 def area(self):
                     return self.size * STEP
-            class NAME(NAMEBase):
+            class NAME(NAMEBase, kind='sub'):
                 EXTRA = STEP
                 def area(self):
                     return super().area() + 1
@@ -733,6 +753,43 @@ class Programs:
             """,
             STEP=self.small(),
         )
+
+    def planet(self) -> str:
+        """Return a member of an enumeration whose members have attributes."""
+        name = self.define(
+            "Planet",
+            """
+            class NAME(Enum):
+                A = ('a', 2.5)
+                B = ('b', STEP)
+                def __init__(self, label, mass):
+                    self.mass = mass
+                    self.title = label.upper()
+                def next(self):
+                    members = list(type(self))
+                    return members[(members.index(self) + 1) % len(members)]
+            """,
+            STEP=self.small(),
+        )
+        return self.random.choice((f"{name}.A", f"{name}(('a', 2.5))", f"{name}.B.next()"))
+
+    def configured(self) -> str:
+        """Return an object of a data class with arguments that are no fields."""
+        name = self.define(
+            "Configured",
+            """
+            @dataclass
+            class NAME:
+                kind: str
+                factor: dataclasses.InitVar[float] = STEP
+                total: float = field(init=False, repr=False)
+                parts: list = field(default_factory=lambda: [1, 2])
+                def __post_init__(self, factor):
+                    self.total = factor * sum(self.parts)
+            """,
+            STEP=self.small(),
+        )
+        return self.random.choice((f"{name}({self.word()})", f"{name}({self.word()}, {self.number()})"))
 
     def mode(self) -> str:
         """Return a member of an enumeration."""

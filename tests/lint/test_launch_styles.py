@@ -415,6 +415,17 @@ def test_the_line_of_a_node_is_in_the_launch_file(tmp_path: Path) -> None:
     assert all("made(name)" in lines[one.line - 1] for one in found.nodes)
 
 
+def test_nodes_beside_unknown_ones_are_found(tmp_path: Path) -> None:
+    text = """
+        from robots_that_are_not_installed import nodes
+        def generate_launch_description():
+            return LaunchDescription(nodes() + [talker(name="a")] + [*nodes(), talker(name="b")])
+        """
+    found = launched(tmp_path, text)
+    assert [one.name for one in found.nodes] == ["a", "b"]
+    assert {one.reason for one in found.problems} == {"`nodes()` is not followed"}
+
+
 def test_pairs_of_a_mapping_are_remappings(tmp_path: Path) -> None:
     text = """
         def generate_launch_description():

@@ -97,6 +97,9 @@ def _of_class(run: Evaluation, base: Made | Class | Above, name: str, node: ast.
                     instance.attributes[name] = result
                 return (result,)
             return (bound,)
+    if isinstance(value, Made) and value.has("__get__"):
+        kind = base if isinstance(base, Class) else owner
+        return (value.run("__get__", instance, instance.kind if isinstance(instance, Made) else kind),)
     return (value,)
 
 

@@ -20,7 +20,7 @@ from tarl_lint.workspace.python.containers import (
     make_tuple,
     type_of,
 )
-from tarl_lint.workspace.python.elements import Unique, listed
+from tarl_lint.workspace.python.elements import Unique, listed, whole
 from tarl_lint.workspace.python.methods import checked, ordered
 from tarl_lint.workspace.python.objects import Class, Made
 from tarl_lint.workspace.python.operators import formatted, limited, power, written
@@ -87,6 +87,8 @@ def _tested(name: str) -> Callable[..., Any]:
 
 def streamed(value: Any) -> Iterator[Any]:
     """Return an iterator over a value; one over a stream that is not used up at once. Raises OpaqueError."""
+    if not whole(value):
+        raise OpaqueError("an unknown number of elements")
     return value.values if isinstance(value, Stream) else iter(listed(value))
 
 
@@ -140,6 +142,8 @@ def _len(value: Any) -> int:
         return len(value)
     if isinstance(value, Stream):
         raise OpaqueError("an iterator has no length")
+    if not whole(value):
+        raise OpaqueError("an unknown number of elements")
     return len(listed(value))
 
 
@@ -253,7 +257,3 @@ def limits(made: Any, args: list[Any]) -> None:
         raise OpaqueError("bytes")
     if made in (int, float) and args and isinstance(args[0], str):
         limited(len(args[0]) * 100)
-    if made in (int, float, abs, round, bool) and any(isinstance(one, Made) for one in args):
-        one = args[0]
-        if isinstance(one, Made) and made is not bool and one.plain() is one:
-            raise OpaqueError("not a number")

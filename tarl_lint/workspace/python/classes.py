@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterable
 from typing import Any, Final
 
-from tarl_lint.workspace.python.elements import as_data, items, settled
+from tarl_lint.workspace.python.elements import as_data, settled
 from tarl_lint.workspace.python.evaluation import Evaluation, Execution, call_of, unknown
 from tarl_lint.workspace.python.objects import ENUMERATIONS, FLAGS, TUPLES, Class, Function, Made, Method
 from tarl_lint.workspace.python.values import Field, Library, OpaqueError, Partial, Scope, Unknown
@@ -35,6 +35,7 @@ def of_statement(run: Execution, statement: ast.ClassDef, names: Scope) -> Any:
         called = run.value(one.func if isinstance(one, ast.Call) else one, names)
         stated.append((called, {key.arg: run.value(key.value, names) for key in given}))
     made: Any = defined(statement, bases, stated, inside.names)
+    _announce(made, {one.arg: run.value(one.value, names) for one in statement.keywords if one.arg})
     for node, (called, _) in reversed(list(zip(statement.decorator_list, stated, strict=True))):
         if isinstance(called, Function | Method | Partial):
             decorator = called if not isinstance(node, ast.Call) else run.value(node, names)
@@ -56,9 +57,11 @@ def defined(
     stated = {one.name: given for one, given in decorators if isinstance(one, Library)}
     is_data = DATA in stated or TUPLES in libraries
     options = {**(stated.get(DATA) or {}), "total": _TOTAL in stated}
-    fields = tuple(_annotated(statement)) if is_data else None
+    annotated = dict(_annotated(statement))
+    fields = tuple(annotated) if is_data else None
     stated_fields = {name: names[name] for name in fields or () if isinstance(names.get(name), Field)}
     options["hidden"] = tuple(name for name, one in stated_fields.items() if not one.shown)
+    options["passed"] = tuple(name for name, text in annotated.items() if "InitVar" in text)
     options["ignored"] = tuple(name for name, one in stated_fields.items() if not one.compared)
     made = Class(statement.name, bases, names, fields, TUPLES in libraries, options)
     if made.is_enumeration():
@@ -66,13 +69,26 @@ def defined(
     return made
 
 
-def _annotated(statement: ast.ClassDef) -> Iterable[str]:
-    """Yield the names of the annotated attributes of a class, without class variables."""
+def _announce(made: Class, keywords: dict[str, Any]) -> None:
+    """Call what a new class has to be told: `__set_name__` of its attributes, `__init_subclass__` of its bases."""
+    for name, value in list(made.names.items()):
+        if isinstance(value, Made) and value.has("__set_name__"):
+            value.run("__set_name__", made, name)
+    above = next(((one.names["__init_subclass__"], one) for one in made.order()[1:]
+                  if "__init_subclass__" in one.names), None)  # fmt: skip
+    if above is not None and isinstance(above[0], Function):
+        above[0].run(
+            above[0], [made], {key: one for key, one in keywords.items() if key != "metaclass"}, above[1]
+        )
+
+
+def _annotated(statement: ast.ClassDef) -> Iterable[tuple[str, str]]:
+    """Yield the names and annotations of the annotated attributes of a class, without class variables."""
     for one in statement.body:
         if isinstance(one, ast.AnnAssign) and isinstance(one.target, ast.Name):
             text = ast.unparse(one.annotation)
             if "ClassVar" not in text and not text.endswith("KW_ONLY"):
-                yield one.target.id
+                yield one.target.id, text
 
 
 def _enumerate(made: Class) -> None:
@@ -83,6 +99,10 @@ def _enumerate(made: Class) -> None:
             continue
         same = next((one for one in found.values() if _equal(one.attributes["value"], value)), None)
         member = Made(made, {"name": name, "value": value}) if same is None else same
+        start = made.find("__init__")
+        if same is None and start is not None and isinstance(start[0], Function):
+            args = value if isinstance(value, tuple) else (value,)
+            start[0].run(start[0], [member, *args], {}, start[1])
         found[id(member)] = member
         made.names[name] = member
 
@@ -141,11 +161,33 @@ def _fill(
     given = {**dict(zip(positional, args, strict=False)), **keywords}
     if run.trying and (len(args) > len(positional) or any(name not in fields for name in keywords)):
         raise OpaqueError("an exception of a data class")
+    passed = {name: given.get(name, _default(run, kind, name, node)) for name in _passed(kind)}
     for name in fields:
-        made.attributes[name] = given[name] if name in given else _default(run, kind, name, node)
+        if name in passed:
+            continue
+        value = given[name] if name in given else _default(run, kind, name, node)
+        if name in given or not _is_set_later(kind, name):
+            made.attributes[name] = value
     after = kind.find("__post_init__")
     if after is not None and isinstance(after[0], Function):
-        after[0].run(after[0], [made], {}, after[1])
+        after[0].run(after[0], [made, *passed.values()], {}, after[1])
+
+
+def _passed(kind: Class) -> list[str]:
+    """Return the names of the arguments that only `__post_init__` receives."""
+    return [name for one in reversed(kind.order()) for name in one.options.get("passed", ())]
+
+
+def _is_set_later(kind: Class, name: str) -> bool:
+    """Return whether `__init__` of a data class does not set a field."""
+    found = kind.find(name)
+    value = found[0] if found is not None else None
+    return (
+        isinstance(value, Field)
+        and not value.init
+        and value.factory is None
+        and isinstance(value.default, Unknown)
+    )
 
 
 def _takes(kind: Class, name: str) -> bool:
@@ -199,10 +241,8 @@ def _converted(value: Any, make: Any, depth: int) -> Any:
     if depth > 30:
         raise OpaqueError("too deep")
     if isinstance(value, Made) and value.kind.fields is not None and not value.kind.unpacked:
-        pairs = {
-            name: _converted(value.attributes.get(name), make, depth + 1)
-            for name in value.kind.all_fields() or ()
-        }
+        names = [name for name in value.kind.all_fields() or () if name not in _passed(value.kind)]
+        pairs = {name: _converted(value.attributes.get(name), make, depth + 1) for name in names}
         return pairs if make is dict else tuple(pairs.values())
     if isinstance(value, Made) and value.kind.unpacked:
         inner = {key: _converted(one, make, depth + 1) for key, one in value.attributes.items()}
@@ -234,4 +274,5 @@ def field_names(value: Any) -> list[Made]:
     if not isinstance(kind, Class):
         raise OpaqueError("no data class")
     shape = Class("Field", (), {})
-    return [Made(shape, {"name": name}) for name in items(kind.all_fields()) or ()]
+    names = [name for name in kind.all_fields() or () if name not in _passed(kind)]
+    return [Made(shape, {"name": name}) for name in names]

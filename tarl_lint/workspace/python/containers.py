@@ -74,7 +74,7 @@ def make_chain(*maps: Any) -> ChainMap[Any, Any]:
 
 # The types of values, by the form that their names have in interpreted files
 TYPES: Final[Mapping[Any, type]] = {
-    str: str, int: int, float: float, bool: bool, bytes: bytes, object: object, FilePath: FilePath,
+    str: str, int: int, float: float, bool: bool, bytes: bytes, object: object, slice: slice, FilePath: FilePath,
     make_list: list, make_tuple: tuple, make_dict: dict, make_set: Unique, make_frozen: Unique, make_queue: deque,
     make_ordered: OrderedDict, make_defaults: defaultdict, make_counter: Counter, make_chain: ChainMap,
 }  # fmt: skip

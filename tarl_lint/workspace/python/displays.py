@@ -11,7 +11,7 @@ from tarl_lint.workspace.python.elements import Unique, items, settled
 from tarl_lint.workspace.python.evaluation import Evaluation, unknown
 from tarl_lint.workspace.python.operators import formatted
 from tarl_lint.workspace.python.targets import bind
-from tarl_lint.workspace.python.values import Library, OpaqueError, Scope, Stream, Unknown
+from tarl_lint.workspace.python.values import Library, OpaqueError, Scope, Several, Stream, Unknown
 
 
 def elements(run: Evaluation, nodes: list[ast.expr], names: Scope) -> list[Any]:
@@ -20,7 +20,7 @@ def elements(run: Evaluation, nodes: list[ast.expr], names: Scope) -> list[Any]:
     for node in nodes:
         if isinstance(node, ast.Starred):
             inner = items(run.value(node.value, names))
-            found += inner if inner is not None else [unknown(node.value)]
+            found += inner if inner is not None else [Several(node.lineno, unknown(node.value).text)]
             run.spend(len(inner or ()))
         else:
             found.append(run.value(node, names))

@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 from typing import Any, Final
 
 from tarl_lint.workspace.python.objects import Class, Function, Interpreted, Made
-from tarl_lint.workspace.python.values import LARGEST, MANY, Library, OpaqueError, Stream, Unknown
+from tarl_lint.workspace.python.values import LARGEST, MANY, Library, OpaqueError, Several, Stream, Unknown
 
 VIEWS: Final = frozenset({
     "dict_items", "dict_keys", "dict_values", "odict_items", "odict_keys", "odict_values", "_PathParents",
@@ -131,6 +131,11 @@ def listed(value: Any) -> list[Any]:
     return found
 
 
+def whole(value: Any) -> bool:
+    """Return whether the number of elements of a value is known."""
+    return not isinstance(value, list | tuple) or not any(isinstance(one, Several) for one in value)
+
+
 def elements_if_known(value: Any) -> list[Any] | None:
     """Return what a loop over a value yields; None if it is not known, or if that fails."""
     try:
@@ -161,6 +166,7 @@ def bounded(value: Any, most: int = LARGEST) -> bool:
 
 _CONSTANT: Final = (str, int, float, bool, bytes, type(None), PurePosixPath)
 _SETTLED: Final = (
+    slice,
     *_CONSTANT,
     Made,
     re.Match,

@@ -17,7 +17,7 @@ from typing import Any, Final
 from tarl_lint.workspace.python.attributes import attribute
 from tarl_lint.workspace.python.builtin_functions import BUILTINS
 from tarl_lint.workspace.python.displays import DISPLAYS, elements, key_of
-from tarl_lint.workspace.python.elements import items, settled
+from tarl_lint.workspace.python.elements import items, settled, whole
 from tarl_lint.workspace.python.evaluation import call_of, unknown
 from tarl_lint.workspace.python.jumps import Raised
 from tarl_lint.workspace.python.libraries import LIBRARIES, function, is_builtin
@@ -32,6 +32,7 @@ from tarl_lint.workspace.python.values import (
     Namespace,
     OpaqueError,
     Scope,
+    Several,
     SpentError,
     Unknown,
 )
@@ -146,6 +147,10 @@ class Evaluator:
 
     def operated(self, kind: type[ast.operator], left: Any, right: Any) -> Any:
         """Return the result of an operator. Raises OpaqueError if it is not constant."""
+        if kind is ast.Add and (isinstance(left, list) or isinstance(right, list)):
+            left, right = (
+                [Several(one.line, one.text)] if isinstance(one, Unknown) else one for one in (left, right)
+            )
         if any(isinstance(one, Unknown | Library) for one in (left, right)):
             raise OpaqueError("not a constant")
         found = binary(kind, left, right)
@@ -225,10 +230,12 @@ class Evaluator:
         if type(base).__name__ == "_PathParents":
             base = [FilePath(one) for one in base]
         if isinstance(node.slice, ast.Slice):
-            if not isinstance(base, str | list | tuple | range | bytes):
+            if not isinstance(base, str | list | tuple | range | bytes | Made) or not whole(base):
                 return unknown(node)
             parts = (node.slice.lower, node.slice.upper, node.slice.step)
             found = base[slice(*(None if one is None else self.value(one, names) for one in parts))]
+            if isinstance(base, Made):
+                return found
             self.spend(len(found) // 50)
             return found
         key = key_of(self.value(node.slice, names))
@@ -238,8 +245,11 @@ class Evaluator:
             return base[key]
         if hasattr(type(base), "section"):  # a model of a library whose elements have names
             return base.section(key)
+        if isinstance(base, Library):
+            return self.models.get(f"{base.name}[{key!r}]", unknown(node))
         known = isinstance(base, str | list | tuple | dict | range | bytes | deque | ChainMap | Made)
-        return base[key] if known and not isinstance(key, Unknown | Library) else unknown(node)
+        known = known and whole(base) and not isinstance(key, Unknown | Library)
+        return base[key] if known else unknown(node)
 
     def _of_class(self, base: Class, key: Any, node: ast.Subscript) -> Any:
         """Return a member of an enumeration by name, or a generic class itself."""

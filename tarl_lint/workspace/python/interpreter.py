@@ -31,6 +31,7 @@ from tarl_lint.workspace.python.values import (
     Namespace,
     Partial,
     Scope,
+    Several,
     SpentError,
     Stream,
     Unknown,
@@ -182,7 +183,7 @@ class Interpreter(Evaluator):
         try:
             if isinstance(before, list) and isinstance(statement.op, ast.Add):
                 more = items(self.kept(before, items(added) if isinstance(added, Stream) else added))
-                before += [unknown(statement.value)] if more is None else more
+                before += [Several(statement.lineno, unknown(statement.value).text)] if more is None else more
                 self.spend(len(more or ()) // 50)
             elif isinstance(before, Made) and before.has(in_place(statement.op)):
                 self.bind(target, before.run(in_place(statement.op), added), names)

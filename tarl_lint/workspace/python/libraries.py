@@ -13,7 +13,7 @@ import string
 import textwrap
 from collections import deque
 from collections.abc import Callable, Mapping
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace.python.builtin_functions import BUILTINS, PLAIN, STRUCTURE, limits
 from tarl_lint.workspace.python.containers import (
@@ -28,10 +28,18 @@ from tarl_lint.workspace.python.elements import as_data, bounded, items, listed,
 from tarl_lint.workspace.python.iterators import OF_ITERATORS
 from tarl_lint.workspace.python.methods import checked
 from tarl_lint.workspace.python.objects import TUPLES, Class, Made
-from tarl_lint.workspace.python.operators import limited, written
+from tarl_lint.workspace.python.operators import format_text, limited, written
 from tarl_lint.workspace.python.paths import OF_PATHS, FilePath
 from tarl_lint.workspace.python.regular_expressions import OF_EXPRESSIONS
-from tarl_lint.workspace.python.values import Field, Library, OpaqueError, Partial, Suppressed, Unknown
+from tarl_lint.workspace.python.values import (
+    Field,
+    Library,
+    OpaqueError,
+    Partial,
+    Stream,
+    Suppressed,
+    Unknown,
+)
 
 _NOTHING: Final = Unknown(0, "a field")
 
@@ -119,6 +127,23 @@ def _literal(text: Any) -> Any:
     if not settled(found):
         raise OpaqueError("not a constant")
     return found
+
+
+class Formatter:
+    """`string.Formatter`: the fields of a format."""
+
+    readable: ClassVar = frozenset({"parse", "format"})
+
+    @staticmethod
+    def parse(text: Any) -> Stream:
+        """Return the parts of a format."""
+        limited(len(text) * 10)
+        return Stream(iter(list(string.Formatter().parse(text))))
+
+    @staticmethod
+    def format(text: str, *args: Any, **keywords: Any) -> str:
+        """Return a text with its fields replaced."""
+        return format_text(text, list(args), keywords)
 
 
 def _factorial(number: int) -> int:
@@ -222,7 +247,8 @@ _OF_DATA: Final[Mapping[str, Any]] = {
     "pathlib.Path": FilePath, "pathlib.PurePath": FilePath, "pathlib.PosixPath": FilePath,
     "pathlib.PurePosixPath": FilePath,
     "collections.namedtuple": _named_tuple, "collections.Counter": make_counter,
-    "string.Template": string.Template, "string.capwords": lambda text, sep=None: string.capwords(text, sep),
+    "string.Template": string.Template,
+    "string.Formatter": Formatter, "string.capwords": lambda text, sep=None: string.capwords(text, sep),
     **{f"textwrap.{name}": _wrapped(name) for name in ("dedent", "indent", "fill", "shorten", "wrap")},
     "json.dumps": _written, "json.loads": _loaded, "shlex.split": shlex.split, "shlex.quote": shlex.quote,
     "shlex.join": lambda words: shlex.join(listed(words)), "ast.literal_eval": _literal, "tomllib.loads": _toml,
@@ -230,6 +256,7 @@ _OF_DATA: Final[Mapping[str, Any]] = {
     "fnmatch.filter": _matching("filter"),
 }  # fmt: skip
 CONSTANTS: Final[Mapping[str, Any]] = {
+    "sys.version_info.major": 3, "sys.version_info[0]": 3,
     "math.pi": math.pi, "math.e": math.e, "math.inf": math.inf, "math.nan": math.nan, "math.tau": math.tau,
     "numpy.pi": math.pi, "numpy.inf": math.inf, "os.sep": "/", "os.path.sep": "/", "os.linesep": "\n",
     "sys.maxsize": 2**63 - 1, "os.pathsep": ":", "os.curdir": ".", "os.pardir": "..", "os.extsep": ".",

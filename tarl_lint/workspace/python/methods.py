@@ -11,7 +11,7 @@ from typing import Any, Final
 from tarl_lint.workspace.python import regular_expressions
 from tarl_lint.workspace.python.elements import Unique, items, listed, settled
 from tarl_lint.workspace.python.operators import format_text, limited
-from tarl_lint.workspace.python.values import Bound, OpaqueError, Stream, Unknown
+from tarl_lint.workspace.python.values import Bound, OpaqueError, Several, Stream, Unknown
 
 _LIST: Final = frozenset(
     ["append", "extend", "insert", "index", "count", "copy", "pop", "remove", "reverse", "clear"]
@@ -108,7 +108,8 @@ def _of_list(of: Any, name: str, args: list[Any], keywords: dict[str, Any]) -> A
     elif name in _ADDING:
         added = items(args[0]) if name in ("extend", "extendleft") else [0]
         if added is None:
-            given = args[0] if isinstance(args[0], Unknown) else Unknown(0, "unknown elements")
+            text = args[0].text if isinstance(args[0], Unknown) else "unknown elements"
+            given = Several(args[0].line if isinstance(args[0], Unknown) else 0, text)
             name, args, added = "append", [given], [0]
         elif name in ("extend", "extendleft"):
             args = [added]

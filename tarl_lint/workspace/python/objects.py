@@ -184,7 +184,7 @@ class Made:
         fields = self.kind.all_fields()
         if fields is None or self.kind.options.get("repr") is False:
             raise OpaqueError("its text contains an address")
-        hidden = {name for one in self.kind.order() for name in one.options.get("hidden", ())}
+        hidden = self._marked("hidden") | self._marked("passed")
         values = {name: self.attributes.get(name) for name in fields if name not in hidden}
         if any(isinstance(one, Unknown | Library) for one in values.values()):
             raise OpaqueError("an unknown field")
@@ -247,8 +247,16 @@ class Made:
     def _compares(self, option: str, *, default: bool) -> bool:
         return self.kind.fields is not None and bool(self.kind.options.get(option, default))
 
+    def _marked(self, option: str) -> set[str]:
+        """Return the fields of a data class that an option names."""
+        return {name for one in self.kind.order() for name in one.options.get(option, ())}
+
     def _values(self) -> tuple[Any, ...]:
-        ignored = {name for one in self.kind.order() for name in one.options.get("ignored", ())}
+        ignored = {
+            name
+            for one in self.kind.order()
+            for name in (*one.options.get("ignored", ()), *one.options.get("passed", ()))
+        }
         fields = [name for name in self.kind.all_fields() or () if name not in ignored]
         found = tuple(self.attributes.get(name) for name in fields)
         if any(isinstance(one, Unknown | Library) for one in found):
@@ -291,6 +299,15 @@ class Made:
     def __float__(self) -> float:
         plain = self.plain()
         return float(self.run("__float__") if plain is self else plain)
+
+    def __abs__(self) -> Any:
+        plain = self.plain()
+        return self.run("__abs__") if isinstance(plain, Made | tuple) else abs(plain)
+
+    def __round__(self, digits: Any = None) -> Any:
+        plain = self.plain()
+        given = () if digits is None else (digits,)
+        return self.run("__round__", *given) if isinstance(plain, Made | tuple) else round(plain, *given)
 
     def __index__(self) -> int:
         plain = self.plain()

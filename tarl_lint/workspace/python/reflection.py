@@ -37,6 +37,8 @@ def reflection(run: Evaluator) -> dict[str, Any]:
         "functools.wraps": lambda of, **_: Partial(functools.partial(_wrapped, of)),
         "functools.lru_cache": _cached, "functools.cache": Partial(lambda made: made),
         "enum.unique": Partial(lambda made: made),
+        **{f"functools.{name}": Partial(lambda *_: Unknown(0, "a function for several types"))
+           for name in ("singledispatch", "singledispatchmethod")},
     }  # fmt: skip
 
 

@@ -27,6 +27,11 @@ class Unknown:
 
 
 @dataclass(frozen=True, slots=True)
+class Several(Unknown):
+    """An unknown number of unknown elements of a list."""
+
+
+@dataclass(frozen=True, slots=True)
 class Library:
     """A name of another module: `os.path`, `launch_ros.actions.Node`."""
 

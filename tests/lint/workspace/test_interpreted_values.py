@@ -10,6 +10,7 @@ import pytest
 
 from tarl_lint.workspace.python.evaluator import Library, Unknown
 from tarl_lint.workspace.python.interpreter import Interpreter
+from tarl_lint.workspace.python.values import Several
 
 EXPRESSIONS = """
     7 // 2, -7 // 2, 7 % 3, 2 - 5, 3 * 4, 9 / 2, 6 & 3, 6 | 3, 6 ^ 3
@@ -503,7 +504,24 @@ OPEN = {
     "an order of texts and numbers": "r = 'a' < 1",
     "an order of objects": "class A:\n  pass\nr = A() < A()",
     "super outside of a class": "r = super().x",
+    "the length of a list with unknown elements": "r = len([1, *absent])",
+    "the length of a list that unknown elements were added to": "l = [1]\nl += absent\nr = len(l)",
+    "the length of a sum of lists": "r = len([1] + absent)",
+    "an element after unknown ones": "r = [*absent, 1][0]",
+    "pairs with unknown elements": "r = list(zip([*absent, 1], 'ab'))",
+    "a function for several types": "from functools import singledispatch\n@singledispatch\ndef f(x):\n  return 1\n"
+    "r = f(1)",
+    "the minor version of Python": "import sys\nr = sys.version_info[1]",
 }
+STILL_KNOWN = {
+    "the major version of Python": ("import sys\nr = sys.version_info[0], sys.version_info.major", (3, 3)),
+}
+
+
+@pytest.mark.parametrize("name", STILL_KNOWN)
+def test_a_value_is_known_in_spite_of_what_is_not(tmp_path, name):
+    text, right = STILL_KNOWN[name]
+    assert interpreted(tmp_path, text)["r"] == right
 
 
 @pytest.mark.parametrize("name", OPEN)
@@ -558,8 +576,8 @@ def test_large_integers_are_computed_up_to_a_size(tmp_path):
 def test_unknown_elements_of_a_list_are_one_unknown_value(tmp_path):
     text = "l = [1]\nl.extend(absent)\nl += absent\nl.append(2)\nk = []\nk.extend({1: 2})"
     found = interpreted(tmp_path, f"{text}\nimport numpy\nk.extend(numpy.ones)")
-    assert found["l"] == [1, Unknown(2, "absent"), Unknown(3, "absent"), 2]
-    assert found["k"] == [1, Unknown(0, "unknown elements")]
+    assert found["l"] == [1, Several(2, "absent"), Several(3, "absent"), 2]
+    assert found["k"] == [1, Several(0, "unknown elements")]
 
 
 @pytest.mark.parametrize(
