@@ -14,6 +14,7 @@ from pytest_tarl.ros.messages.workspace import on_forget, packages, workspaces
 from tarl_lint.workspace.folders import folders
 
 _MISSING = frozenset({"AttributeError", "ImportError", "ModuleNotFoundError", "Exception", "BaseException"})
+_PROJECT = ("pyproject.toml", "setup.py", "setup.cfg")
 
 
 class UninstalledFinder:
@@ -34,7 +35,8 @@ class UninstalledFinder:
         place = _nearest(name, Path(importer.f_code.co_filename).resolve())
         if place is None:
             return None
-        self.taken[name] = place
+        if not _is_of_project(place):
+            self.taken[name] = place
         return PathFinder.find_spec(name, [str(place.parent)])
 
     def notes(self) -> tuple[str, ...]:
@@ -60,15 +62,36 @@ def _importer(frame: FrameType | None) -> FrameType | None:
 
 
 def _nearest(name: str, importer: Path) -> Path | None:
-    """Return the only module with that name in the importer's package, or else the only one in its workspace."""
+    """Return the only module with that name in the importer's package, or else the only one in its workspace.
+
+    Of several, take the only one that is not inside another Python package, or else the only one that a Python
+    project installs.
+    """
     for workspace in workspaces():
         if importer.is_relative_to(workspace.root):
             found = [one for one in _modules(workspace.root).get(name, ()) if one != importer]
             own = workspace.package_of(importer)
-            near = [one for one in found if own is not None and one.is_relative_to(own.folder)]
-            chosen = near or found
+            chosen = [one for one in found if own is not None and one.is_relative_to(own.folder)] or found
+            for preferred in (_is_top_level, _is_of_project):
+                if len(chosen) > 1:
+                    chosen = [one for one in chosen if preferred(one)] or chosen
             return chosen[0] if len(chosen) == 1 else None
     return None
+
+
+def _is_top_level(place: Path) -> bool:
+    """Return whether no Python package contains a module, so that `import NAME` can mean it."""
+    return not (place.parent / "__init__.py").is_file()
+
+
+def _is_of_project(place: Path) -> bool:
+    """Return whether a Python project without `package.xml` has a module in its folder or in `src`, and installs it."""
+    above = place.parent
+    projects = (above, above.parent) if above.name == "src" else (above,)
+    return any(
+        not (one / "package.xml").is_file() and any((one / name).is_file() for name in _PROJECT)
+        for one in projects
+    )
 
 
 def candidates(name: str) -> tuple[Path, ...]:

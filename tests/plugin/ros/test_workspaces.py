@@ -328,6 +328,28 @@ def test_arguments_of_ros2_come_from_the_launch_file_unless_the_test_has_some(
     result.stdout.fnmatch_lines(["*ARGV [['--arm', 'left']*", "*ARGV [['right']*", "*ARGV [[]]*"])
 
 
+@pytest.mark.parametrize("layout", ["src", "."])
+def test_a_python_project_is_importable_as_if_installed(packages: Path, start: Start, layout: str) -> None:
+    write(
+        packages,
+        {
+            "driver/pyproject.toml": "[project]\nname = 'driver'\n",
+            f"driver/{layout}/drv/__init__.py": "from drv.drv import SPEED",
+            f"driver/{layout}/drv/drv.py": "SPEED = 3.5",
+            "old/drv.py": "raise SystemExit",
+        },
+    )
+    workspace.forget()
+    ros = start("""
+        import rospy
+        import drv
+        rospy.init_node("n")
+        found = drv.SPEED
+    """)
+    assert ros.namespace["found"] == 3.5
+    assert ros.notes == ()
+
+
 def test_every_cache_of_workspace_facts_is_emptied(packages: Path, start: Start) -> None:
     start(
         "import rospy\nfrom arm_base.cfg import ArmConfig\nfrom arm_base.msg import Reading\nimport smoothing\n"
