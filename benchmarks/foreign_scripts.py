@@ -6,6 +6,7 @@ Nothing is executed.
 from __future__ import annotations
 
 import ast
+import copy
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -103,6 +104,10 @@ def script(repository: Path, path: Path, entry: str | None) -> Script | None:
         tree = ast.parse(text)
     except (SyntaxError, ValueError) as error:
         return Script(repository, path, apart=f"Python 2 only ({error})")
+    if entry is None and not MADE_BY.search(without_texts(tree)):
+        return Script(repository, path, apart="mentions a node only in a text")
+    if needs_arguments(tree):
+        return Script(repository, path, apart="a command line tool that needs arguments")
     imported = set(imports(tree))
     if not TESTING.isdisjoint(imported):
         return Script(repository, path, apart="a test, not a node")
@@ -114,6 +119,36 @@ def script(repository: Path, path: Path, entry: str | None) -> Script | None:
         if needed:
             return Script(repository, path, apart=f"needs a {kind}: {needed[0]}")
     return Script(repository, path, None if runs else entry)
+
+
+def without_texts(tree: ast.AST) -> str:
+    """Return the code of a file without its string literals and comments."""
+    return ast.unparse(_Blank().visit(copy.deepcopy(tree)))
+
+
+class _Blank(ast.NodeTransformer):
+    """Replace each text by an empty one."""
+
+    def visit_Constant(self, node: ast.Constant) -> ast.Constant:
+        return ast.Constant("") if isinstance(node.value, str) else node
+
+    def visit_JoinedStr(self, node: ast.JoinedStr) -> ast.Constant:  # noqa: ARG002
+        return ast.Constant("")
+
+
+def needs_arguments(tree: ast.AST) -> bool:
+    """Return whether a file defines a command line with arguments that must be given, by `argparse`."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call) or not ast.unparse(node.func).endswith(".add_argument"):
+            continue
+        options = {one.arg: ast.unparse(one.value) for one in node.keywords}
+        names = [one.value for one in node.args if isinstance(one, ast.Constant)]
+        positional = bool(names) and not str(names[0]).startswith("-")
+        if options.get("required") == "True" or (
+            positional and options.get("nargs") not in ("'?'", "'*'", "argparse.REMAINDER")
+        ):
+            return True
+    return False
 
 
 def makes_node(path: Path, seen: set[Path]) -> bool:
