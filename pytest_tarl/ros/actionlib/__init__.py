@@ -10,13 +10,17 @@ from pytest_tarl.ros.actionlib.client import (
     SimpleClientGoalState,
     SimpleGoalState,
 )
-from pytest_tarl.ros.actionlib.protocol import GoalID, GoalStatus
+from pytest_tarl.ros.actionlib.goal_client import ActionClient, ClientGoalHandle
+from pytest_tarl.ros.actionlib.goal_server import ActionServer, ServerGoalHandle
+from pytest_tarl.ros.actionlib.goal_states import CommState, TerminalState
+from pytest_tarl.ros.actionlib.protocol import ActionException, GoalID, GoalIDGenerator, GoalStatus
 from pytest_tarl.ros.actionlib.server import SimpleActionServer
 from pytest_tarl.ros.missing import refuse
 
 __all__ = [
-    "GoalID", "GoalManager", "GoalStatus", "SimpleActionClient", "SimpleActionServer", "SimpleClientGoalState",
-    "SimpleGoalState", "get_name_of_constant",
+    "ActionClient", "ActionException", "ActionServer", "ClientGoalHandle", "CommState", "GoalID", "GoalIDGenerator",
+    "GoalManager", "GoalStatus", "ServerGoalHandle", "SimpleActionClient", "SimpleActionServer",
+    "SimpleClientGoalState", "SimpleGoalState", "TerminalState", "get_name_of_constant",
 ]  # fmt: skip
 
 

@@ -6,16 +6,20 @@ from collections.abc import Callable
 from typing import Any
 
 from pytest_tarl.ros.actionlib import protocol
-from pytest_tarl.ros.actionlib.protocol import TERMINAL, ActionServers, ActionTypes, Publisher, Subscriber
-from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.actionlib.protocol import (
+    TERMINAL,
+    ActionServers,
+    ActionTypes,
+    Publisher,
+    Subscriber,
+    wait_until,
+)
 from pytest_tarl.ros.messages import message_type
 from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.rospy.node import this_node
 from pytest_tarl.ros.rospy.timing import Time, get_rostime
 from pytest_tarl.ros.scheduler import Task, current_task
-
-_LOOK = nanoseconds(0.1)  # polling period while waiting for the server (ns)
 
 
 class SimpleGoalState:
@@ -161,17 +165,9 @@ class SimpleActionClient:
             self._done_cb(self.get_state(), message.result)
 
     def _wait(self, condition: Callable[[], bool], timeout: Any, *, poll: bool = False) -> bool:
-        process = self._node.process
-        clock, task = process.scheduler, current_task()
-        span = 0 if timeout is None else timeout.to_nsec()
-        until = clock.time + span if span > 0 else None
+        task = current_task()
         self._waiting.append(task)
         try:
-            while not condition() and not process.ending and (until is None or clock.time < until):
-                look = clock.time + _LOOK if poll else None
-                clock.wait(min((i for i in (until, look) if i is not None), default=None))
+            return wait_until(self._node.process, condition, timeout, poll=poll)
         finally:
             self._waiting.remove(task)
-        if process.ending:
-            process.refuse_to_wait()
-        return condition()
