@@ -22,6 +22,7 @@ from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_packag
 from pytest_tarl.ros.messages.workspace import packages
 from pytest_tarl.ros.missing import unsupported_module
 from pytest_tarl.ros.opencv_windows import windows_discarded
+from pytest_tarl.ros.reexports import is_reexported, reexported
 from pytest_tarl.ros.siblings import generated, has_configurations, is_generated, sibling
 from pytest_tarl.ros.standins import MISSING, STANDALONE, STANDINS, TALKING
 from pytest_tarl.ros.threads import threads_as_tasks
@@ -148,12 +149,14 @@ class StandinFinder:
 
 
 def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -> Any:
-    """Return a submodule of a stand-in: the test's own in `sys.modules`, or another stand-in."""
+    """Return a submodule of a stand-in (the test's own in `sys.modules` first), or a re-exported name."""
     inner = f"{module}.{name}"
     if inner in sys.modules:
         return sys.modules[inner]
     if inner in STANDINS:
         return import_module(inner)
+    if is_reexported(module, name):
+        return reexported(module, name)
     if otherwise is None or _is_optional_for(sys._getframe(1)):
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
     return otherwise(name)

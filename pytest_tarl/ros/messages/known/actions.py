@@ -65,6 +65,18 @@ float64 position
 float64 effort
 bool stalled
 bool reached_goal
+== tf2_msgs/LookupTransform
+string target_frame
+string source_frame
+time source_time
+duration timeout
+time target_time
+string fixed_frame
+bool advanced
+---
+geometry_msgs/TransformStamped transform
+TF2Error error
+---
 == turtlebot3_msgs/Patrol
 geometry_msgs/Vector3 goal
 ---
@@ -264,18 +276,6 @@ uint16 error_code
 string error_msg
 ---
 duration time_left
-== tf2_msgs/LookupTransform
-string target_frame
-string source_frame
-builtin_interfaces/Time source_time
-duration timeout
-builtin_interfaces/Time target_time
-string fixed_frame
-bool advanced
----
-geometry_msgs/TransformStamped transform
-TF2Error error
----
 == turtlesim/RotateAbsolute
 float32 theta
 ---
