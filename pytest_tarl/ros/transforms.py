@@ -183,6 +183,13 @@ class TransformTree:
         to_source, to_target = (self._along(way, time) for way in ways)
         return to_target.inverse() @ to_source, time
 
+    def chain(self, target: str, source: str) -> list[str]:
+        """Return the frames from `source` to `target`. Raise the exceptions of `look_up`."""
+        self.look_up(target, source, 0)
+        up, down = self._way_up(clean(source)), self._way_up(clean(target))
+        common = next(frame for frame in up if frame in down)
+        return up[: up.index(common) + 1] + down[: down.index(common)][::-1]
+
     def _along(self, way: list[str], time: int) -> Rigid:
         pose = Rigid()
         for child in way:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Any
 
@@ -40,6 +41,11 @@ class Context:
     def ok(self) -> bool:
         """Return whether ROS is up."""
         return self.initialised and not self.process.ending
+
+    def get_domain_id(self) -> int:
+        """Return the DDS domain of the environment. Raise NotInitializedException before `init`."""
+        self.require()
+        return int(os.environ.get("ROS_DOMAIN_ID") or 0)
 
     def require(self) -> None:
         """Raise NotInitializedException before `init`."""

@@ -18,6 +18,7 @@ from pytest_tarl.ros.rospy.node import this_node, warn_if_illegal
 from pytest_tarl.ros.scheduler import current_task
 
 Callback = tuple[Callable[..., Any], Any]
+DEFAULT_BUFF_SIZE = 65536
 
 
 class AnyMsg:
@@ -256,7 +257,7 @@ class Subscriber(Topic):
         callback: Callable[..., Any] | None = None,
         callback_args: Any = None,
         queue_size: int | None = None,
-        buff_size: int = 65536,
+        buff_size: int = DEFAULT_BUFF_SIZE,
         tcp_nodelay: bool = False,
     ) -> None:
         super().__init__(name, data_class, "Subscriber")

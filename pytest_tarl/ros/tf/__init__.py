@@ -69,6 +69,61 @@ class TransformerROS:
         if not found:
             raise TransformException(f"timeout: {reason}")
 
+    def lookupTransformFull(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> tuple[list[float], list[float]]:
+        """Return translation and rotation of the source frame at one time in the target frame at another."""
+        ends = clean(target_frame), target_time, clean(source_frame), source_time
+        found = self._buffer.lookup_transform_full(*ends, clean(fixed_frame)).transform
+        move, turn = found.translation, found.rotation
+        return [move.x, move.y, move.z], [turn.x, turn.y, turn.z, turn.w]
+
+    def canTransformFull(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> bool:
+        """Return whether `lookupTransformFull` would succeed."""
+        ends = clean(target_frame), target_time, clean(source_frame), source_time
+        return bool(self._buffer.can_transform_full(*ends, clean(fixed_frame)))
+
+    def waitForTransformFull(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+        timeout: Any,
+        polling_sleep_duration: Any = None,  # noqa: ARG002
+    ) -> None:
+        """Wait until `lookupTransformFull` would succeed. Raise tf.Exception after the timeout."""
+        ends = clean(target_frame), target_time, clean(source_frame), source_time
+        found, reason = self._buffer.can_transform_full(*ends, clean(fixed_frame), timeout, True)
+        if not found:
+            raise TransformException(f"timeout: {reason}")
+
+    def chain(
+        self,
+        target_frame: str,
+        target_time: Any,  # noqa: ARG002
+        source_frame: str,
+        source_time: Any,  # noqa: ARG002
+        fixed_frame: str,
+    ) -> list[str]:
+        """Return the frames from the source frame via the fixed frame to the target frame."""
+        first = self._buffer.chain(clean(fixed_frame), clean(source_frame))
+        return first + self._buffer.chain(clean(target_frame), clean(fixed_frame))[1:]
+
+    def clear(self) -> None:
+        """Discard all transforms that are not static."""
+        self._buffer.clear()
+
+    def getTFPrefix(self) -> str:
+        """Return the prefix of frames, which tf2 always leaves empty."""
+        return ""
+
+    def setUsingDedicatedThread(self, value: bool) -> None:
+        """Do nothing: transforms always arrive while a node waits."""
+
     def getLatestCommonTime(self, source_frame: str, dest_frame: str) -> Any:
         """Return the newest instant for which both frames are known."""
         return self._buffer.get_latest_common_time(clean(source_frame), clean(dest_frame))
@@ -109,6 +164,23 @@ class TransformerROS:
     def transformPose(self, target_frame: str, ps: Any) -> Any:
         """Return a PoseStamped in another frame."""
         return do_transform_pose_stamped(ps, self._to(target_frame, ps))
+
+    def transformPointCloud(self, target_frame: str, point_cloud: Any) -> Any:
+        """Return a PointCloud, the older type of clouds, in another frame."""
+        header = point_cloud.header
+        turned = self.asMatrix(target_frame, header)
+        moved: Any = type(point_cloud)()
+        moved.header.stamp, moved.header.frame_id, moved.channels = (
+            header.stamp,
+            target_frame,
+            point_cloud.channels,
+        )
+        point = message_type("geometry_msgs/Point32")
+        moved.points = [
+            point(*(float(part) for part in (turned @ (one.x, one.y, one.z, 1.0))[:3]))
+            for one in point_cloud.points
+        ]
+        return moved
 
     def transformQuaternion(self, target_frame: str, ps: Any) -> Any:
         """Return a QuaternionStamped in another frame."""

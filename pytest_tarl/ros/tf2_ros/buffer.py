@@ -62,6 +62,34 @@ class BufferInterface:
         found = self.lookup_transform(target_frame, header.frame_id, header.stamp, timeout)
         return self.registration.get(type(object_stamped))(object_stamped, found)
 
+    def lookup_transform_full(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+        timeout: Any = None,
+    ) -> Any:
+        """Return the transform from `source_frame` at one time to `target_frame` at another, via a fixed frame."""
+        raise NotImplementedError
+
+    def transform_full(
+        self,
+        object_stamped: Any,
+        target_frame: str,
+        target_time: Any,
+        fixed_frame: str,
+        timeout: Any = None,
+        new_type: Any = None,
+    ) -> Any:
+        """Transform a stamped message into another frame at another time, via a fixed frame."""
+        header = object_stamped.header
+        found = self.lookup_transform_full(
+            target_frame, target_time, header.frame_id, header.stamp, fixed_frame, timeout
+        )
+        return self.registration.get(type(object_stamped))(object_stamped, found)
+
 
 class Buffer(BufferInterface):
     """Stores received transforms and answers look-ups."""
@@ -100,7 +128,7 @@ class Buffer(BufferInterface):
         timeout: Any = None,
     ) -> Any:
         """Return the transform from `source_frame` at one time to `target_frame` at another, via a fixed frame."""
-        self.can_transform(fixed_frame, source_frame, source_time, timeout)
+        self.can_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
         inner, _ = self._tree.look_up(fixed_frame, source_frame, nanoseconds_of(source_time))
         outer, when = self._tree.look_up(target_frame, fixed_frame, nanoseconds_of(target_time))
         return _stamped(outer @ inner, target_frame, source_frame, when)
@@ -114,14 +142,37 @@ class Buffer(BufferInterface):
         return_debug_tuple: bool = False,
     ) -> Any:
         """Return whether a look-up would succeed; wait up to `timeout`."""
+        reason = self._wait(lambda: self._problem(target_frame, source_frame, time), timeout)
+        return (not reason, reason) if return_debug_tuple else not reason
+
+    def can_transform_full(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+        timeout: Any = None,
+        return_debug_tuple: bool = False,
+    ) -> Any:
+        """Return whether a look-up via a fixed frame would succeed; wait up to `timeout`."""
+
+        def problem() -> str:
+            inner = self._problem(fixed_frame, source_frame, source_time)
+            return inner or self._problem(target_frame, fixed_frame, target_time)
+
+        reason = self._wait(problem, timeout)
+        return (not reason, reason) if return_debug_tuple else not reason
+
+    def _wait(self, problem: Callable[[], str], timeout: Any) -> str:
+        """Wait until there is no problem, at most for `timeout`; return the problem that remains."""
         clock = self.process.scheduler
-        span = nanoseconds_of(timeout) if timeout is not None else 0
-        until = clock.time + span
-        reason = self._problem(target_frame, source_frame, time)
+        until = clock.time + (nanoseconds_of(timeout) if timeout is not None else 0)
+        reason = problem()
         while reason and clock.time < until and not self.process.ending:
             clock.wait(min(until, clock.time + _LOOK))
-            reason = self._problem(target_frame, source_frame, time)
-        return (not reason, reason) if return_debug_tuple else not reason
+            reason = problem()
+        return reason
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
         """Return the transform between two frames as soon as it is known (ROS 2)."""
@@ -162,6 +213,10 @@ class Buffer(BufferInterface):
         return clean(frame) in self._tree.edges or any(
             e.parent == clean(frame) for e in self._tree.edges.values()
         )
+
+    def chain(self, target_frame: str, source_frame: str) -> list[str]:
+        """Return the frames from the source frame to the target frame."""
+        return self._tree.chain(target_frame, source_frame)
 
     def frames(self) -> list[str]:
         """List all frames."""

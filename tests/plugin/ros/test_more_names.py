@@ -313,3 +313,13 @@ def test_signal_handlers_may_be_chosen_and_are_never_installed(start: Start) -> 
     """)
     handlers, same = ros.namespace["found"]
     assert (handlers.name, same) == ("NO", True)
+
+
+def test_a_context_knows_the_domain_of_the_environment(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    ros = start("""
+        import rclpy
+        rclpy.init()
+        found = rclpy.get_default_context().get_domain_id()
+    """)
+    assert ros.namespace["found"] == 7

@@ -190,3 +190,75 @@ def test_lookup_waits_until_the_transform_arrives(start: Start) -> None:
     )
     ros.step(0.5)
     assert ros.namespace["log"] == [(4.0, 500_000_000)]
+
+
+MOVING = """
+    import rospy, tf, tf2_ros
+    from geometry_msgs.msg import Point32, PointStamped, TransformStamped
+    from sensor_msgs.msg import PointCloud
+
+    def add(parent, child, x, seconds):
+        message = TransformStamped(child_frame_id=child)
+        message.header.frame_id, message.header.stamp = parent, rospy.Time(seconds)
+        message.transform.translation.x, message.transform.rotation.w = x, 1.0
+        transformer.setTransform(message)
+
+    rospy.init_node("n")
+    transformer = tf.Transformer(True, rospy.Duration(10.0))
+    for seconds in (1, 9):
+        add("map", "odom", 1.0, seconds)
+        add("odom", "base", seconds - 1.0, seconds)
+        add("base", "cam", 0.5, seconds)
+        add("map", "mark", 2.0, seconds)
+    times = rospy.Time(2), rospy.Time(5)
+"""
+
+
+def test_look_ups_between_two_instants_lead_through_a_fixed_frame(start: Start) -> None:
+    ros = start(
+        MOVING
+        + """
+    there = transformer.lookupTransformFull("base", times[0], "base", times[1], "odom")
+    found = transformer.canTransformFull("base", times[0], "base", times[1], "odom")
+    chain = transformer.chain("cam", times[0], "mark", times[0], "map")
+    back = transformer.chain("base", times[0], "base", times[1], "odom")
+    began = rospy.get_time()
+    try:
+        transformer.waitForTransformFull("base", times[0], "nothing", times[1], "odom", rospy.Duration(0.5))
+    except tf.Exception as error:
+        problem, waited = str(error), rospy.get_time() - began
+    transformer.clear()
+    frames = transformer.getFrameStrings()
+    """
+    )
+    ros.step(1.0)
+    names = ros.namespace  # type: ignore[attr-defined]
+    assert names["there"] == (
+        [3.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+    )  # as Debian's tf 1.13 answers, like the chains
+    assert names["found"] is True
+    assert names["chain"] == ["mark", "map", "odom", "base", "cam"]
+    assert names["back"] == ["base", "odom", "base"]
+    assert "nothing" in names["problem"]
+    assert names["waited"] == pytest.approx(0.5)
+    assert names["frames"] == []
+
+
+def test_messages_move_through_a_fixed_frame_and_old_clouds_into_another_frame(start: Start) -> None:
+    ros = start(
+        MOVING
+        + """
+    point = PointStamped()
+    point.header.frame_id, point.header.stamp, point.point.x = "base", times[1], 0.25
+    moved = transformer._buffer.transform_full(point, "base", times[0], "odom")
+    cloud = PointCloud(points=[Point32(1.0, 2.0, 3.0)])
+    cloud.header.frame_id, cloud.header.stamp = "cam", times[0]
+    turned = transformer.transformPointCloud("odom", cloud)
+    """
+    )
+    ros.step(0.1)
+    names = ros.namespace  # type: ignore[attr-defined]
+    assert (names["moved"].point.x, names["moved"].header.frame_id) == (3.25, "base")
+    assert [(one.x, one.y, one.z) for one in names["turned"].points] == [(2.5, 2.0, 3.0)]
+    assert names["turned"].header.frame_id == "odom"
