@@ -13,6 +13,7 @@ from typing import Final, TypeGuard
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.launch_sources import Given, arguments_from, parameter_from
 from pytest_tarl.ros.missing_modules import PYTHON_2, module_advice
+from pytest_tarl.ros.standins import STANDINS
 
 _PYTHON_2_SYNTAX = re.compile(
     r"Missing parentheses in call to '(print|exec)|multiple exception types must be parenthesized|"
@@ -27,22 +28,28 @@ _INTEGER_NEEDED = re.compile(
     r"'float' object cannot be interpreted as an integer|can't multiply sequence by non-int of type 'float'|"
     r"^slice indices must be integers|indices must be integers or slices, not float|only integers, slices"
 )
+_LACKING: Final = re.compile(r"^module '([\w.]+)' has no attribute ")
+_NONE: Final = re.compile(r"\bNone(Type)?\b")
+_SHOWN: Final = 3  # maximum number of parameters in one sentence
 _ARGUMENTS: Final = re.compile(r"\bargv\b|\bmyargv\b|\bparse_(known_)?args\b")
 
 
-def advice(error: BaseException, given: Given) -> str:
+def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str:
     """Return one sentence of advice about a node's error; empty if the error's own text is enough.
 
-    `given` holds what launch files give the node.
+    `given` holds what launch files give the node, and `unset` the parameters without a value that it asked for.
     """
     if isinstance(error, SyntaxError):
         return PYTHON_2 if _PYTHON_2_SYNTAX.search(str(error)) or isinstance(error, TabError) else ""
     if isinstance(error, ModuleNotFoundError):
         return module_advice(error, _line_of(error))
-    if isinstance(error, ImportError) and (error.name or "").partition(".")[0] in ("rclpy", "rospy"):
-        return f"The in-process ROS lacks this name of {error.name}: put a replacement into the module in the test."
-    if isinstance(error, NameError | AttributeError | ImportError):
-        return PYTHON_2 if _PYTHON_2_NAMES.search(str(error)) else ""
+    if isinstance(error, ImportError) and error.name is not None and error.name in STANDINS:
+        return _of_name(error.name)
+    if isinstance(error, NameError | AttributeError | ImportError) and _PYTHON_2_NAMES.search(str(error)):
+        return PYTHON_2
+    lacking = _LACKING.search(str(error)) if isinstance(error, AttributeError) else None
+    if lacking is not None and lacking[1] in STANDINS:
+        return _of_name(lacking[1])
     if isinstance(error, KeyError):
         return _of_lookup(error, given)
     if type(error).__name__ == "ParameterUninitializedException" and error.args:
@@ -51,12 +58,29 @@ def advice(error: BaseException, given: Given) -> str:
         return "In Python 3, / of two integers gives a float: write // where Python 2 rounded down."
     if isinstance(error, SystemExit | IndexError):
         return _of_arguments(error, given)
+    if unset and isinstance(error, TypeError | AttributeError | ValueError) and _NONE.search(str(error)):
+        return _of_unset(unset)
     if isinstance(error, TypeError) and "required positional argument: 'Loader'" in str(error):
         return (
             "PyYAML 6 has no default for it: call yaml.safe_load in the node, or run pip install 'PyYAML<6' in the "
             "environment of the tests."
         )
     return ""
+
+
+def _of_name(module: str) -> str:
+    """Return advice for a name that a stand-in lacks."""
+    return f"The in-process ROS lacks this name of {module}: put a replacement into the module in the test."
+
+
+def _of_unset(unset: Sequence[str]) -> str:
+    """Return advice for a node that fails with None after it has asked for parameters without a value."""
+    names = [one.removeprefix("~") for one in unset]
+    shown = ", ".join(names[:_SHOWN]) + (f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else "")
+    return (
+        f'Parameters that it asked for have no value: {shown}. If it needs one, pass parameters={{"{names[0]}": …}} '
+        "to tarl.start."
+    )
 
 
 def _of_lookup(error: KeyError, given: Given) -> str:

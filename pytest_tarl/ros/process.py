@@ -74,6 +74,9 @@ class Process:
         self._closing = False
         self._refused = 0
         self.launched = NOTHING  # parameters from a launch file
+        self.unset: dict[
+            str, None
+        ] = {}  # parameters without a value that the node asked for, as it names them
         self.label = name  # name shown in messages; the node's own name once the node has one
         self.errors: list[NodeError] = []  # errors during shutdown
         self._parts: dict[Any, Any] = {}
@@ -191,7 +194,8 @@ class Process:
             else f"raised {type(error).__name__}: {error}"
         )
         where = blame.describe(getattr(error, "tarl_place", None) or blame.of_traceback(error.__traceback__))
-        failure = NodeError(f"Node {self.label!r} {what} ({where}). {advice(error, self.launched)}".rstrip())
+        hint = advice(error, self.launched, tuple(self.unset))
+        failure = NodeError(f"Node {self.label!r} {what} ({where}). {hint}".rstrip())
         failure.__cause__ = error
         return failure
 

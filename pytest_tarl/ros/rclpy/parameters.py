@@ -7,6 +7,7 @@ from copy import deepcopy
 from typing import Any
 
 from pytest_tarl.ros.messages import find_class
+from pytest_tarl.ros.process import running_process
 from pytest_tarl.ros.rclpy.descriptors import fits, new_descriptor, objection
 from pytest_tarl.ros.rclpy.exceptions import (
     InvalidParameterException,
@@ -123,11 +124,11 @@ class NodeParameters:
         parameter = self._parameters.get(name)
         if parameter is None:
             if self._allow_undeclared:
-                return Parameter(name)
+                return _without_value(name)
             raise ParameterNotDeclaredException(name)
         if parameter.value is None and not self.describe_parameter(name).dynamic_typing:
             raise ParameterUninitializedException(name)
-        return parameter
+        return parameter if parameter.value is not None else _without_value(name)
 
     def get_parameters(self, names: list[str]) -> list[Parameter]:
         """Return several parameters."""
@@ -137,7 +138,7 @@ class NodeParameters:
         """Return a parameter, or the alternative if it is not declared or has no value."""
         parameter = self._parameters.get(name)
         if parameter is None or parameter.value is None:
-            return alternative_value if alternative_value is not None else Parameter(name)
+            return alternative_value if alternative_value is not None else _without_value(name)
         return parameter
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
@@ -269,6 +270,14 @@ class NodeParameters:
             if not result.successful:
                 return result
         return outcome(True)
+
+
+def _without_value(name: str) -> Parameter:
+    """Return a parameter without a value, and note for the node's error message that the node asked for it."""
+    process = running_process()
+    if process is not None:
+        process.unset[name] = None
+    return Parameter(name)
 
 
 def _below(name: str, prefixes: list[str], depth: int) -> bool:

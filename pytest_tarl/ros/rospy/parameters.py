@@ -27,6 +27,8 @@ def get_param(param_name: str, default: Any = _NOTHING) -> Any:
         return value
     if default is _NOTHING:
         raise KeyError(param_name)
+    if default is None:
+        node.process.unset[param_name] = None
     return default
 
 
@@ -44,7 +46,10 @@ def has_param(param_name: str) -> bool:
     """Return whether a parameter is set."""
     asked()
     node, server = _server("has_param")
-    return server.get(node.resolve(param_name), _NOTHING) is not _NOTHING
+    found = server.get(node.resolve(param_name), _NOTHING) is not _NOTHING
+    if not found:
+        node.process.unset[param_name] = None
+    return found
 
 
 def delete_param(param_name: str) -> None:

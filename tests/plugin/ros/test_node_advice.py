@@ -39,6 +39,16 @@ CASES = {
     "import rospkg; rospkg.RosPack().get_path('gripper')": r"package 'gripper' not found in .*: put a checkout of it",
     "import ament_index_python as a; a.get_package_share_directory('gripper')": "'gripper' not found in .*package.xml",
     "from roslib.packages import get_pkg_dir; get_pkg_dir('gripper')": "'gripper' not found in .*: put a checkout",
+    "int(rospy.get_param('~count', None))": (
+        r"Parameters that it asked for have no value: count\. If it needs one, pass parameters=\{\"count\": …\}"
+    ),
+    "rospy.get_param('/a', None), rospy.has_param('b'), rospy.get_param('~c', 1), None.x": (
+        r"have no value: /a, b\. If it needs one, pass parameters=\{\"/a\": …\} to tarl\.start\.$"
+    ),
+    "[rospy.has_param(name) for name in 'abcde']; 2 * None": "no value: a, b, c and 2 more",
+    "rospy.topics._SubscriberImpl": "lacks this name of rospy.topics: put a replacement into the module in the test",
+    "import tf2_ros.buffer; tf2_ros.buffer.nothing_here": "lacks this name of tf2_ros.buffer",
+    "from actionlib.simple_action_client import nothing_here": "lacks this name of actionlib.simple_action_client",
     "yaml.load('a: 1')": r"PyYAML 6 has no default for it: call yaml\.safe_load",
     "sys.argv[1]": r"The node reads its command line: pass argv=\[…\] to tarl\.start",
     "sys.exit('usage: node FILE') if len(sys.argv) < 2 else None": r"pass argv=\[…\]",
@@ -86,6 +96,19 @@ def test_other_errors_get_no_advice(line: str, start: Start) -> None:
     with pytest.raises(NodeError) as error:
         start(IMPORTS + line)
     assert str(error.value).endswith("line 4).")
+
+
+@pytest.mark.parametrize("asks", ["node.get_parameter_or('mass').value", "node.get_parameter('mass').value"])
+def test_an_error_names_parameters_of_rclpy_without_a_value(asks: str, start: Start) -> None:
+    with pytest.raises(
+        NodeError, match=r"have no value: mass\. If it needs one, pass parameters=\{\"mass\": …\}"
+    ):
+        start(f"""
+            import rclpy
+            rclpy.init()
+            node = rclpy.create_node("it", allow_undeclared_parameters=True)
+            print(2.0 * {asks})
+        """)
 
 
 def test_a_node_may_continue_without_a_module_that_is_not_implemented(start: Start) -> None:
