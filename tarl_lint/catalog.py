@@ -139,7 +139,7 @@ METHODS: Final[Mapping[str, Fact]] = {
     "registerCallback": Fact("register", "message_filters", callback=(0, "cb")),
 }
 # methods that make a subscription, a publisher, a timer or a service, and are therefore recognised by name alone
-MAKERS: Final = frozenset(
+ENDPOINT_METHODS: Final = frozenset(
     name for name, fact in METHODS.items() if fact.kind in ("subscribe", "publisher", "timer", "service")
 )
 # methods of `message_filters.Cache` that return messages

@@ -22,7 +22,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency
 from tarl_lint.memory.values import Value, pointer
-from tarl_lint.models import library
+from tarl_lint.models import library_functions
 from tarl_lint.prefilter.one_sided import Side
 from tarl_lint.read.source import Module, parse
 from tarl_lint.report.line import View
@@ -107,7 +107,7 @@ def test_the_model_of_the_recipe_replaces_the_default_model_of_a_call(
     model = made(
         code, Interpreter=Interpreter, Invocation=Invocation, Value=Value, pointer=pointer, recency=recency
     )
-    monkeypatch.setitem(library.BUILTIN, "gadgets.outline", model.only_its_shape)
+    monkeypatch.setitem(library_functions.BUILTIN, "gadgets.outline", model.only_its_shape)
     assert [flow.kind for flow in analysed(tmp_path, node=NODE).flows] != ["explicit"]
 
 

@@ -16,7 +16,7 @@ KINDS = frozenset(
 FACTS = {**catalog.FUNCTIONS, **catalog.METHODS}
 REGISTERING = frozenset(name.rpartition(".")[2] for name, fact in FACTS.items() if fact.kind in KINDS)
 STARTS = REGISTERING | {"init_node", "init", "create_node", "spin"}
-HELD = REGISTERING & catalog.MAKERS  # methods that are recognised without a call
+HELD = REGISTERING & catalog.ENDPOINT_METHODS  # methods that are recognised without a call
 STARTING = re.compile(
     rf"\.\s*(?:{'|'.join(sorted(STARTS))})\s*\(|\b(?:{'|'.join(sorted(REGISTERING))})\s*\("
     rf"|\b(?:{'|'.join(sorted(HELD))})\b"

@@ -10,7 +10,8 @@ from tarl_lint.interpret.statements import assign, assign_fallback, bind_target,
 from tarl_lint.interpret.worklist import add_root, root_frame, wait
 from tarl_lint.memory.reachable_data import deep
 from tarl_lint.models.iterators import gate
-from tarl_lint.models.library import call_method, generic, named_by_settings
+from tarl_lint.models.library_functions import generic, named_by_settings
+from tarl_lint.models.library_methods import call_method
 from tarl_lint.models.records import entries, fill, missing
 from tarl_lint.models.ros.catalog_calls import ros_call
 from tarl_lint.models.ros.clients import launched_call

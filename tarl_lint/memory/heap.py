@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarl_lint.catalog import MAKERS, MEASURES, METHODS
+from tarl_lint.catalog import ENDPOINT_METHODS, MEASURES, METHODS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency, userdata
@@ -96,7 +96,7 @@ def written_here(ctx: Interpreter, obj: Obj, name: str) -> bool:
 def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
     """Return the value of an unset field."""
     kind = obj.kind
-    if name in METHODS_OF.get(kind, ()) or (kind == "lib" and name in MAKERS):
+    if name in METHODS_OF.get(kind, ()) or (kind == "lib" and name in ENDPOINT_METHODS):
         return held_method(ctx, obj, name)
     if kind in ("message", "lib", "goal"):
         return _part(ctx, obj, name)
@@ -179,7 +179,7 @@ def bind_class(ctx: Interpreter, value: Value, cls: Obj) -> Value:
 
 def read_or_hold(ctx: Interpreter, base: Value, name: str) -> Value:
     """Return an attribute; for an unknown object, also a method that makes a subscription or the like."""
-    if base.pts or name not in MAKERS:
+    if base.pts or name not in ENDPOINT_METHODS:
         return read(ctx, base, name)
     return Value(base.deps, held_method(ctx, recency.intern(ctx, "lib", ("unknown",)), name).pts)
 

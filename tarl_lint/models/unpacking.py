@@ -11,7 +11,7 @@ from tarl_lint.memory import heap, reachable_data, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import BOTTOM, Obj, Value, const, join, pointer
-from tarl_lint.models import library, sizes
+from tarl_lint.models import library_functions, sizes
 
 ITERATED = -2  # slot of the calls of `__iter__` and `__next__` made by a loop
 NEXT = -3
@@ -32,7 +32,7 @@ def call_library(
     """Call a library function or class; a function that iterates over analysed objects calls their iterators."""
     if qualified in ITERATING:
         arguments = [_gone_over(ctx, v, frame, call) for v in arguments[0]], arguments[1]
-    return library.call_library(ctx, qualified, arguments, frame, call)
+    return library_functions.call_library(ctx, qualified, arguments, frame, call)
 
 
 def _gone_over(ctx: Interpreter, value: Value, frame: Frame, call: ir.Call) -> Value:

@@ -23,7 +23,7 @@ from tarl_lint.read.source import Module
 from tarl_lint.trees import last_name, walk
 
 FACTS: Final = {**catalog.FUNCTIONS, **catalog.METHODS}
-MAKERS: Final = frozenset(n.rpartition(".")[2] for n, f in FACTS.items() if f.kind == "publisher")
+PUBLISHER_MAKERS: Final = frozenset(n.rpartition(".")[2] for n, f in FACTS.items() if f.kind == "publisher")
 
 CODE: Final = "TARL204"
 SUMMARY: Final = "a publisher never publishes"
@@ -83,16 +83,18 @@ def ruled_out(side: Side) -> bool:
 
 def _all_publish(module: Module, text: str) -> bool:
     """Return whether every publisher is stored under a name of its own that is used to publish."""
-    if not any(maker in text for maker in MAKERS):
+    if not any(maker in text for maker in PUBLISHER_MAKERS):
         return True
     mentioned, names = 0, list[str]()
     for node in walk(module.tree):
-        if isinstance(node, (ast.Name, ast.Attribute)) and last_name(node) in MAKERS:
+        if isinstance(node, (ast.Name, ast.Attribute)) and last_name(node) in PUBLISHER_MAKERS:
             mentioned += 1
-        elif isinstance(node, ast.ImportFrom) and any(a.name in MAKERS and a.asname for a in node.names):
+        elif isinstance(node, ast.ImportFrom) and any(
+            a.name in PUBLISHER_MAKERS and a.asname for a in node.names
+        ):
             return False
         elif isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
-            made = last_name(node.value.func) in MAKERS
+            made = last_name(node.value.func) in PUBLISHER_MAKERS
             names += [last_name(target) for target in node.targets if made]
     apart = mentioned == len(names) == len(set(names))
     return apart and all(n and re.search(rf"\b{n}\s*\.\s*publish\b", text) for n in names)

@@ -13,7 +13,7 @@ from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, pointer
-from tarl_lint.models import library
+from tarl_lint.models import library_functions
 from tarl_lint.models.ros import publications, subscriptions
 from tarl_lint.models.ros.endpoints import Acceptance, Publisher, SourceRecord
 
@@ -150,7 +150,7 @@ def arrived(ctx: Interpreter, record: SourceRecord, it: Invocation) -> Value:
 def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
     """Return the result of a transform look-up, which is a source if the setting `tf2` is on."""
     if not ctx.config.tf2:
-        return library.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)
+        return library_functions.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)
     record = subscriptions.source(ctx, it, BOTTOM)
     record.topics.add("/tf")
     message = arrived(ctx, record, it)

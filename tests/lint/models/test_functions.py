@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tarl_lint.models.library import BUILTIN
+from tarl_lint.models.library_functions import BUILTIN
 from tests.lint.models.marked import differing, in_callback
 
 QUEUES = [

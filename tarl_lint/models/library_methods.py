@@ -1,0 +1,198 @@
+"""Calls of methods of objects whose class is not analysed: the object may change, and callbacks may run."""
+
+from __future__ import annotations
+
+from tarl_lint import catalog
+from tarl_lint.interpret import call_contexts
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments, Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import (
+    NONE,
+    UNKNOWN,
+    Nodes,
+    Obj,
+    Value,
+    inherited_from,
+)
+from tarl_lint.method_effects import changes, fails, keeps_callables
+from tarl_lint.models import (
+    argument_parsers,
+    callables,
+    containers,
+    drawings,
+    environment,
+    filling,
+    fixed_numbers,
+    objects,
+    qt_signals,
+    strings,
+)
+from tarl_lint.models.containers import is_device
+from tarl_lint.models.futures import READERS
+from tarl_lint.models.library_functions import dropped, new_object
+from tarl_lint.models.ros import senders
+from tarl_lint.models.smach import LATER
+from tarl_lint.models.strings import TEXT_METHODS
+
+SIGNALLING = frozenset(["connect", "emit"])
+
+
+def call_method(
+    ctx: Interpreter,
+    base: Value,
+    target: Obj | None,
+    name: str,
+    arguments: Arguments,
+    frame: Frame,
+    call: ir.Call,
+) -> Value:
+    """Call a method of an object whose class is not analysed."""
+    if ctx.launching and target is not None:  # only in a run for a launch file
+        client = ctx.ops.launched_call(ctx, target, Invocation(name, base, arguments, frame, call))
+        if client is not None:
+            return client
+    known = catalog.CLASS_METHODS.get(f"{target.name}.{name}") if target is not None and target.name else None
+    if known is not None:
+        return ctx.ops.ros_call(ctx, Invocation(name, base, arguments, frame, call, known))
+    if name == "split" and ctx.exact and (parts := strings.pieces(ctx, base, arguments, frame, call)):
+        return parts
+    return _call_method(ctx, base, target, name, arguments, frame, call)
+
+
+def _call_method(
+    ctx: Interpreter,
+    base: Value,
+    target: Obj | None,
+    name: str,
+    arguments: Arguments,
+    frame: Frame,
+    call: ir.Call,
+) -> Value:
+    kind = target.kind if target is not None else ""
+    if target is not None and kind == "lib" and f"{target.name}.{name}" in ctx.config.named:
+        return ctx.ops.call_library(ctx, f"{target.name}.{name}", arguments, frame, call)
+    if target is not None and kind in ("super", "class") and name in ("__new__", "__init__"):
+        return _built_by_base(ctx, target, Invocation(name, base, arguments, frame, call))
+    if target is not None and name == "publish" and (sender := senders.sender(ctx, target)) is not None:
+        return ctx.ops.send(ctx, Invocation(name, base, arguments, frame, call), sender)
+    if target is not None and kind in ("server", "goal"):
+        return ctx.ops.serve(ctx, target, Invocation(name, base, arguments, frame, call))
+    if kind in ("filter", "synchronizer") and (name == "registerCallback" or name in catalog.CACHE_READERS):
+        return ctx.ops.register_filter(ctx, target, Invocation(name, base, arguments, frame, call))
+    if kind == "parameter":
+        return base if name == "get_parameter_value" else UNKNOWN
+    fact = catalog.METHODS.get(name)
+    if fact is not None and kind not in ("sequence", "mapping"):
+        return ctx.ops.ros_call(ctx, Invocation(name, base, arguments, frame, call, fact))
+    if name in catalog.LOGGING or name in catalog.CLOCKS:
+        return UNKNOWN
+    if name in catalog.WAITING_METHODS and not base.consts:
+        ctx.ops.wait(ctx, frame)
+    if name in catalog.MUTATORS and not base.consts:
+        return _store(ctx, target, Invocation(name, base, arguments, frame, call))
+    if name in READERS and base.pts:
+        return READERS[name](ctx, Invocation(name, base, arguments, frame, call))
+    return _unknown_method(ctx, base, name, arguments, frame, call)
+
+
+def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
+    """Store arguments in an object.
+
+    An object of a library may also call them, such as callbacks for a marker, and return a result, as the `update` of
+    a controller does.
+    """
+    kind = target.kind if target is not None else ""
+    if kind == "lib":
+        callables.call_back(ctx, it.arguments, it.frame, it.call)
+    containers.mutate(ctx, it.base, it.name, it.arguments, it.frame, it.call)
+    given_back = it.name == "setdefault" or (it.name == "send" and kind == "sequence")
+    if given_back and target is not None:
+        return heap.read_any(ctx, target)
+    if kind in ("lib", "") and not dropped(it.frame, it.call):
+        return Value(ctx.use(it.base) | call_contexts.all_used(ctx, it.arguments))
+    return UNKNOWN
+
+
+def _unknown_method(
+    ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
+) -> Value:
+    if (drawing := drawings.drawn_into(ctx, base, arguments, frame, call)) is not None:
+        return drawing
+    if name == "join" and not base.pts:
+        arguments = strings.keys_joined(ctx, arguments, frame, call)
+    callables.call_back(ctx, arguments, frame, call)
+    _connect(ctx, Invocation(name, base, arguments, frame, call))
+    given = _given(ctx, base, name, arguments, frame, call)
+    if (raises := fails(name)) is not None:
+        ctx.ops.may_fail(ctx, ctx.use(base) | call_contexts.all_used(ctx, arguments), raises, frame)
+    learnt = call_contexts.all_used(ctx, arguments) | given
+    if learnt or any(o.kind in LATER for v in (*arguments[0], *arguments[1].values()) for o in v.pts):
+        ctx.ended |= inherited_from(base)
+    if learnt and base.pts and all(map(changeable, base.pts)) and changes(name, dropped=dropped(frame, call)):
+        containers.insert_elements(ctx, base, [Value(learnt)], frame, call)
+    written = catalog.METHODS_WRITING.get(name)
+    if written is None and dropped(frame, call):
+        filling.fill(ctx, name, base, arguments, frame, call)
+    if written is not None and written < len(arguments[0]):
+        news = containers.through_statement(
+            ctx, Value(ctx.use(base) | call_contexts.all_used(ctx, arguments)), frame, call
+        )
+        containers.change(ctx, arguments[0][written], news, call.arguments[written:], frame)
+    if name in TEXT_METHODS and not base.pts and base.consts:
+        return Value(
+            ctx.use(base) | call_contexts.all_used(ctx, arguments),
+            consts=strings.text_of(ctx, base, name, arguments),
+        )
+    if name in catalog.DEVICE_READERS and base.pts and all(map(is_device, base.pts)):
+        deps = containers.received(ctx, base, arguments)
+    else:
+        deps = ctx.use(base) | call_contexts.all_used(ctx, arguments) | given
+    if not deps and not base.pts:
+        return UNKNOWN
+    made = new_object(ctx, arguments, deps, frame, call, fields=False)
+    return _loaded(ctx, made, Invocation(name, base, arguments, frame, call))
+
+
+def _connect(ctx: Interpreter, it: Invocation) -> None:
+    """Connect or emit a signal, or declare an option of the command line."""
+    if it.name in SIGNALLING:
+        qt_signals.signal(ctx, it.base, it.name, it.arguments, it.frame, it.call)
+    elif it.name == environment.ADDING:
+        environment.option(ctx, it)
+
+
+def _loaded(ctx: Interpreter, made: Value, it: Invocation) -> Value:
+    """Return the result of a method: parsed options, or data loaded from a file."""
+    if it.name not in argument_parsers.PARSING:
+        return made
+    if ctx.thorough:
+        made = fixed_numbers.loaded(ctx, made, it.frame, it.call)
+    return environment.options(ctx, it, made)
+
+
+def _given(
+    ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
+) -> Nodes:
+    """Return the data in the results of a library object's callables, since the object's methods may call them."""
+    new = callables.answering(ctx, arguments) if name not in SIGNALLING else []
+    if keeps_callables(name):
+        callables.hold(ctx, base.pts, new)
+        return NONE
+    return callables.returned(ctx, [*callables.held_by(ctx, base), *new], arguments, base, frame, call)
+
+
+def _built_by_base(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
+    """Call `__new__` or `__init__` of a base class that is not analysed."""
+    if it.name == "__new__":
+        return objects.blank_object(ctx, it)
+    if isinstance(target.info, tuple):
+        senders.inherit(ctx, target.info[1], it.arguments, it.frame, it.call)
+    return _unknown_method(ctx, it.base, it.name, it.arguments, it.frame, it.call)
+
+
+def changeable(obj: Obj) -> bool:
+    """Return whether an object's library methods may change it. The library methods of a node do not."""
+    return obj.kind == "lib" and not (isinstance(obj.key, tuple) and obj.key[:1] == ("inherited",))
