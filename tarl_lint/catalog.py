@@ -334,6 +334,30 @@ STATE_BY_CALLBACKS: Final = (
 )  # fmt: skip
 
 NODES: Final = frozenset(["rclpy.node.Node", "rclpy.lifecycle.Node", "rclpy.lifecycle.LifecycleNode"])
+TRANSFORMS: Final = frozenset(
+    [
+        "builtins",
+        "numpy",
+        "numba",
+        "torch",
+        "jax",
+        "tensorflow",
+        "pytest",
+        "hypothesis",
+        "beartype",
+        "typeguard",
+        "overrides",
+        "deprecated",
+        "attr",
+        "attrs",
+        "pydantic",
+        "tenacity",
+        "retry",
+        "backoff",
+        "decorator",
+        "wrapt",
+    ]
+)  # packages whose decorators change a function, but register it nowhere
 TESTS: Final = frozenset(
     ["unittest.TestCase", "unittest.case.TestCase"]
 )  # a test runner creates objects of these classes

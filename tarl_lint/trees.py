@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 ATOMS: Final = frozenset(
@@ -38,6 +38,18 @@ def walk(*trees: ast.AST) -> Iterator[ast.AST]:
         inside = children(node)
         inside.reverse()
         pending += inside
+
+
+def outside_functions(body: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
+    """Yield statements and those inside them in source order, but not those in functions and classes."""
+    for statement in body:
+        yield statement
+        if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            continue
+        for part in (statement, *getattr(statement, "handlers", ()), *getattr(statement, "cases", ())):
+            yield from outside_functions(getattr(part, "body", ()))
+        for name in ("orelse", "finalbody"):
+            yield from outside_functions(getattr(statement, name, ()))
 
 
 def last_name(expr: ast.expr) -> str:

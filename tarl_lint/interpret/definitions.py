@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tarl_lint import catalog
 from tarl_lint.interpret import calls, expressions
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
@@ -13,6 +14,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import ClassInfo, Obj, Value, lineage, pointer
 from tarl_lint.models.ros import subscriptions
 from tarl_lint.models.smach import LATER
+from tarl_lint.read.module_names import KNOWN
 
 
 def define(ctx: Interpreter, s: ir.Define, frame: Frame) -> bool:
@@ -36,15 +38,18 @@ def decorated(
 ) -> Value:
     """Apply analysed decorators to a function or class; library decorators leave it unchanged.
 
-    A decorator that is a method of a library object, such as `@server.route("/")`, registers the function with it.
+    A decorator that is a method of a library object, such as `@server.route("/")`, registers the function with it. A
+    decorator of an unknown package, such as `@tool`, may register it too; this matters only if no file calls it.
     """
     for decorator in reversed(decorators):
         wrapper = expressions.evaluate(ctx, decorator, frame)
         maker = decorator.function if isinstance(decorator, ir.Call) else decorator
+        later = [o for o in value.objects if o.kind in LATER]
         if isinstance(maker, ir.Attribute) and _of_library(expressions.evaluate(ctx, maker.base, frame)):
-            for target in value.objects:
-                if target.kind in LATER:
-                    subscriptions.call_later(ctx, target, ())
+            for target in later:
+                subscriptions.call_later(ctx, target, ())
+        elif later and _of_unknown_package(expressions.evaluate(ctx, maker, frame)):
+            ctx.handed_over.update(later)
         if any(wraps(ctx, o) for o in wrapper.pts):
             call = ir.Call(decorator, (), (), s.pos, -1)
             value = calls.call_value(ctx, wrapper, ([value], {}), frame, call)
@@ -54,6 +59,11 @@ def decorated(
 
 def _of_library(value: Value) -> bool:
     return bool(value.pts) and all(o.kind == "lib" for o in value.pts)
+
+
+def _of_unknown_package(value: Value) -> bool:
+    packages = {o.name.partition(".")[0] for o in value.pts if o.kind == "ext"}
+    return bool(packages) and packages.isdisjoint(KNOWN | catalog.TRANSFORMS)
 
 
 def wraps(ctx: Interpreter, obj: Obj) -> bool:

@@ -35,6 +35,17 @@ def start_programs(ctx: Interpreter) -> None:
                 _plugin(ctx, statement, module)
             else:
                 _node_class(ctx, statement, program, starting)
+    _handed_over(ctx)
+
+
+def _handed_over(ctx: Interpreter) -> None:
+    """Run the functions that a package outside the files may call, since its decorator registered them."""
+    for target in sorted(ctx.handed_over, key=lambda o: str(o.key)):
+        if target.kind != "closure" or not isinstance(target.info, tuple):
+            continue
+        function, _, program, owner = target.info
+        if owner is None and (function.module, function.pos[0]) not in ctx.called:
+            subscriptions.call_when(ctx, "framework", target, [], "callback", program=program.path)
 
 
 def _main_function(ctx: Interpreter, statement: ir.Define, module: Obj) -> None:
@@ -108,16 +119,16 @@ def _framework_methods(ctx: Interpreter, obj: Obj, owner: Obj, info: ClassInfo) 
     cls = obj.info.info if isinstance(obj.info, Obj) else None
     external = _external(cls) if isinstance(cls, ClassInfo) else set()
     unknown = external - catalog.NODE_BASES or _called_by_others(ctx, obj, info)
-    for statement in info.statement.body if info.statement is not None else ():
+    for statement in definitions(info.statement.body) if info.statement is not None else ():
         if not isinstance(statement, ir.Define):
             continue
         name, function = statement.function.name, statement.function
         hooked = (unknown and not name.startswith("_")) or (external and name.startswith("on_"))
         hooked = hooked or (name == "run" and any("Thread" in e for e in external))
-        if not hooked or (function.module, function.pos[0]) in ctx.called:
+        if not (hooked or function.decorators) or (function.module, function.pos[0]) in ctx.called:
             continue
         for closure in _values(ctx, owner, name):
-            if closure.kind == "closure":
+            if closure.kind == "closure" and (hooked or closure in ctx.handed_over):
                 state = name == catalog.RUNS_STATE and any(e.startswith(catalog.STATES) for e in external)
                 _start_method(ctx, closure, obj, owner, [userdata.userdata(ctx, obj)] if state else [])
 
@@ -136,7 +147,7 @@ def _start_method(ctx: Interpreter, closure: Obj, obj: Obj, owner: Obj, given: l
 
 def _registers_itself(info: ClassInfo) -> bool:
     """Return whether `__init__` registers the callbacks; otherwise, outside code calls a method to register them."""
-    body = info.statement.body if info.statement is not None else ()
+    body = definitions(info.statement.body) if info.statement is not None else ()
     return any(
         isinstance(s, ir.Define) and s.function.name == "__init__" and starts(s.function) for s in body
     )

@@ -24,10 +24,17 @@ STARTING = re.compile(
 
 
 def definitions(body: Sequence[ir.Stmt]) -> Iterator[ir.Define | ir.Class]:
-    """Yield the functions and classes defined directly in a body."""
+    """Yield the functions and classes of a scope, including those defined in an `if`, a `try` or a `with`."""
     for statement in body:
         if isinstance(statement, (ir.Define, ir.Class)):
             yield statement
+        elif isinstance(statement, ir.If):
+            yield from definitions((*statement.body, *statement.orelse))
+        elif isinstance(statement, ir.Try):
+            handlers = (one for _, _, handler in statement.handlers for one in handler)
+            yield from definitions((*statement.body, *handlers, *statement.orelse, *statement.final))
+        elif isinstance(statement, ir.With):
+            yield from definitions(statement.body)
 
 
 def starts_node(function: ir.Function) -> bool:
@@ -37,7 +44,7 @@ def starts_node(function: ir.Function) -> bool:
 
 def registers(statement: ir.Class) -> bool:
     """Return whether a method of a class registers something or starts a node."""
-    return any(isinstance(s, ir.Define) and starts(s.function) for s in statement.body)
+    return any(isinstance(s, ir.Define) and starts(s.function) for s in definitions(statement.body))
 
 
 def starts(function: ir.Function) -> bool:

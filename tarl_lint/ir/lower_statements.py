@@ -9,6 +9,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.effect_free import OWN_PRINT, only_tells
 from tarl_lint.ir.lower_expressions import OPERATORS, Expressions, position
 from tarl_lint.ir.match_patterns import captures, conditions
+from tarl_lint.ir.program_exits import OWN_EXIT, ends_program, exception
 from tarl_lint.ir.scopes import Scope, collect, plain
 from tarl_lint.read.source import Module
 
@@ -20,7 +21,13 @@ NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations that a
 
 def lower_module(module: Module) -> ir.Program:
     """Lower the top level of a module."""
-    scope = Scope("module", "", plain=module.answer(plain), prints=not module.matches(OWN_PRINT))
+    scope = Scope(
+        "module",
+        "",
+        plain=module.answer(plain),
+        prints=not module.matches(OWN_PRINT),
+        exits=not module.matches(OWN_EXIT),
+    )
     lowering = Lowering(module.name)
     package = module.name if module.is_package else module.name.rpartition(".")[0]
     lowering.package = package
@@ -83,6 +90,9 @@ class Lowering(Expressions):
     def _evaluate(self, node: ast.Expr, scope: Scope) -> list[ir.Stmt]:
         if isinstance(node.value, ast.Constant) or only_tells(node.value, scope.module().prints):
             return []
+        if isinstance(node.value, ast.Call) and ends_program(node.value, builtin=scope.module().exits):
+            raised = self.expr(exception(node.value), scope)
+            return [ir.Raise(scope.next(), position(node), raised)]
         return [ir.Evaluate(scope.next(), position(node), self.expr(node.value, scope))]
 
     def _if(self, node: ast.If, scope: Scope) -> list[ir.Stmt]:

@@ -31,6 +31,7 @@ class Scope:
     around: dict[str, str] = field(default_factory=dict)
     plain: bool = False  # whether no expression in the file binds a name or yields
     prints: bool = False  # for a module: whether `print` is Python's built-in function
+    exits: bool = False  # for a module: whether `exit` and `quit` are Python's own functions
 
     def resolve(self, name: str) -> tuple[str, ScopeKind, int]:
         """Return the stored name, its kind, and the number of enclosing functions up to its owner."""

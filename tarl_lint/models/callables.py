@@ -154,9 +154,9 @@ def hold(ctx: Interpreter, objects: Iterable[Obj], targets: Sequence[Obj]) -> No
 
 
 def held_by(ctx: Interpreter, base: Value) -> list[Obj]:
-    """Return the callables that were passed to library objects earlier."""
+    """Return the callables that were passed to library objects earlier, or that a library's decorator replaced."""
     found = [v for o in base.pts if o.kind == "lib" and (v := ctx.store.get((o, HELD))) is not None]
-    return in_order(frozenset(o for v in found for o in v.pts))
+    return in_order(frozenset(o for v in found for o in v.pts) | (base.pts & ctx.handed_over))
 
 
 def answers(function: ir.Function) -> bool:

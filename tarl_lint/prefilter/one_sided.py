@@ -19,6 +19,7 @@ from tarl_lint.prefilter.by_words import code, whole
 from tarl_lint.read.module_names import KNOWN
 from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
+from tarl_lint.trees import outside_functions
 
 HEARS: Final = re.compile("|".join(whole(w) for w in (*catalog.SOURCE_WORDS, *sorted(catalog.LOOKUPS))))
 # matches the words of servers, which both receive and send
@@ -88,14 +89,15 @@ def _inherits_from_elsewhere(tree: ast.Module, ours: Set[str]) -> bool:
     """Return whether a class inherits from a class of an external package that is not part of Python or ROS."""
     known = KNOWN | ours
     names: set[str] = set()
-    for node in tree.body:
+    statements = [*outside_functions(tree.body)]
+    for node in statements:
         if isinstance(node, ast.ImportFrom) and node.level == 0:
             if (node.module or "").partition(".")[0] not in known:
                 names.update(alias.asname or alias.name for alias in node.names)
         elif isinstance(node, ast.Import):
             roots = {alias.asname or alias.name.partition(".")[0]: alias.name for alias in node.names}
             names.update(name for name, module in roots.items() if module.partition(".")[0] not in known)
-    bases = (base for node in tree.body if isinstance(node, ast.ClassDef) for base in node.bases)
+    bases = (base for node in statements if isinstance(node, ast.ClassDef) for base in node.bases)
     return bool(names) and any(_root(base) in names for base in bases)
 
 

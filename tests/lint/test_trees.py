@@ -3,10 +3,11 @@
 import ast
 import sys
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
-from tarl_lint.trees import children, walk
+from tarl_lint.trees import children, outside_functions, walk
 
 TEXTS = [
     Path(__file__).read_text(),
@@ -41,3 +42,29 @@ def test_functions_are_found_in_source_order():
     tree = ast.parse(TEXTS[1])
     lines = [n.lineno for n in walk(tree) if isinstance(n, (ast.FunctionDef, ast.ClassDef))]
     assert lines == sorted(lines)
+
+
+def test_statements_outside_functions_include_those_in_other_statements():
+    text = """
+        a = 1
+        if b:
+            c = 2
+        else:
+            d = 3
+        try:
+            e = 4
+        except F:
+            g = 5
+        else:
+            h = 6
+        finally:
+            i = 7
+        match j:
+            case 1:
+                k = 8
+        def no(): m = 9
+        class No: n = 10
+        with p: q = 11
+    """
+    found = outside_functions(ast.parse(dedent(text)).body)
+    assert [n.value.value for n in found if isinstance(n, ast.Assign)] == [1, 2, 3, 4, 5, 6, 7, 8, 11]

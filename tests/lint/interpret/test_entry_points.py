@@ -116,3 +116,139 @@ rospy.Subscriber("in", Float64, on)
 )
 def test_functions_that_are_not_entry_points_do_not_run(text):
     assert differing(HEAD + dedent(text)) == {}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(
+            """
+            if rospy.get_param("wanted"):
+                class Guarded(Node):
+                    def __init__(self):
+                        super().__init__("guarded")
+                        self.create_subscription(Float64, "own", self.on_own, 1)
+                    def on_own(self, msg):
+                        out.publish(msg)  # data
+            """,
+            id="a node class in an if",
+        ),
+        pytest.param(
+            """
+            try:
+                import wheel
+            except ImportError:
+                class Wheel(Node):
+                    def __init__(self):
+                        super().__init__("wheel")
+                        self.create_subscription(Float64, "own", self.on_own, 1)
+                    def on_own(self, msg):
+                        out.publish(msg)  # data
+            else:
+                def main():
+                    rospy.init_node("node")
+                    out.publish(last)  # data
+            """,
+            id="a node class in a handler, and main beside it",
+        ),
+        pytest.param(
+            """
+            class Plugin(framework.Plugin):
+                if rospy.get_param("fast"):
+                    def step(self):
+                        out.publish(last)  # data
+            Plugin()
+            """,
+            id="a method of a framework in an if",
+        ),
+    ],
+)
+def test_definitions_inside_other_statements_are_entry_points(text):
+    assert differing(HEAD + dedent(text)) == {}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(
+            """
+            @framework.tool
+            def drive(value):
+                out.publish(last)  # data
+            """,
+            id="a decorator of another package",
+        ),
+        pytest.param(
+            """
+            from framework import tool
+            @tool("name", retries=3)
+            def drive(value):
+                out.publish(last)  # data
+            """,
+            id="a call of an imported decorator",
+        ),
+        pytest.param(
+            """
+            class Skills(framework.Skills):
+                @framework.skill
+                def _drive(self):
+                    out.publish(last)  # data
+                def _inner(self):
+                    out.publish(last)  # clean
+            Skills()
+            """,
+            id="a private method",
+        ),
+        pytest.param(
+            """
+            import functools, numba
+            @functools.lru_cache
+            def kept(value):
+                out.publish(last)  # clean
+            @numba.jit
+            def fast(value):
+                out.publish(last)  # clean
+            """,
+            id="decorators that register nothing",
+        ),
+        pytest.param(
+            """
+            @framework.tool
+            def send(value):
+                out.publish(value)  # clean
+            send(1.0)
+            """,
+            id="a decorated function that the file calls",
+        ),
+    ],
+)
+def test_a_function_with_a_decorator_of_another_package_may_be_called(text):
+    assert differing(HEAD + dedent(text)) == {}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(
+            """
+            @framework.tool
+            def level(scale):
+                return rospy.wait_for_message("level", Float64)
+            out.publish(level.invoke({"scale": 2}))  # data
+            """,
+            id="a method of the decorated function calls it",
+        ),
+        pytest.param(
+            """
+            import functools
+            @functools.lru_cache
+            def level(scale):
+                return rospy.wait_for_message("level", Float64)
+            out.publish(level.cache_info())  # clean
+            """,
+            id="no method of a cached function",
+        ),
+    ],
+)
+def test_a_method_of_a_decorated_function_may_call_it(text):
+    assert differing(HEAD + dedent(text)) == {}
