@@ -12,7 +12,8 @@ CHANGES: Final = re.compile(
 TELLS: Final = re.compile(
     r"(?:send|publish|emit|log|print|write|say|speak|show|notify|call|draw|plot|display|imshow|save|dump|export|report"
     r"|get|is|has|check|assert|close|stop|shutdown|wait|sleep|spin|debug|info|warn|warning|error|broadcast|respond"
-    r"|reply|render|play|exec|execute|request|destroy|unregister|unsubscribe)(?:_|[A-Z]|$)"
+    r"|reply|render|play|exec|execute|request|destroy|unregister|unsubscribe|addn?w?str|addch|insn?w?str|insch)"
+    r"(?:_|[A-Z]|$)"
 )  # names of methods that only use their arguments, without storing them
 REGISTERS: Final = re.compile(
     r"(?:set|add|register|connect|bind|on|subscribe|install|attach|schedule)(?:_|[A-Z]|$)"

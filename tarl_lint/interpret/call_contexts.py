@@ -9,7 +9,7 @@ from tarl_lint.interpret.budget import IRRELEVANT_CALL_LIMIT, IRRELEVANT_CALLS_L
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, joins, recency, updates
+from tarl_lint.memory import heap, instances, joins, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
@@ -82,7 +82,7 @@ def _invoke(
     frame.guards |= frozenset(ctx.guards)
     frame.root_waits = caller.root_waits
     run = replay.run(ctx, frame, passed, lambda: _execute(ctx, frame, closure, passed))
-    result = run.result
+    result = shared_contexts.leave(ctx, frame, run.result) if frame.shared else run.result
     nullness.note_result(ctx, call, run.returned, frame)
     if ctx.thorough:
         ctx.unchanged.add(call)
@@ -279,6 +279,8 @@ def blank_instance(ctx: Interpreter, cls: Obj, frame: Frame, call: ir.Call) -> O
     obj = recency.intern(ctx, "instance", (frame.id, statement, call.slot, cls.key, *frame.turn), cls.name)
     obj.info = cls
     recency.renew(ctx, obj, frame)
+    if ctx.looked_up:
+        instances.note(ctx, obj, cls)
     return obj
 
 

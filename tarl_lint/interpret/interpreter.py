@@ -87,6 +87,7 @@ class Interpreter:
         self.made: set[Hashable] = set()  # keys of instantiated classes
         self.guests: set[object] = set()  # classes that only code outside of the analysed files instantiates
         self.plugins: set[object] = set()  # classes that a package declares as plugins
+        self.looked_up: set[Obj] = set()  # classes whose instances a library looks up
         self.handed_over: set[Obj] = set()  # functions with a decorator of a package that is not analysed
         # names of classes outside of the analysed files whose methods receive data or callbacks
         self.ended: set[str] = set()

@@ -60,6 +60,18 @@ def enter(ctx: Interpreter, frame: Frame, caller: Frame, passed: Arguments) -> A
     return frame.passed
 
 
+def leave(ctx: Interpreter, frame: Frame, result: Value) -> Value:
+    """Return the result of a call as its caller gets it.
+
+    Only a caller whose call runs reads it, so the conditions of the other calls do not decide it. Conditions inside the
+    calling expression, such as the choice between several callees, do.
+    """
+    ((called, _),) = conditions(ctx, frame)
+    instead = frozenset(ctx.guards)
+    deps = frozenset(ctx.graph.under(dep, called, instead) for dep in result.deps)
+    return Value(deps, result.pts, result.consts)
+
+
 def _arriving(ctx: Interpreter, frame: Frame, parameter: Hashable, value: Value) -> Value:
     """Return an argument as passed through its parameter's node."""
     if not value.deps:

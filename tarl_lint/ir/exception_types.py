@@ -20,6 +20,8 @@ UNKNOWN: Final = ""  # name of an exception whose class is not known
 OTHER: Final = "?"  # name of a handler's class that is not known
 GENERAL: Final = "Exception"
 ALL: Final = "BaseException"
+# builtin exceptions that no failing call raises
+NO_ERRORS: Final = frozenset(["KeyboardInterrupt", "SystemExit", "GeneratorExit"])
 BUILTIN: Final[Mapping[str, frozenset[str]]] = {
     name: frozenset(base.__name__ for base in cls.__mro__)
     for name, cls in vars(builtins).items()
@@ -70,10 +72,8 @@ class ExceptionTypes:
         above, whole = self._above(name)
         if not handled.isdisjoint(above):
             return None if above & self.several else True
-        if not whole:
-            return (
-                True if GENERAL in handled else None
-            )  # by convention, classes of libraries inherit from Exception
+        if not whole:  # by convention, classes of libraries inherit from Exception
+            return True if GENERAL in handled else False if handled <= NO_ERRORS else None
         return None if above & self.several or not all(map(self._is_class, handled)) else False
 
     def of_libraries(self, handled: Handled) -> list[str]:

@@ -141,6 +141,18 @@ class Graph:
         self._lead(dep, node)
         return node
 
+    def under(self, dep: int, decision: int, instead: Branches) -> int:
+        """Return a copy of a node that has other conditions instead of a decision, for readers to which it applies."""
+        branches = self.branches[dep]
+        left = frozenset(branch for branch in branches if branch[0] != decision)
+        if len(left) == len(branches):
+            return dep
+        node = self.node((dep, "under", decision, instead), self.places[dep], left | instead)
+        self.copies.add(node)
+        self.data[node].add(dep)
+        self._lead(dep, node)
+        return node
+
     def meets(self, key: Hashable, deps: Nodes, *, carriers: bool) -> bool:
         """Return whether a field has too many values for separate nodes, or has a merged node already.
 

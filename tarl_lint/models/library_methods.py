@@ -7,7 +7,7 @@ from tarl_lint.interpret import call_contexts
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap
+from tarl_lint.memory import heap, instances
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import (
     NONE,
@@ -121,6 +121,8 @@ def _unknown_method(
 ) -> Value:
     if (drawing := drawings.drawn_into(ctx, base, arguments, frame, call)) is not None:
         return drawing
+    if (found := instances.looked_up(ctx, name, (*arguments[0], *arguments[1].values()))).pts:
+        return found
     if name == "join" and not base.pts:
         arguments = strings.keys_joined(ctx, arguments, frame, call)
     callables.call_back(ctx, arguments, frame, call)

@@ -88,6 +88,31 @@ def test_the_conditions_of_all_callers_decide_whether_a_shared_call_runs(tmp_pat
     assert [f.kind for f in analyse([tmp_path]).flows] == ["implicit"]
 
 
+RESULT = """
+import rospy
+pub = rospy.Publisher("out", F)
+chosen = rospy.Publisher("chosen", F)
+scale = rospy.get_param("scale")
+def scaled(x):
+    return x * scale
+def on(msg):
+    if msg.data > 0:
+        rospy.loginfo(scaled(1))
+        value = scaled(2)
+    else:
+        value = 0
+    pub.publish(scaled(3))
+    chosen.publish(value)
+rospy.Subscriber("in", F, on)
+"""
+
+
+@pytest.mark.usefixtures("sharing")
+def test_the_conditions_of_other_callers_do_not_decide_the_result_of_a_shared_call(tmp_path):
+    (tmp_path / "node.py").write_text(RESULT)
+    assert [(f.sink.topics, f.kind) for f in analyse([tmp_path]).flows] == [(("chosen",), "implicit")]
+
+
 @pytest.mark.usefixtures("sharing")
 def test_each_call_that_supplies_a_callback_stays_a_separate_subscription(tmp_path):
     (tmp_path / "node.py").write_text(

@@ -252,3 +252,36 @@ def test_a_function_with_a_decorator_of_another_package_may_be_called(text):
 )
 def test_a_method_of_a_decorated_function_may_call_it(text):
     assert differing(HEAD + dedent(text)) == {}
+
+
+@pytest.mark.parametrize(
+    ("look", "mark"),
+    [
+        ("self.query_one(View).level", "data"),
+        ("self.find_child(View, name='a').level", "data"),
+        ("self.query_one(Base).level", "data"),
+        ("self.query_one(Other).level", "clean"),
+        ("self.describe(View).level", "clean"),
+    ],
+)
+def test_a_library_may_return_the_instance_of_a_class_that_it_looks_up(look, mark):
+    text = f"""
+        class Base(framework.Widget):
+            pass
+        class View(Base):
+            def __init__(self):
+                super().__init__()
+                self.level = 0.0
+            def on_level(self, msg):
+                self.level = msg.data
+        class Other(framework.Widget):
+            level = 1.0
+        class App(framework.App):
+            def compose(self):
+                rospy.Subscriber("level", Float64, View().on_level)
+                Other()
+            def action_send(self):
+                out.publish({look})  # {mark}
+        App()
+    """
+    assert differing(HEAD + dedent(text)) == {}

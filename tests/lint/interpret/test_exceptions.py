@@ -263,3 +263,27 @@ def test_a_handler_of_a_class_of_a_library_catches_what_a_failing_call_raises():
     assert flows(body.format(handled="tf2.TransformException")) == []
     assert flows(body.format(handled="(tf.LookupException, tf.ExtrapolationException)")) == []
     assert flows(body.format(handled="KeyError")) == ["implicit"]
+
+
+@pytest.mark.parametrize(
+    ("handled", "kinds"),
+    [
+        ("KeyboardInterrupt", []),
+        ("(SystemExit, GeneratorExit)", []),
+        ("OSError", ["implicit"]),
+        ("(KeyboardInterrupt, OSError)", ["implicit"]),
+    ],
+)
+def test_a_failing_call_raises_no_exception_that_ends_the_program(handled, kinds):
+    body = f"""\
+    while True:
+        try:
+            if self.ready:
+                self.library.parse(msg.data)
+        except {handled}:
+            break
+        except Exception:
+            pass
+        self.pub.publish(1)
+    """
+    assert flows(body) == kinds
