@@ -10,7 +10,7 @@ from collections.abc import Callable, Hashable, Mapping
 from tarl_lint.interpret import dunder_methods, nullness
 from tarl_lint.interpret.interpreter import NONE_ONLY, Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, reachable_data
+from tarl_lint.memory import heap, object_contents
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import (
     BOTTOM,
@@ -172,7 +172,7 @@ def _always_true(ctx: Interpreter, obj: Obj) -> bool:
     if obj.kind == "instance":
         return not any(heap.read_field(ctx, obj, name).pts for name in ("__bool__", "__len__"))
     if obj.kind in MESSAGES:
-        return obj.parent is None or reachable_data.defined(ctx, obj) != ""
+        return obj.parent is None or object_contents.defined(ctx, obj) != ""
     return obj.info is BY_CLASS
 
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, field
 
 from tarl_lint.interpret.interpreter import Interpreter
-from tarl_lint.memory import heap
-from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.heap import ANY, HOLLOW
+from tarl_lint.memory.cached_data import Contents, Inside, Split
+from tarl_lint.memory.heap import HOLLOW
+from tarl_lint.memory.object_contents import contents, note
 from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.recency import MAX_NESTING
-from tarl_lint.memory.same_reads import unchanged
-from tarl_lint.memory.store import Inside
 from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value, in_order
-from tarl_lint.message_fields import FIELDS
 
 # maximum number of visited objects of a result that is not cached, since finding it again is as fast as checking it
 FEW = 4
@@ -24,7 +22,9 @@ class Visit:
     """State of one traversal: the nodes inside visited objects, and the objects with data of each points-to set."""
 
     known: dict[Obj, Nodes] = field(default_factory=dict)
-    laden: dict[frozenset[Obj], list[Obj]] = field(default_factory=dict)
+    read: list[Contents] = field(default_factory=list)  # contents of the visited objects
+    empty: set[Obj] = field(default_factory=set)  # objects without data to which a visited object points
+    receivers: frozenset[Obj] | None = None  # receivers of the running methods; None until they are needed
 
 
 def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
@@ -38,30 +38,75 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
             ctx.store.doubt(obj)
             return NONE
     store = ctx.store
+    visit = Visit()
     if len(objects) <= FEW and objects not in store.wide:
-        visit = Visit()
         nodes = _all(ctx, objects, visit)
         if len(visit.known) > FEW:
             ctx.count(len(visit.known))
             store.wide.add(objects)
+        for own in visit.read:
+            note(ctx, own)
+        for obj in visit.empty:
+            store.reads.look(obj)
+        if visit.receivers is not None:
+            _note_receivers(ctx)
         return nodes
-    outer = store.reads
-    key = (objects, ctx.stack[-1] if ctx.stack else None)
+    receivers = visit.receivers = _receivers(ctx)
+    key = (objects, receivers)
     last = store.insides.get(key)
-    if last is not None:
-        fresh = last.tick == store.tick and last.grown == ctx.graph.grown
-        if fresh or _still(ctx, last):
-            outer.add(last.reads)
-            return last.nodes
+    if last is None or not _valid(ctx, last):
+        last = store.insides[key] = _searched(ctx, objects, visit)
+    store.reads.add(last.reads)
+    if last.receivers:
+        _note_receivers(ctx)
+    return last.nodes
+
+
+def _searched(ctx: Interpreter, objects: frozenset[Obj], visit: Visit) -> Inside:
+    """Return the nodes inside objects, with all that they depend on."""
+    store, outer = ctx.store, ctx.store.reads
     reads = store.reads = ctx.graph.reads = Reads()
     grown, tick = ctx.graph.grown, store.tick
-    visit = Visit()
     nodes = _all(ctx, objects, visit)
     ctx.count(len(visit.known))
     store.reads = ctx.graph.reads = outer
-    outer.add(reads)
-    store.insides[key] = Inside(nodes, reads, *store.found_by(reads), tick, grown)
-    return nodes
+    met = any(obj.kind == "instance" for obj in visit.known)
+    return Inside(nodes, _reads(reads, visit.read, visit.empty), visit.read, visit.empty, met, tick, grown)
+
+
+def _reads(graph: Reads, read: Sequence[Contents], empty: Set[Obj]) -> Reads:
+    """Return the reads of a search that has read these contents; `graph` has what it read of the graph."""
+    reads = Reads(held=graph.held, facts=graph.facts)
+    reads.keys.update(*[own.keys for own in read])
+    reads.stored.update(*[own.stored for own in read])
+    for own in read:
+        reads.objects.update(own.objects)
+    reads.objects.update([(obj, obj.stamp) for obj in empty])
+    return reads
+
+
+def _valid(ctx: Interpreter, last: Inside) -> bool:
+    """Return whether a cached result is still valid: all objects that it was found in have the same data."""
+    store, graph = ctx.store, ctx.graph
+    if last.tick == store.tick and last.grown == graph.grown:
+        return True
+    if any(obj.laden for obj in last.empty):
+        return False
+    now = [contents(ctx, own.obj) for own in last.read]
+    known = last.reads.objects
+    if now != last.read or any(known[obj] != obj.stamp for obj in last.empty):
+        for old, new in zip(last.read, now, strict=True):
+            if old is not new and not new.alike(old):
+                return False
+        last.read = now
+        last.reads = _reads(last.reads, now, last.empty)
+    reads = last.reads
+    if reads.held and not graph.as_passed(reads.held):
+        return False
+    if any(question(of) != answer for (question, of), answer in reads.facts.items()):
+        return False
+    last.tick, last.grown = store.tick, graph.grown
+    return True
 
 
 def _all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit) -> Nodes:
@@ -70,15 +115,6 @@ def _all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit) -> Nodes:
     for obj in in_order(objects):
         nodes |= _deep(ctx, obj, visit, 0)
     return nodes
-
-
-def _still(ctx: Interpreter, last: Inside) -> bool:
-    """Return whether a cached result is still valid although something was stored since."""
-    store, graph = ctx.store, ctx.graph
-    if not unchanged(last.reads, last.found, last.stored, store, graph):
-        return False
-    last.tick, last.grown = store.tick, graph.grown
-    return True
 
 
 def _deep(ctx: Interpreter, obj: Obj, visit: Visit, depth: int, *, counted: bool = False) -> Nodes:
@@ -90,6 +126,7 @@ def _deep(ctx: Interpreter, obj: Obj, visit: Visit, depth: int, *, counted: bool
     if obj.kind in HOLLOW or depth > MAX_NESTING:
         return NONE
     if not obj.laden:
+        visit.empty.add(obj)
         ctx.store.doubt(obj)
         return NONE
     known = visit.known
@@ -97,69 +134,23 @@ def _deep(ctx: Interpreter, obj: Obj, visit: Visit, depth: int, *, counted: bool
     if inside is not None:
         return inside
     known[obj] = NONE
-    if obj.kind == "instance" and _node_like(ctx, obj):
+    if obj.kind == "instance" and _node_like(ctx, obj, visit):
         return NONE
-    ctx.store.look(obj)
-    definition = defined(ctx, obj)
-    overwritten = definition != "" and replaced(ctx, obj, definition)
-    found: set[int] = set()
-    whole = not counted or ANY in obj.fields
-    if not overwritten and whole:
-        found |= heap.content(ctx, obj).deps
-    get = ctx.store.get
-    for name in list(obj.fields):
-        value = get((obj, name)) if name != ANY or not overwritten else None
-        if value is not None:
-            if value.deps:
-                found |= ctx.settled(value) if name.isidentifier() else value.deps
-            if value.pts:
-                found |= _behind(ctx, value, visit, depth + 1)
-    for sub in _parts(ctx, obj, overwritten):
-        found |= _deep(ctx, sub, visit, depth + 1, counted=not overwritten)
-    inside = frozenset(found)
+    own = contents(ctx, obj)
+    visit.read.append(own)
+    whole = not counted or own.summarised
+    found = [own.nodes, own.summary] if whole else [own.nodes]
+    for number, value in enumerate(own.steps):
+        inner = ctx.settled(value) if number in own.constants else _behind(ctx, value, visit, depth + 1)
+        if inner:
+            found.append(inner)
+    found += [_deep(ctx, sub, visit, depth + 1, counted=not own.overwritten) for sub in own.parts]
+    inside = NONE.union(*found)
     if whole:
         known[obj] = inside
     else:
         del known[obj]
     return inside
-
-
-def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
-    """Return the parts of an object that can hold data of their own.
-
-    Parts without fields are left out, since they hold only data of the enclosing object. If such a part gets
-    a field later, readers of the enclosing object are notified.
-    """
-    if not obj.subs:
-        return []
-    ctx.look(obj.subs.values())
-    return [
-        sub
-        for name, sub in obj.subs.items()
-        if (sub.fields or sub.subs or overwritten or not sub.laden)
-        and sub is not obj
-        and ctx.store.get((obj, name)) is None
-    ]
-
-
-def defined(ctx: Interpreter, obj: Obj) -> str:
-    """Return the name of a message's definition, also for a nested message; empty if unknown."""
-    if obj.parent is None or not obj.whole.defined:
-        return obj.whole.defined
-    outer = FIELDS.get(defined(ctx, obj.parent), {})
-    return outer.get(obj.name, "")
-
-
-def replaced(ctx: Interpreter, obj: Obj, kind: str) -> bool:
-    """Return whether this run has overwritten every field of a message, or of a copy of it."""
-    fields = FIELDS.get(kind)
-    if fields is not None:
-        ctx.store.reads.look(obj)
-    return fields is not None and all(
-        heap.written_here(ctx, obj, name)
-        or (inner != "" and name in obj.subs and replaced(ctx, obj.subs[name], inner))
-        for name, inner in fields.items()
-    )
 
 
 def _behind(ctx: Interpreter, value: Value, visit: Visit, depth: int) -> Nodes:
@@ -173,40 +164,60 @@ def _inside_all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit, depth: 
 
     Many fields point to the same objects, so most of these were visited before.
     """
-    laden = visit.laden.get(objects)
-    if laden is None:
-        laden = visit.laden[objects] = _laden(ctx, objects)
+    laden = _laden(ctx, objects, visit)
     if depth > MAX_NESTING or not laden:
         return NONE
-    insides = [*map(visit.known.get, laden)]
+    known = visit.known
+    insides = [*map(known.get, laden)]
     if None in insides:
-        insides = [_deep(ctx, obj, visit, depth) for obj in laden]
-    full = [inside for inside in insides if inside]
+        insides = [
+            inside if inside is not None else _deep(ctx, obj, visit, depth)
+            for obj, inside in zip(laden, insides, strict=True)
+        ]
     # a single set is reused, because its hash is already computed
+    if len(insides) == 1:
+        return insides[0] or NONE
+    full = [inside for inside in insides if inside]
     return full[0] if len(full) == 1 else NONE.union(*full)
 
 
-def _laden(ctx: Interpreter, objects: frozenset[Obj]) -> list[Obj]:
+def _laden(ctx: Interpreter, objects: frozenset[Obj], visit: Visit) -> Sequence[Obj]:
     """Return the objects that may contain data, in order of creation; record that the others contain none."""
-    found = []
-    for obj in in_order(objects):
-        if obj.kind in HOLLOW:
-            continue
-        if obj.laden:
-            found.append(obj)
-        else:
-            ctx.store.doubt(obj)
-    return found
+    store = ctx.store
+    split = store.split.get(objects)
+    if split is None or split.loaded != store.shared.loaded:
+        known = [obj for obj in in_order(objects) if obj.kind not in HOLLOW]
+        empty = frozenset(obj for obj in known if not obj.laden)
+        split = store.split[objects] = Split(
+            tuple(obj for obj in known if obj.laden), empty, list(empty), store.shared.loaded
+        )
+    if split.empty:
+        visit.empty |= split.empty
+        if split.doubted:
+            split.doubted = [obj for obj in split.doubted if not store.doubt(obj)]
+    return split.laden
 
 
-def _node_like(ctx: Interpreter, obj: Obj) -> bool:
+def _node_like(ctx: Interpreter, obj: Obj, visit: Visit) -> bool:
     """Return whether an instance is a program rather than data, so that passing it on passes no data."""
     info = obj.info.info if isinstance(obj.info, Obj) else None
     if not isinstance(info, ClassInfo):
         return False
-    return info.opaque or any(_is_self(ctx, f, obj) for f in ctx.stack if "self" in f.fields)
+    if info.opaque:
+        return True
+    if visit.receivers is None:
+        visit.receivers = _receivers(ctx)
+    return obj in visit.receivers
 
 
-def _is_self(ctx: Interpreter, frame: Frame, obj: Obj) -> bool:
-    value = ctx.store.get((frame, "self"))
-    return value is not None and obj in value.pts
+def _receivers(ctx: Interpreter) -> frozenset[Obj]:
+    """Return the receivers of the running methods."""
+    values = (ctx.store.peek((frame, "self")) for frame in ctx.stack if "self" in frame.fields)
+    return frozenset[Obj]().union(*(value.pts for value in values if value is not None))
+
+
+def _note_receivers(ctx: Interpreter) -> None:
+    """Make the running call depend on the receivers of the running methods."""
+    for frame in ctx.stack:
+        if "self" in frame.fields:
+            ctx.store.get((frame, "self"))

@@ -58,6 +58,7 @@ class Shared:
     dirty: set[Root] = field(default_factory=set)
     # key → the tuple that stands for it in the records of calls, which would otherwise keep a tuple for each read
     one: dict[Key, Key] = field(default_factory=dict)
+    loaded: int = 0  # number of objects that turned out to hold data
     edition: int = 0  # number of changes so far of a class, a `from … import *` or a `__dict__`
 
     def read(self, key: Key, root: Root) -> None:
@@ -111,6 +112,7 @@ class Shared:
             if current.laden:
                 continue
             current.laden = True
+            self.loaded += 1
             current.changed(DATA)
             self.dirty |= self._others(self.doubters.pop(current, None), root)
             pending += current.inside

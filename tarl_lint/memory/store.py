@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
+from tarl_lint.memory.cached_data import Contents, Inside, Split
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.shared import BORN, Root, Shared
@@ -22,18 +23,6 @@ def private(key: Key) -> bool:
     """Return whether a variable is visible only inside its function call."""
     owner = key[0]
     return isinstance(owner, Frame) and not owner.captured
-
-
-@dataclass(slots=True, eq=False)
-class Inside:
-    """A cached result of `deep`: the data inside objects, and the reads that the result depends on."""
-
-    nodes: frozenset[int]
-    reads: Reads
-    found: dict[Key, Value | None]
-    stored: dict[Key, bool]
-    tick: int
-    grown: int  # value of `Graph.grown` when the result was cached
 
 
 def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - the signature of `gather`
@@ -64,6 +53,11 @@ class Store:
     insides: dict[object, Inside] = field(default_factory=dict)  # cached results of `deep`
     wide: set[frozenset[Obj]] = field(default_factory=set)  # few objects from which `deep` visits many
     tick: int = 0  # number of changes so far of the state outside of frames
+    split: dict[frozenset[Obj], Split] = field(default_factory=dict)
+    versions: dict[Obj, int] = field(
+        default_factory=dict
+    )  # outermost object → `tick` of the last change inside
+    contents: dict[Obj, Contents] = field(default_factory=dict)
     elsewhere: dict[Key, Value | None] = field(
         default_factory=dict
     )  # key → value that other roots may store while this one waits; None if they store none
@@ -191,6 +185,7 @@ class Store:
         self.reads.written.add(key)
         if owner.kind != "frame":
             self.tick += 1
+            self.versions[owner.outermost or owner] = self.tick
         noted = owner.fields.get(name)
         laden = bool(deps)
         if noted is None or (pts is not noted and not pts <= noted):
@@ -211,7 +206,14 @@ class Store:
                 hidden[key] = now.get(key)
             layer[key] = now[key] = value
         self.reads.written.update(delta)
+        self._change(delta)
+
+    def _change(self, keys: Iterable[Key]) -> None:
+        """Record a change of the values of some keys."""
         self.tick += 1
+        versions, tick = self.versions, self.tick
+        for owner, _ in keys:
+            versions[owner.outermost or owner] = tick
 
     def _note(self, key: Key, held: frozenset[Obj]) -> bool:
         """Record the key that holds objects; return whether one of these objects holds data."""
@@ -225,15 +227,16 @@ class Store:
                 obj.inside[owner] = None
         return laden
 
-    def doubt(self, obj: Obj) -> None:
-        """Record that this run found no data inside an object."""
+    def doubt(self, obj: Obj) -> bool:
+        """Record that this run found no data inside an object; return whether other runs can store data there."""
         self.reads.look(obj)
         if self.isolated(obj):
-            return
+            return False
         doubters = self.shared.doubters.get(obj)
         if doubters is None:
             doubters = self.shared.doubters[obj] = set()
         doubters.add(self.root)
+        return True
 
     def look(self, obj: Obj) -> None:
         """Record that this run depends on the set of an object's fields."""
@@ -248,7 +251,7 @@ class Store:
             self.layers.append({})
             self.hidden.append({})
             return
-        self.tick += 1
+        self._change(delta)
         self.layers.append(dict(delta))
         self.hidden.append({key: self.now.get(key) for key in delta})
         self.now.update(delta)
@@ -256,8 +259,8 @@ class Store:
 
     def pop(self) -> Delta:
         """Close the top layer and return it."""
-        self.tick += 1
         hidden = self.hidden.pop()
+        self._change(hidden)
         self.reads.written.difference_update(hidden)
         self.reads.left += 1
         now = self.now

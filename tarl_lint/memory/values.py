@@ -39,6 +39,7 @@ class Obj:
         "changes",
         "defined",
         "depth",
+        "edition",
         "elements",
         "fields",
         "holders",
@@ -77,6 +78,7 @@ class Obj:
             parent.laden if parent is not None else kind in MESSAGES
         )  # whether this object may contain data, at any depth
         self.cells = 0  # number of nested elements tracked separately in this object so far
+        self.edition = 0  # number of changes of this object and of its parts; only of an outermost object
         self.stamp = 0  # version of this object: the length of `changes`
         self.changes: list[
             str | Obj | None
@@ -119,6 +121,7 @@ class Obj:
     def changed(self, added: str | Obj | None = None) -> None:
         """Record a change: an added field or part, the first data (DATA), or None for a change of meaning."""
         self.stamp += 1
+        (self.outermost or self).edition += 1
         self.changes.append(added)
 
     def release(self) -> None:

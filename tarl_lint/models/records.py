@@ -10,7 +10,7 @@ from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, reachable_data, recency, updates
+from tarl_lint.memory import heap, object_contents, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, KEYS, item_field
 from tarl_lint.memory.values import (
@@ -200,7 +200,7 @@ def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
     obj = recency.allocate(ctx, kinds.pop() if kinds else "lib", frame, slot)
     if all(o.info is BY_CLASS for o in value.pts):
         obj.describe(BY_CLASS)
-    definitions = {reachable_data.defined(ctx, o) for o in value.pts}
+    definitions = {object_contents.defined(ctx, o) for o in value.pts}
     defined = definitions.pop() if len(definitions) == 1 else ""
     if defined != obj.defined:
         obj.changed()

@@ -13,6 +13,7 @@ from tarl_lint.memory import (
     abstract_gc,
     heap,
     joins,
+    object_contents,
     reachable_data,
     recency,
     symbolic_names,
@@ -533,11 +534,11 @@ def test_data_found_inside_many_objects_is_cached_and_the_cache_stays_up_to_date
 
 def test_the_definition_of_a_message_gives_the_definitions_of_its_parts(ctx):
     message = made(ctx, "message", "m")
-    assert reachable_data.defined(ctx, message.sub("linear")) == ""
+    assert object_contents.defined(ctx, message.sub("linear")) == ""
     message.defined = "Twist"
-    assert reachable_data.defined(ctx, message) == "Twist"
-    assert reachable_data.defined(ctx, message.sub("linear")) == "Vector3"
-    assert reachable_data.defined(ctx, message.sub("unknown")) == ""
+    assert object_contents.defined(ctx, message) == "Twist"
+    assert object_contents.defined(ctx, message.sub("linear")) == "Vector3"
+    assert object_contents.defined(ctx, message.sub("unknown")) == ""
 
 
 def test_a_message_counts_as_replaced_when_all_of_its_fields_are_replaced(ctx):
@@ -545,18 +546,18 @@ def test_a_message_counts_as_replaced_when_all_of_its_fields_are_replaced(ctx):
     message.defined, message.info = "Vector3", 7
     for name in "xy":
         ctx.store.put((message, name), ONE)
-    assert not reachable_data.replaced(ctx, message, "Vector3")
+    assert not object_contents.replaced(ctx, message, "Vector3")
     assert reachable_data.deep(ctx, frozenset([message])) == {1, 7}
     ctx.store.put((message, "z"), ONE)
-    assert reachable_data.replaced(ctx, message, "Vector3")
+    assert object_contents.replaced(ctx, message, "Vector3")
     assert reachable_data.deep(ctx, frozenset([message])) == {1}
-    assert not reachable_data.replaced(ctx, message, "Unknown")
+    assert not object_contents.replaced(ctx, message, "Unknown")
     twist = made(ctx, "message", "t")
     twist.defined = "Twist"
     ctx.store.put((twist, "linear"), ONE)
     for name in "xyz":
         ctx.store.put((twist.sub("angular"), name), TWO)
-    assert reachable_data.replaced(ctx, twist, "Twist")
+    assert object_contents.replaced(ctx, twist, "Twist")
 
 
 # --- names --------------------------------------------------------------------------------------------
