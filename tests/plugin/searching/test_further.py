@@ -128,7 +128,7 @@ def test_an_offset_of_a_literal_zero_is_refined_half_as_often() -> None:
 
 def test_constants_refused_under_a_guard_may_be_combined_under_the_same_guard() -> None:
     search = Sweep(GAINS[:2], mutations, (ALWAYS, WET), world(lambda *_: 0.0), GOAL)
-    first, second = search.units
-    search.refused = {(first, ALWAYS), (second, ALWAYS), (first, WET)}
-    assert list(search.combining.leaders(ALWAYS)) == []
-    assert search.refused == {(first, WET)}
+    first, second = search.attempts.units
+    search.attempts.refused = {(first, ALWAYS), (second, ALWAYS), (first, WET)}
+    assert list(search.attempts.combining.leaders(ALWAYS)) == []
+    assert search.attempts.refused == {(first, WET)}

@@ -101,7 +101,7 @@ def test_if_there_is_no_gentler_repair_the_search_for_one_takes_few_episodes() -
     kept = searched((*many, CRUISE), {CRUISE: (0.3, 0.5)})
     slow = searched((*many, CRUISE), {CRUISE: (0.3, 0.5)}, {CRUISE: 3 * STEPS})
     assert order(kept, 1) == order(slow, 1) == [CRUISE]
-    assert slow.trials.spent <= kept.trials.spent + 12
+    assert slow.attempts.trials.spent <= kept.attempts.trials.spent + 12
 
 
 def test_a_repair_of_a_getter_changes_only_the_calls_that_need_it() -> None:

@@ -101,7 +101,7 @@ def test_a_factor_is_tried_before_an_offset_that_also_holds() -> None:
 def test_named_constants_get_near_and_moderate_steps_before_literals_while_nothing_gains() -> None:
     search = restoring({INNER: 2.2, NAMED: 0.65}, window=0.1, harm=0.3)
     assert next(search.candidates()).mutations[0].operand == NAMED
-    assert not any("→" in label for label in search.trials.labels)
+    assert not any("→" in label for label in search.attempts.trials.labels)
 
 
 def test_a_named_constant_of_a_helper_is_tried_without_a_condition_before_a_literal() -> None:
@@ -117,7 +117,7 @@ def test_a_named_constant_of_a_helper_is_tried_without_a_condition_before_a_lite
 def test_an_offset_is_accepted_after_few_runs_if_no_plainer_change_holds() -> None:
     search = restoring({OFFSET: 2.2}, window=0.2)
     assert next(search.candidates()).mutations[0].operand == OFFSET
-    assert search.trials.spent < 30
+    assert search.attempts.trials.spent < 30
 
 
 @settings(max_examples=25, deadline=None)
@@ -128,7 +128,7 @@ def test_a_narrow_window_near_the_original_is_found_soon(factor: float, smaller:
     search = restoring({NAMED: right}, window=0.14, harm=3.0)
     found = next(search.candidates())
     assert found.mutations[0].operand == NAMED
-    assert search.trials.spent <= 60
+    assert search.attempts.trials.spent <= 60
 
 
 def test_a_named_constant_without_effect_in_small_steps_is_tried_before_a_literal() -> None:

@@ -85,7 +85,7 @@ def test_the_search_for_smaller_changes_takes_few_episodes_if_there_is_none() ->
     search = searched((HOTTEST, *many), {HOTTEST: (2.0, 2.4)})
     assert order(search, 1) == [HOTTEST]
     confirming, halfway = 6, 1
-    assert search.trials.spent == confirming + 2 * OTHERS + halfway + search.trials.beside
+    assert search.attempts.trials.spent == confirming + 2 * OTHERS + halfway + search.attempts.trials.beside
 
 
 def test_the_value_halfway_to_the_original_one_comes_first_if_it_restores_as_much_reward() -> None:
@@ -181,7 +181,7 @@ def test_every_confirmed_change_is_examined(seed: int) -> None:
         for candidate in search.candidates():
             examined.add(candidate)
     assert len(examined) > 1
-    assert search._settled.held <= examined
+    assert search.attempts._settled.held <= examined
 
 
 def test_a_small_step_that_gains_something_is_followed_by_larger_ones() -> None:

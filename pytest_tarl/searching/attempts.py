@@ -1,0 +1,204 @@
+"""Try single changes in the drifted world, each confirmed on further seeds, and keep what they gained.
+
+Before a confirmed change is yielded, the changes that a maintainer would prefer to it are tried.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.acting import Acting
+from pytest_tarl.searching.adjusting import Adjusting
+from pytest_tarl.searching.combining import Combining
+from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.preferring import Preferences
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
+from pytest_tarl.searching.units import Scope, Unit, everywhere
+from pytest_tarl.searching.uses import Uses
+from tarl_lint.model import Operand
+
+if TYPE_CHECKING:
+    import numpy as np
+
+FLIP = -1.0  # factor that flips the sign
+# maximum number of units to try with the other sign, among those that gained with a smaller value
+FLIPPED = 3
+SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
+
+
+class Attempts:
+    """The changes that one search has tried, and the gains of its units; see `Sweep` for the arguments.
+
+    `parts` maps a constant to its uses. Each turn runs the changes of a step on the seed of another pair.
+    """
+
+    def __init__(
+        self,
+        units: tuple[Unit, ...],
+        mutate: Mutate,
+        guards: Sequence[Guard],
+        trials: Trials,
+        goal: Goal,
+        *,
+        parts: Mapping[Unit, tuple[Unit, ...]] = MappingProxyType({}),
+        late: tuple[Unit, ...] = (),
+        generator: np.random.Generator | None = None,
+        proposed: bool = False,
+        weaker: Callable[[Operand, float], bool] = lambda _, __: False,
+        given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
+        scope: Scope = everywhere,
+        interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
+    ) -> None:
+        self.units = units
+        self.mutate = mutate
+        self.guards = guards
+        self.trials = trials
+        self.goal = goal
+        self.late = late
+        self.generator = generator
+        self.proposed = proposed
+        self.weaker = weaker
+        self.given = given
+        self.scope = scope
+        self.interlude = interlude
+        self.slack = SLACK * goal.wanted
+        self.turn = 0
+        # units that were confirmed and yielded, but that the caller refused
+        self.refused: set[tuple[Unit, Guard]] = set()
+        self._acting = Acting(trials, goal)
+        self.gains = Gains(self.slack, proposed, None if proposed else self._acting)
+        self.uses = Uses(self, parts)
+        self.preferences = Preferences(self)
+        self.combining = Combining(self)
+        self.adjusting = Adjusting(self)
+        self._tried: set[Candidate] = set()
+        self._settled = Settled()
+
+    @property
+    def pair(self) -> int:
+        """Return the index of the pair on whose seed the changes of the present turn run."""
+        return self.turn % len(self.goal.pairs)
+
+    def sweep(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Try one factor on several operands, then refine the best one."""
+        yield from self.interlude(self.gains.best())
+        pair = self.pair
+        self.turn += 1
+        yield from self.each(factor, guard, among, pair)
+        if 0.0 < factor < 1.0:
+            for unit in self.leading(factor, guard, self.slack)[:FLIPPED]:
+                yield from self.attempt(unit, guard, FLIP, pair)
+        yield from self.adjusting.refine(pair)
+
+    def each(self, factor: float, guard: Guard, among: Sequence[Unit], pair: int) -> Iterator[Candidate]:
+        """Try one factor on several operands, on the seed of a pair."""
+        among = self.gains.distinct(among)
+        for at, unit in enumerate(among):
+            self.expect([(each, guard, factor) for each in among[at:]], pair)
+            yield from self.attempt(unit, guard, factor, pair)
+
+    def leading(self, before: float, guard: Guard, least: float) -> list[Unit]:
+        """Return the units whose gain with the factor `before` is at least `least`, best first."""
+        return self.gains.leading(before, guard, self.units, least)
+
+    def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        """Try a factor; if the candidate is confirmed, yield the changes preferred to it, then the candidate."""
+        mutations = unit.mutations(self.mutate, factor)
+        candidate = Candidate(mutations, guard)
+        if not mutations or candidate in self._tried:
+            return
+        if self.gains.idle(unit) and self.weaker(unit.operands[0], factor):
+            return
+        self._tried.add(candidate)
+        near = self._near(candidate, pair)
+        if near is None:
+            return
+        self._learn(unit, candidate, factor)
+        holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
+        self._learn(unit, candidate, factor)
+        yield from self.preferences.before(candidate, unit, factor, pair, holds, near)
+        if holds:
+            self.uses.learn(unit, guard, factor, pair)
+            yield candidate
+            yield from self.preferences.after()
+        elif near:
+            yield from self.uses.alone(unit, guard, factor, pair)
+        if holds or (near and self.trials.loses(candidate)):
+            self.refused.add((unit, guard))
+
+    def _learn(self, unit: Unit, candidate: Candidate, factor: float) -> None:
+        pairs = self.goal.pairs
+        gain, moved = self.trials.gain(candidate, pairs), self.trials.moved(candidate, pairs)
+        self.gains.enter((unit, candidate.guard), factor, gain, moved)
+        self._acting.ran(unit, candidate)
+
+    def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
+        """Try a factor; return the candidate if it is new and confirmed, else None."""
+        candidate = Candidate(unit.mutations(self.mutate, factor), guard)
+        if not candidate.mutations or candidate in self._tried:
+            return None
+        self._tried.add(candidate)
+        near = self._near(candidate, pair)
+        if near is None:
+            return None
+        holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
+        self._learn(unit, candidate, factor)
+        if holds:
+            self.uses.learn(unit, guard, factor, pair)
+        return candidate if holds else None
+
+    def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int, confirmable: bool = True) -> bool:
+        """Return whether a new factor reaches the goal on a pair's seed; `confirmable` ones may be confirmed later."""
+        candidate = Candidate(unit.mutations(self.mutate, factor), guard)
+        if not candidate.mutations or candidate in self._tried:
+            return False
+        near = self._near(candidate, pair)
+        if near is not None:
+            self._learn(unit, candidate, factor)
+        if not (near and confirmable):
+            self._tried.add(candidate)
+        return bool(near)
+
+    def expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
+        """Announce the tries that come next unless a result changes the order."""
+        seed = self.goal.pairs[pair].seed
+        candidates = [Candidate(unit.mutations(self.mutate, factor), guard) for unit, guard, factor in tries]
+        self.trials.expect((one, seed) for one in candidates if one.mutations and one not in self._tried)
+
+    def _near(self, candidate: Candidate, pair: int) -> bool | None:
+        """Run a candidate once; return whether it reached the goal, or None if it cannot be written into the source."""
+        try:
+            seed = self.goal.pairs[pair].seed
+            return self.goal.reached(self.trials(candidate, seed), seed)
+        except RepairError:
+            return None
+
+    def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
+        """Try factors between the unit's best factor and its neighbours."""
+        yield from self.adjusting.between(best, pair)
+
+    def joining(
+        self, gains: Mapping[Unit, Mapping[float, float]], among: Sequence[Unit] | None = None
+    ) -> ForwardSelection:
+        """Return a selection that combines the units `among` (by default all units of the search)."""
+        return ForwardSelection(
+            self.units if among is None else among,
+            self.mutate,
+            self.trials,
+            self.goal,
+            gains,
+            self.slack,
+            self._settled,
+            self._alone,
+        )
+
+    def _alone(self, candidate: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
+        """Yield the changes preferred to a single change that was found as part of a combination."""
+        self._tried.add(candidate)
+        self._learn(unit, candidate, factor)
+        yield from self.preferences.before(candidate, unit, factor, 0, True, True)

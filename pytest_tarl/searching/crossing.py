@@ -1,0 +1,38 @@
+"""Cross a plateau: try the steps of `plateau` while missions that fail earn the same, or a far change gains most."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching import plateau
+from pytest_tarl.searching.attempts import Attempts
+from pytest_tarl.searching.search import Candidate
+
+
+class Crossing:
+    """Try steps across the plateau of one search."""
+
+    def __init__(self, attempts: Attempts) -> None:
+        self.attempts = attempts
+        self._inside: set[Guard] = set()
+
+    def across(self, guard: Guard, steps: Sequence[plateau.Step]) -> Iterator[Candidate]:
+        """Try the steps of `plateau` under a guard while no unit gains reward."""
+        tries, gains = self.attempts, self.attempts.gains
+        for factor, before in () if tries.proposed else steps:
+            if gains.anything():
+                return
+            yield from tries.sweep(factor, guard, plateau.among(before, tries.units, gains, guard))
+
+    def inward(self, guard: Guard) -> Iterator[Candidate]:
+        """Try inward steps (see `plateau`) once under a guard while a large change gains most."""
+        tries, gains = self.attempts, self.attempts.gains
+        if tries.proposed or guard in self._inside or not plateau.best_is_far(gains, guard):
+            return
+        self._inside.add(guard)
+        matter, steps = plateau.inward(tries.units, gains)
+        for factor in steps:
+            if not plateau.best_is_far(gains, guard):
+                return
+            yield from tries.sweep(factor, guard, matter)

@@ -1,0 +1,112 @@
+"""The first steps of a sweep under a guard: large enough to show whether a constant matters."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching import plateau
+from pytest_tarl.searching.attempts import FLIP, Attempts
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.crossing import Crossing
+from pytest_tarl.searching.plainness import named
+from pytest_tarl.searching.refining import FURTHER
+from pytest_tarl.searching.search import Candidate
+from pytest_tarl.searching.units import NEAR, Unit
+
+LEADING = 3  # number of best units that are tried with larger steps before the next guard is tried
+HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
+BETWEEN = (1.5, 0.65)
+FINER = (1.22, 0.82)
+HALF = 0.5  # gain of a change, as a share of the wanted gain, from which on others get no `FINER` steps
+
+
+class FirstSteps:
+    """Try the first steps of one search; `responding` contains ids of statements whose constants raised the reward."""
+
+    def __init__(self, attempts: Attempts, crossing: Crossing, responding: Collection[str] = ()) -> None:
+        self.attempts = attempts
+        self.crossing = crossing
+        self.responding = responding
+
+    def near(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
+        """Increase and decrease each unit, then try smaller steps if both lose, and combine the best units.
+
+        Until a gain exceeds the slack, the `LEADING` best units get larger steps at once.
+        """
+        tries, gains = self.attempts, self.attempts.gains
+        moving = gains.moving(block)
+        yield from self._carried_over(guard)
+        if tries.proposed:
+            yield from tries.sweep(1.0, guard, moving)
+            yield from self._strengthened(guard, moving)
+            yield from tries.sweep(FLIP, guard, moving)
+        else:
+            yield from self._named_first(guard, named(moving))
+        for factor in NEAR:
+            yield from tries.sweep(factor, guard, moving)
+        yield from self.crossing.across(guard, plateau.STEPS[:2])
+        yield from self._narrow(guard, moving)
+        for factor, before in () if gains.anything() else FURTHER:
+            leading = tries.leading(before, guard, tries.goal.wanted * HINT)
+            yield from tries.sweep(factor, guard, leading[:LEADING])
+        yield from self._without_condition(guard)
+        yield from self.crossing.inward(guard)
+        yield from tries.adjusting.exactly(guard)
+        yield from tries.combining.leaders(guard)
+        yield from tries.combining.unmasked(guard)
+        yield from self._uses_apart(guard, block)
+
+    def _named_first(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Increase named constants; if none gains, try moderate steps on them before other constants are tried."""
+        tries = self.attempts
+        yield from tries.each(NEAR[0], guard, among, tries.pair)
+        if among and not tries.gains.anything():
+            tries.turn += 1
+            yield from tries.sweep(NEAR[1], guard, among)
+            yield from self.crossing.across(guard, plateau.STEPS[:2])
+
+    def _uses_apart(self, guard: Guard, block: Sequence[Unit]) -> Iterator[Candidate]:
+        """Change a constant at one of its uses only, because its effects at several uses may cancel each other."""
+        tries, gains = self.attempts, self.attempts.gains
+        uses = [use for whole in gains.moving(block) for use in tries.uses.of(whole)]
+        tries.units = (*tries.units, *(use for use in uses if use not in tries.units))
+        for factor in NEAR if uses else ():
+            yield from tries.sweep(factor, guard, gains.moving(uses))
+
+    def _strengthened(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Strengthen proposals too weak to have an effect; use the largest factors only at statements that respond."""
+        tries = self.attempts
+        for factor in (*NEAR, *(factor for factor, _ in FURTHER)):
+            idle = [unit for unit in among if tries.gains.idle(unit)]
+            if factor not in NEAR:
+                idle = [unit for unit in idle if str(unit.operands[0].site) in self.responding]
+            yield from tries.sweep(factor, guard, idle) if idle else ()
+
+    def _carried_over(self, guard: Guard) -> Iterator[Candidate]:
+        """Try the best units of other guards under this guard, because those guards may be too narrow."""
+        tries = self.attempts
+        pair = tries.pair
+        for unit, factor in tries.gains.best_under([one for one in tries.guards if one != guard])[:LEADING]:
+            yield from tries.attempt(unit, guard, factor, pair)
+
+    def _without_condition(self, guard: Guard) -> Iterator[Candidate]:
+        """Try the change that gains most without its condition before more is done under it: it may be too narrow."""
+        tries, gains = self.attempts, self.attempts.gains
+        for unit, factor in gains.best_under([guard])[:1]:
+            if guard.conjuncts and ALWAYS in tries.guards and gains.most((unit, guard)) > tries.slack:
+                yield from tries.attempt(unit, ALWAYS, factor, tries.pair)
+
+    def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Try smaller steps on operands for which both near factors lost: their best values must be close.
+
+        If the smaller steps lose as well and nothing else is promising, try the `FINER` steps.
+        """
+        tries, gains = self.attempts, self.attempts.gains
+        lost = gains.lost_both_ways(guard, among, NEAR)
+        for factor in BETWEEN if lost else ():
+            yield from tries.sweep(factor, guard, lost)
+        promising = gains.anything(HALF * tries.goal.wanted)
+        still = [] if promising else gains.lost_both_ways(guard, lost, BETWEEN)
+        for factor in FINER if still else ():
+            yield from tries.sweep(factor, guard, still)
