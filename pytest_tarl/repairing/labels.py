@@ -3,7 +3,8 @@
 A factor on a member of an enumeration raises an error. A factor on `self.done` in `if not self.done` changes nothing.
 Other constants follow from notation and were not chosen by the author: the exponents in `(x**2 + y**2) ** 0.5` are
 geometry, the `1e-9` in `stamp.nanosec * 1e-9` converts a unit, and the `1.0` in `1.0 - alpha` is the sum of two shares.
-Booleans and zeros are not labels, because a search can change them from false to true.
+Others are needed by ROS only (see `bookkeeping`). Booleans and zeros are not labels, because a search can change them
+from false to true.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from functools import cache
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.document import Document, document
+from pytest_tarl.repairing.bookkeeping import is_bookkeeping
 from tarl_lint.api import Analysis
 from tarl_lint.model import Operand
 
@@ -51,6 +53,8 @@ def _is_label(analysis: Analysis, operand: Operand) -> bool:
     except (RepairError, KeyError):
         return False
     if not isinstance(operand.value, bool) and is_member(source, node, analysis.sources.values()):
+        return True
+    if is_bookkeeping(analysis, source, node):
         return True
     if _is_exponent(source, node) or _is_unit(source, node) or _is_whole(source, node):
         return True
