@@ -14,6 +14,17 @@ from pytest_tarl.item_episode import Instruments
 from tarl_lint.api import Analysis, analyse
 from tarl_lint.errors import ConfigError
 
+SETTINGS = (
+    ".yaml",
+    ".yml",
+    ".json",
+    ".toml",
+    ".launch",
+    ".xml",
+    ".cfg",
+    ".ini",
+)  # files of parameters or settings
+
 
 def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
     """Analyse the nodes of the test in `folder`; the result names files relative to `root`.
@@ -24,6 +35,12 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
     for path, node in zip(paths, designation.nodes, strict=True):
         if not path.exists():
             raise AnalysisError(f"The marker names the node {node!r}: no such file in {folder}.")
+        if path.suffix in SETTINGS:
+            raise AnalysisError(
+                f"The marker names {node!r} among the nodes: it is not a Python file. nodes= takes the node's Python "
+                "files only. A node gets the parameters of a launch file or of a parameter file that the test passes "
+                "(tarl.launch, or parameters= of tarl.start), and TARL finds them there."
+            )
     with _working_in(root):  # the analysis names files relative to the working directory
         analysis = _analysis(paths, root)
     if analysis.errors:
