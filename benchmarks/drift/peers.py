@@ -23,7 +23,8 @@ from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching import candidates
-from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials, confirmed
+from pytest_tarl.searching.confirming import confirmed
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
 BUDGET = 200
 REACH = math.log(10.0)

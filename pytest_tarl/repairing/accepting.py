@@ -21,8 +21,9 @@ from pytest_tarl.repairing.regression_tests import NOTHING_BESIDE, Beside, besid
 from pytest_tarl.repairing.smoothing import smoothed
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, Outcome, World, accept, risk_of
+from pytest_tarl.searching.confirming import CONFIRMATIONS
 from pytest_tarl.searching.plainness import oddness
-from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Candidate, Trials
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
 QUICK = 3  # number of known seeds on which a guard is tried before its test on fresh seeds
 WORLDS = 3  # number of worlds in which a test runs: drifted, designed, and designed without the candidate
@@ -96,9 +97,10 @@ class Examiner:
             if examined.reason in WEAK:
                 weak.append(guard)
                 edges += [examined.candidate] if examined.fresh else []
-            if examined.fresh and examined.candidate in self._missed.spread:
-                weak.append(guard)
-                accepted = self._followed(self.others.recentred(examined.candidate, trials), trials)
+            costly = examined.candidate in self._missed.costly
+            if examined.fresh and (costly or examined.candidate in self._missed.spread):
+                weak += [] if costly else [guard]
+                accepted = self._followed(self.others.improved(examined.candidate, trials), trials)
                 if accepted is not None or self._exhausted():
                     return accepted
             if operands(examined.candidate) == operands(candidate):
@@ -106,7 +108,7 @@ class Examiner:
                     candidate, mutations=examined.candidate.changes
                 )  # keep the centred values, so that they are not centred again
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
-            if wide and examined.reason in (*TOO_LITTLE, *WEAK):
+            if wide and examined.reason in (*TOO_LITTLE, *WEAK) and not costly:
                 # this guard is as wide as that of the search, and narrower guards cannot gain more
                 break
         for others in (

@@ -10,10 +10,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from pytest_tarl.model import Guard, OperandEffect
-from pytest_tarl.repairing.mission_pairs import Signs, signs
+from pytest_tarl.repairing.measured import hints
+from pytest_tarl.repairing.mission_pairs import Recorded, Signs, mission_pairs, signs
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.structural import Structures
+from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.search import Candidate, Trials
+from tarl_lint.model import Operand
 
 FROM = 60  # number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
 LATER = 100  # the same if a constant gains at least `PARTLY`, because it may only need another value or a second one
@@ -34,6 +37,7 @@ class Early:
         self.trials = trials
         self.spent = 0
         self.waiting = False
+        self._recorded: tuple[Recorded, ...] | None = None
         self._signs: Signs | None = None
         self._structures: Structures | None = None
 
@@ -61,8 +65,17 @@ class Early:
     def signs(self, trials: Trials) -> Signs:
         """Return the symptoms of the mission pairs; the first call records them and charges the given trials."""
         if self._signs is None:
-            self._signs = signs(self.order, trials)
+            self._signs = signs(self.order, self._pairs(trials))
         return self._signs
+
+    def measured(self, operands: Sequence[Operand]) -> list[Hint]:
+        """Return the changes of constants that the mission pairs suggest."""
+        return hints(self.order, self._pairs(self.trials), operands)
+
+    def _pairs(self, trials: Trials) -> tuple[Recorded, ...]:
+        if self._recorded is None:
+            self._recorded = mission_pairs(self.order, trials)
+        return self._recorded
 
     def effects(self) -> Mapping[str, Sequence[OperandEffect]]:
         """Return, for each site, the gains of each template's best values."""

@@ -20,7 +20,8 @@ import numpy as np
 
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
-from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Goal, Pair, Trials
+from pytest_tarl.searching.confirming import CONFIRMATIONS
+from pytest_tarl.searching.search import BudgetSpentError, Goal, Pair, Trials
 
 ENOUGH = 1 + CONFIRMATIONS  # number of seeds with a loss that a search needs
 LOOKED_AT = 12  # maximum number of recorded missions that are run under the drift to find such seeds

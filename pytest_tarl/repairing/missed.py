@@ -33,13 +33,15 @@ class Missed:
 
     `few` holds these seeds for candidates that lost reward in at most `FEW` of their missions. `poor` holds the
     candidates that failed hardly any mission but earned too little. For each of these, `spread` holds missions of its
-    test, from the smallest to the largest loss.
+    test, from the smallest to the largest loss. `costly` holds the candidates that may lose too much in the designed
+    world, and hardly any mission under the drift.
     """
 
     seeds: list[tuple[int, float]] = field(default_factory=list)
     few: dict[Candidate, list[tuple[int, float]]] = field(default_factory=dict)
     poor: set[Candidate] = field(default_factory=set)
     spread: dict[Candidate, list[Lost]] = field(default_factory=dict)
+    costly: set[Candidate] = field(default_factory=set)
 
     def learn(self, candidate: Candidate, found: Acceptance, goal: Goal, reference: Reference) -> None:
         """Store the missions in which a refused candidate lost reward."""
@@ -52,7 +54,9 @@ class Missed:
         if 0 < len(lost) <= FEW * len(found.drifted):
             self.few[candidate] = lost[-LATEST:]
         failed = sum(not outcome.passed for outcome in found.drifted)
-        if goal.passing and failed <= PASS_RATE_LOSS * len(found.drifted):
+        if found.costly:
+            self.costly.add(candidate)
+        elif goal.passing and failed <= PASS_RATE_LOSS * len(found.drifted):
             self.poor.add(candidate)
             self.spread[candidate] = _spread(found)
 

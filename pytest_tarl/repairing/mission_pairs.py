@@ -55,16 +55,20 @@ class Signs:
 NO_SIGNS = Signs()
 
 
-def signs(order: Order, trials: Trials) -> Signs:
-    """Record `PAIRS` mission pairs and return their symptoms; none if the budget or the test does not allow it."""
+def mission_pairs(order: Order, trials: Trials) -> tuple[Recorded, ...]:
+    """Record `PAIRS` mission pairs and charge them; return none if the budget or the test does not allow it."""
     if order.drift is None:
-        return NO_SIGNS
+        return ()
     seeds = [pair.seed for pair in order.goal.pairs[:PAIRS]]
     try:
-        recorded = [_recorded(order, trials, seed) for seed in seeds]
+        return tuple(_recorded(order, trials, seed) for seed in seeds)
     except (BudgetSpentError, TarlError):
-        return NO_SIGNS
-    return Signs(dict(_strengths(order, recorded)), tuple(map(_cells, recorded)))
+        return ()
+
+
+def signs(order: Order, recorded: Sequence[Recorded]) -> Signs:
+    """Return the symptoms of mission pairs."""
+    return Signs(dict(_strengths(order, recorded)), tuple(map(_cells, recorded))) if recorded else NO_SIGNS
 
 
 def _recorded(order: Order, trials: Trials, seed: int) -> Recorded:
@@ -78,12 +82,13 @@ def _recorded(order: Order, trials: Trials, seed: int) -> Recorded:
 
 def _strengths(order: Order, recorded: Sequence[Recorded]) -> Iterator[tuple[str, Mapping[str, float]]]:
     for number, place in enumerate(plan(order.analysis).places):
-        pairs = [Pair(_series(one, number), _series(other, number)) for one, other in recorded]
+        pairs = [Pair(series(one, number), series(other, number)) for one, other in recorded]
         if place.role != "publish" and all(pair.drifted.values.size for pair in pairs):
             yield place.id, {name: symptom(pairs) for name, symptom in SYMPTOMS.items()}
 
 
-def _series(trace: Trace, number: int) -> Series:
+def series(trace: Trace, number: int) -> Series:
+    """Return the values of a statement, given by its number, in a mission."""
     here = trace.site == number
     return Series(trace.flow[here], trace.event_step[here], trace.reward)
 

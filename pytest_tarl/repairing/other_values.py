@@ -24,6 +24,7 @@ MILDER = (0.75, 0.5)  # exponents of the factors of a candidate whose missions s
 RATIOS = (1.1, 1.03)  # ratios between neighbours of a value that loses too much in its test
 MOVES = 3  # maximum number of moves in one direction with one ratio
 BETTER = 0.1  # a neighbour must earn at least this share of the margin more
+KNOWN = 3  # number of known seeds on which a smaller change must reach the goal
 CLOSE = 1.3  # maximum ratio of two rejected values between which good values may lie
 
 OtherValues = Generator[Candidate, Tried, None]
@@ -40,6 +41,7 @@ class Others:
         self._pushed: set[Place] = set()
         self._bisected: set[Place] = set()
         self._inward: set[Place] = set()
+        self._nearer: set[Place] = set()
         self._mended: set[Candidate] = set()
         self._recentred: set[Place] = set()
         # values that earned more than a refused one in the missions of its acceptance test
@@ -81,6 +83,39 @@ class Others:
             between.told(STRONG[0] if enough else WEAK[0])
         if good and self.ledger.alike(good[len(good) // 2]) is None:
             yield good[len(good) // 2]
+
+    def improved(self, refused: Candidate, trials: Trials) -> OtherValues:
+        """Propose a value that loses less in the world in which a candidate lost too much. Raise BudgetSpentError."""
+        costly = refused in self.missed.costly
+        yield from self.nearer(refused, trials) if costly else self.recentred(refused, trials)
+
+    def nearer(self, costly: Candidate, trials: Trials) -> OtherValues:
+        """Propose a value nearer to the original one than `costly`, which may lose too much in the designed world.
+
+        A smaller change does less harm there. Bisect for the smallest change with which missions succeed on the known
+        seeds, the hardest ones first, and propose the middle of the good values. Raise BudgetSpentError.
+        """
+        place = (operands(costly), costly.guard)
+        if place in self._nearer:
+            return
+        self._nearer.add(place)
+        between, good = Between(in_place(costly), self.mutants.mutate), list[Candidate]()
+        while (middle := between.middle()) is not None:
+            enough = self._holds(middle, trials)
+            good += [middle] if enough else []
+            between.told(STRONG[0] if enough else WEAK[0])
+        if good and not self.ledger.examined(good[len(good) // 2]):
+            self.chosen.add(good[len(good) // 2])
+            yield good[len(good) // 2]
+
+    def _holds(self, candidate: Candidate, trials: Trials) -> bool:
+        """Return whether a candidate reaches the goal on the known seeds on which most candidates fell short."""
+        goal = self.mutants.order.goal
+        hardest = sorted(goal.pairs, key=lambda pair: -trials.misses[pair.seed])[:KNOWN]
+        try:
+            return all(goal.reached(trials(candidate, pair.seed), pair.seed) for pair in hardest)
+        except RepairError:
+            return False
 
     def _reaches(self, candidate: Candidate, trials: Trials) -> bool:
         goal = self.mutants.order.goal

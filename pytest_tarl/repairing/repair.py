@@ -121,7 +121,12 @@ def _search(
     first = found.accepted is None
     early = Early(mutants.order, _chief(searched), trials)
     strategy = strategies.strategy(
-        mutants, method, searched, trials, early.candidates if share < 1.0 else lambda _: iter(())
+        mutants,
+        method,
+        searched,
+        trials,
+        early.candidates if share < 1.0 else lambda _: iter(()),
+        early.measured,
     )
     try:
         if found.accepted is None:

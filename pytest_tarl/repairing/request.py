@@ -123,4 +123,5 @@ def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
         enough=reference.mean - max(reference.margin, spread),
         online=fmean(pair.total for pair in online),
         passing=reference.pass_rate >= 1 - PASS_RATE_LOSS,
+        margin=reference.margin,
     )

@@ -16,6 +16,7 @@ from pytest_tarl.repairing.scales import charts
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ask_tell import Asking, factory
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
+from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.halving import Halving
 from pytest_tarl.searching.plainness import writing
 from pytest_tarl.searching.ranking import Ranking
@@ -34,10 +35,12 @@ def strategy(
     guards: Sequence[Guard],
     trials: Trials,
     interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
+    measured: Callable[[Sequence[Operand]], Sequence[Hint]] = lambda _: (),
 ) -> Strategy:
     """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
 
-    The sweep calls `interlude` before each of its steps, with the largest gain so far.
+    The sweep calls `interlude` before each of its steps, with the largest gain so far, and `measured` for changes that
+    recorded missions suggest.
     """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
@@ -56,6 +59,7 @@ def strategy(
             charts=charts(order, moved),
             scope=name_scope(order.analysis),
             interlude=interlude,
+            measured=lambda: measured(moved),
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

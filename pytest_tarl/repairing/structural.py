@@ -93,7 +93,8 @@ class Structures:
         """Yield confirmed candidates of the changes with symptoms; spend `most` episodes, more if one gains much.
 
         Among them are the templates with a telling sensor that varies, because no constant fits all its values. With
-        `once`, the changes without parameters come first, one episode each.
+        `once`, the changes without parameters come first, one episode each. A group of changes ends after its first
+        steps if none of them gains anything.
         """
         order = self.order
         known, places = templates(order.root), list(spots(order))
@@ -105,14 +106,17 @@ class Structures:
         budget, reserve, worth, spent = trials.budget, trials.reserve, trials.worth, trials.spent
         trials.budget = min(spent + 2 * most, budget)
         try:
-            yield from self._searched([group for group in groups if group.operands])
+            yield from self._searched([group for group in groups if group.operands], brief=True)
         except BudgetSpentError:
             pass
         finally:
             trials.budget, trials.reserve, trials.worth = budget, reserve, worth
 
-    def _searched(self, groups: Sequence[_Group]) -> Iterator[Candidate]:
-        """Search groups one after another, each with its share of the budget. Raise BudgetSpentError."""
+    def _searched(self, groups: Sequence[_Group], brief: bool = False) -> Iterator[Candidate]:
+        """Search groups one after another, each with its share of the budget. Raise BudgetSpentError.
+
+        If `brief` is true, a group ends after its first steps unless something gains.
+        """
         whole = self.trials.budget
         sizes = [len(group.operands) for group in groups]
         for number, group in enumerate(groups):
@@ -126,6 +130,7 @@ class Structures:
                 weaker=self.weaker,
                 given=self.given,
                 responding=self.responding,
+                brief=brief,
             )
             self._sweeps.append(sweep)
             left = whole - self.trials.spent

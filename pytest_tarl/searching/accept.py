@@ -15,7 +15,7 @@ seeds. The episodes that set the bets can refuse the candidate but not accept it
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import log
 from statistics import fmean
 
@@ -124,6 +124,7 @@ class Acceptance:
     - `bets`: the sizes of the bets in the two worlds.
     - `seeds`: the seeds of the drifted episodes; `designed`: the unrepaired program's totals on them in the designed
       world.
+    - `costly`: whether the candidate was refused for its reward in the designed world.
     """
 
     accepted: bool
@@ -135,6 +136,7 @@ class Acceptance:
     bets: tuple[Bet, ...] = ()
     seeds: tuple[int, ...] = ()
     designed: tuple[float, ...] = ()
+    costly: bool = False
 
 
 def risk_of(alpha: float, before: int) -> float:
@@ -166,7 +168,7 @@ def accept(
             reason = stage(world, chosen)
             tested = tested or stage is _World.tested
             if reason:
-                return _ended(worlds, original, reason, tested, seeds)
+                return replace(_ended(worlds, original, reason, tested, seeds), costly=world is not worlds[0])
     return _ended(worlds, original, "", tested, seeds)
 
 

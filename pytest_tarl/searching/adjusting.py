@@ -20,6 +20,8 @@ from tarl_lint.model import Operand
 ROUNDS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
 LEAST = 0.5  # minimum gain of a unit whose exact value is searched, as a share of the wanted gain
 REFINED = 8  # maximum number of runs that refine one operand
+IDLE = 2  # maximum number of consecutive refinements without a larger gain of an operand that gains less
+MORE = 0.05  # minimum increase of the gain, as a share of the wanted gain
 
 
 class Search(Protocol):
@@ -50,21 +52,19 @@ class Adjusting:
     def __init__(self, search: Search) -> None:
         self.search = search
         self.refined: Counter[tuple[Unit, Guard]] = Counter()
+        self._idle: Counter[tuple[Unit, Guard]] = Counter()  # refinements without a larger gain
         self._exact: set[tuple[Unit, Guard]] = set()
         self._varied: set[tuple[Unit, Guard, float]] = set()
 
     def refine(self, pair: int) -> Iterator[Candidate]:
         """Refine the best operand while its gain approaches the wanted gain.
 
-        Tiny gains are not refined, because a mission that fails slightly later does not indicate the right value.
+        Tiny gains are not refined, because a mission that fails slightly later does not indicate the right value. A
+        gain that stays the same between two values does not either: something else is wrong.
         """
         search, wanted = self.search, self.search.goal.wanted
         for _ in range(ROUNDS):
-            open_to = [
-                tried
-                for tried, _ in search.gains.items()
-                if self.refined[tried] < _most(tried[0]) and tried not in search.refused
-            ]
+            open_to = self._open()
             if not search.proposed:
                 open_to = plateau.nearby(open_to, search.gains, PROMISING * wanted) or open_to
             best = max(open_to, key=search.gains.most, default=None)
@@ -74,8 +74,24 @@ class Adjusting:
             yield from self._vary(*best)
             yield from self.between(best, pair)
             gained = search.gains.most(best)
+            self._idle[best] = self._idle[best] + 1 if gained <= before + MORE * wanted else 0
             if gained <= max(before, PROMISING * wanted) and gained < ALMOST * wanted:
                 return
+
+    def _open(self) -> list[tuple[Unit, Guard]]:
+        """Return the units and guards that may be refined further, of uses that act alike only the first."""
+        search = self.search
+        tried = [key for key, _ in search.gains.items()]
+        distinct = set(search.gains.distinct(list(dict.fromkeys(unit for unit, _ in tried))))
+        much = PROMISING * search.goal.wanted
+        return [
+            key
+            for key in tried
+            if key[0] in distinct
+            and key not in search.refused
+            and self.refined[key] < _most(key[0])
+            and (self._idle[key] < IDLE or search.gains.most(key) >= much)
+        ]
 
     def exactly(self, guard: Guard) -> Iterator[Candidate]:
         """Move the best unit under a guard once to where its missions follow the designed ones most closely.

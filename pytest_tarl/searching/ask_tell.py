@@ -14,6 +14,7 @@ from typing import Any, Protocol
 
 from pytest_tarl.errors import RepairError, SearchError, SettingsError
 from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.confirming import confirmed
 from pytest_tarl.searching.search import (
     BudgetSpentError,
     Candidate,
@@ -21,7 +22,6 @@ from pytest_tarl.searching.search import (
     Mutate,
     Pair,
     Trials,
-    confirmed,
     operand_effect,
 )
 from tarl_lint.model import Operand

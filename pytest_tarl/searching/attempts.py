@@ -29,12 +29,15 @@ FLIP = -1.0  # factor that flips the sign
 # maximum number of units to try with the other sign, among those that gained with a smaller value
 FLIPPED = 3
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
+EASY = 3  # number of pairs on whose seeds changes run while nothing gains
+LOST = 0.5  # minimum loss of an easy pair, as a share of the wanted gain
 
 
 class Attempts:
     """The changes that one search has tried, and the gains of its units; see `Sweep` for the arguments.
 
-    `parts` maps a constant to its uses. Each turn runs the changes of a step on the seed of another pair.
+    `parts` maps a constant to its uses. Each turn runs the changes of a step on the seed of another pair. While nothing
+    gains, these are easy pairs: missions that lost least have the widest range of good values.
     """
 
     def __init__(
@@ -76,13 +79,16 @@ class Attempts:
         self.preferences = Preferences(self)
         self.combining = Combining(self)
         self.adjusting = Adjusting(self)
+        self._easy = easy(goal)
+        self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # the pair of each change's first run
         self._tried: set[Candidate] = set()
         self._settled = Settled()
 
     @property
     def pair(self) -> int:
         """Return the index of the pair on whose seed the changes of the present turn run."""
-        return self.turn % len(self.goal.pairs)
+        among = range(len(self.goal.pairs)) if self.gains.anything() else self._easy
+        return among[self.turn % len(among)]
 
     def sweep(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try one factor on several operands, then refine the best one."""
@@ -115,6 +121,7 @@ class Attempts:
         if self.gains.idle(unit) and self.weaker(unit.operands[0], factor):
             return
         self._tried.add(candidate)
+        self._ran_on[unit, guard, factor] = pair
         near = self._near(candidate, pair)
         if near is None:
             return
@@ -164,6 +171,10 @@ class Attempts:
             self._tried.add(candidate)
         return bool(near)
 
+    def ran_on(self, unit: Unit, guard: Guard, factor: float) -> int:
+        """Return the index of the pair on whose seed a change ran first; if it did not, that of the present turn."""
+        return self._ran_on.get((unit, guard, factor), self.pair)
+
     def expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
         """Announce the tries that come next unless a result changes the order."""
         seed = self.goal.pairs[pair].seed
@@ -202,3 +213,19 @@ class Attempts:
         self._tried.add(candidate)
         self._learn(unit, candidate, factor)
         yield from self.preferences.before(candidate, unit, factor, 0, True, True)
+
+
+def easy(goal: Goal) -> Sequence[int]:
+    """Return the indices of the pairs that lost least, but at least `LOST`; of all pairs if the drift's size varies.
+
+    A pair that lost less cannot show a gain that differs from noise. Pairs of a range span its sizes in their order.
+    """
+    every = range(len(goal.pairs))
+    if goal.ranged:
+        return every
+    clear = [
+        at
+        for at in every
+        if goal.enough_on([goal.pairs[at].seed]) - goal.pairs[at].total >= LOST * goal.wanted
+    ]
+    return sorted(clear or every, key=lambda at: -goal.pairs[at].total)[:EASY]

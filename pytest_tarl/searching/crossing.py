@@ -17,11 +17,13 @@ class Crossing:
         self.attempts = attempts
         self._inside: set[Guard] = set()
 
-    def across(self, guard: Guard, steps: Sequence[plateau.Step]) -> Iterator[Candidate]:
-        """Try the steps of `plateau` under a guard while no unit gains reward."""
+    def across(
+        self, guard: Guard, steps: Sequence[plateau.Step], until: int | None = None
+    ) -> Iterator[Candidate]:
+        """Try the steps of `plateau` under a guard while no unit gains reward; begin none after `until` episodes."""
         tries, gains = self.attempts, self.attempts.gains
         for factor, before in () if tries.proposed else steps:
-            if gains.anything():
+            if gains.anything() or (until is not None and tries.trials.spent >= until):
                 return
             yield from tries.sweep(factor, guard, plateau.among(before, tries.units, gains, guard))
 

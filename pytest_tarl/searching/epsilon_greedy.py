@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.confirming import confirmed
 from pytest_tarl.searching.search import (
     FACTORS,
     BudgetSpentError,
@@ -15,7 +16,6 @@ from pytest_tarl.searching.search import (
     Goal,
     Mutate,
     Trials,
-    confirmed,
     operand_effect,
 )
 from tarl_lint.model import Operand

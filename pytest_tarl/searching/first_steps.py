@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from pytest_tarl.model import Guard
 from pytest_tarl.searching import plateau
 from pytest_tarl.searching.attempts import FLIP, Attempts
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.crossing import Crossing
+from pytest_tarl.searching.forward_selection import Joint
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.refining import FURTHER
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import NEAR, Unit
+from tarl_lint.model import Operand
+
+Hint = tuple[tuple[Operand, float], ...]  # constants that change together, each with its factor
 
 LEADING = 3  # number of best units that are tried with larger steps before the next guard is tried
 HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
@@ -22,12 +26,23 @@ HALF = 0.5  # gain of a change, as a share of the wanted gain, from which on oth
 
 
 class FirstSteps:
-    """Try the first steps of one search; `responding` contains ids of statements whose constants raised the reward."""
+    """Try the first steps of one search.
 
-    def __init__(self, attempts: Attempts, crossing: Crossing, responding: Collection[str] = ()) -> None:
+    `responding` contains ids of statements whose constants raised the reward. `measured` returns changes that recorded
+    missions suggest; it is called once, when the first steps on named constants gained less than `HALF`.
+    """
+
+    def __init__(
+        self,
+        attempts: Attempts,
+        crossing: Crossing,
+        responding: Collection[str] = (),
+        measured: Callable[[], Sequence[Hint]] = tuple,
+    ) -> None:
         self.attempts = attempts
         self.crossing = crossing
         self.responding = responding
+        self._measured: Callable[[], Sequence[Hint]] | None = measured
 
     def near(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
         """Increase and decrease each unit, then try smaller steps if both lose, and combine the best units.
@@ -65,14 +80,45 @@ class FirstSteps:
             tries.turn += 1
             yield from tries.sweep(NEAR[1], guard, among)
             yield from self.crossing.across(guard, plateau.STEPS[:2])
+        if among and not tries.gains.anything(HALF * tries.goal.wanted):
+            yield from self._as_measured(ALWAYS if ALWAYS in tries.guards else guard)
+
+    def _as_measured(self, guard: Guard) -> Iterator[Candidate]:
+        """Try the changes that recorded missions suggest, once, then refine the best constant.
+
+        They were measured over whole missions, so they have no condition if possible.
+        """
+        tries, measured = self.attempts, self._measured
+        self._measured = None
+        whole = {
+            operand: unit for unit in reversed(tries.units) if unit.chart is None for operand in unit.operands
+        }
+        tried = False
+        for hint in measured() if measured is not None else ():
+            parts = tuple({whole[operand]: factor for operand, factor in hint if operand in whole}.items())
+            tried = tried or bool(parts)
+            if len(parts) == 1:
+                yield from tries.attempt(parts[0][0], guard, parts[0][1], tries.pair)
+            elif parts:
+                yield from tries.joining({}).candidates_of(Joint(parts, guard))
+        if tried:
+            yield from tries.adjusting.refine(tries.pair)
 
     def _uses_apart(self, guard: Guard, block: Sequence[Unit]) -> Iterator[Candidate]:
-        """Change a constant at one of its uses only, because its effects at several uses may cancel each other."""
+        """Change a constant at one of its uses only, because its effects at several uses may cancel each other.
+
+        Each use runs on the seed of the whole constant, which shows whether it acts alike.
+        """
         tries, gains = self.attempts, self.attempts.gains
-        uses = [use for whole in gains.moving(block) for use in tries.uses.of(whole)]
+        wholes = [whole for whole in gains.moving(block) if tries.uses.of(whole)]
+        uses = [use for whole in wholes for use in tries.uses.of(whole)]
         tries.units = (*tries.units, *(use for use in uses if use not in tries.units))
         for factor in NEAR if uses else ():
-            yield from tries.sweep(factor, guard, gains.moving(uses))
+            for whole in wholes:
+                pair = tries.ran_on(whole, guard, factor)
+                yield from tries.each(factor, guard, gains.moving(tries.uses.of(whole)), pair)
+        if uses:
+            yield from tries.adjusting.refine(tries.pair)
 
     def _strengthened(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Strengthen proposals too weak to have an effect; use the largest factors only at statements that respond."""

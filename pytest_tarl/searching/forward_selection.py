@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
+from pytest_tarl.searching.confirming import confirmed
 from pytest_tarl.searching.polishing import ALMOST, KNOWN, MUCH, SHARP_STEPS, Factors, polished
-from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import NEAR, Unit
 
 MOST = 3  # maximum number of parts in a combined repair
@@ -165,6 +166,12 @@ class ForwardSelection:
         """Announce the combinations that run next unless a result changes the order."""
         seed = self.goal.pairs[0].seed
         self.trials.expect((joint.candidate(self.mutate), seed) for joint in joints)
+
+    def candidates_of(self, joint: Joint) -> Iterator[Candidate]:
+        """Run a combination and yield it, without unneeded parts, if it is confirmed; balance it if it gains much."""
+        gain = yield from self.gain(joint)
+        if gain is not None and PROMISING * self.goal.wanted < gain and not self._suffices(gain):
+            yield from self._balanced(joint, gain)
 
     def gain(self, joint: Joint) -> Generator[Candidate, None, float | None]:
         """Run a combination once and return its gain, or None if it cannot run; yield it if it is confirmed."""

@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.confirming import confirmed
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.race import Arm, Race
-from pytest_tarl.searching.search import FACTORS, Candidate, Goal, Mutate, Trials, confirmed, operand_effect
+from pytest_tarl.searching.search import FACTORS, Candidate, Goal, Mutate, Trials, operand_effect
 from pytest_tarl.searching.units import units
 from tarl_lint.model import Operand
 

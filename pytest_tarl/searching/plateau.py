@@ -26,10 +26,11 @@ INWARD = None  # a placeholder for steps between the first two steps (2.2 and 0.
 # steps differ by at most 10 %.
 STEPS: tuple[Step, ...] = (
     *((1.5, INWARD), (0.65, INWARD), (5.0, 2.2), (0.15, 0.4), (1.22, INWARD), (0.82, INWARD)),
-    *((1.35, INWARD), (0.74, INWARD), (10.0, 5.0), (0.05, 0.15), (1.75, INWARD), (0.55, INWARD)),
-    *((1.285, INWARD), (0.78, INWARD), (1.1, INWARD), (0.91, INWARD), (1.16, INWARD), (0.86, INWARD)),
+    *((1.35, INWARD), (0.74, INWARD), (1.1, INWARD), (0.91, INWARD), (10.0, 5.0), (0.05, 0.15)),
+    *((1.75, INWARD), (0.55, INWARD), (1.16, INWARD), (0.86, INWARD), (1.285, INWARD), (0.78, INWARD)),
     *((1.42, INWARD), (0.7, INWARD), (1.62, INWARD), (0.6, INWARD), (1.05, INWARD), (0.95, INWARD)),
 )
+FINE_UNTIL = 10  # number of these steps that come before literals if there are many: those up to 1.1 and 0.91
 NEARBY = 2.5  # a change is large if it multiplies or divides a constant by more than this factor
 AROUND = 40  # maximum number of episodes for inward steps around large changes that gain
 AT_LEAST = 2  # minimum number of inward steps around large changes that gain

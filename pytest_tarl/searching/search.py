@@ -1,7 +1,8 @@
-"""The parts that all searches share: candidates, trials in the drifted world, and the rule that confirms a candidate.
+"""The parts that all searches share: candidates, the goal, and trials in the drifted world.
 
 A mission is one episode of the test. A candidate passes on a seed if its mission there earns about as much as designed.
-A search yields confirmed candidates, best first. `searching.accept` then tests them on fresh seeds.
+A search yields candidates that are confirmed (see `confirming`), best first. `searching.accept` then tests them on
+fresh seeds.
 """
 
 from __future__ import annotations
@@ -22,10 +23,7 @@ Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 
 # factors for a constant, in the order in which they are tried
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)
-CONFIRMATIONS = 5  # number of further seeds on which a promising candidate must also earn enough
-HARD = 2  # maximum number of confirmation seeds that are chosen because other candidates failed on them
 FAR = 0.6  # minimum gain of a candidate that releases the reserve of episodes, as a share of the wanted gain
-SHORT = 3  # number of missions after which a candidate is rejected if each of them clearly earned too little
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
 
 
@@ -63,6 +61,7 @@ class Goal:
     - `harder`: seed → the mean designed reward minus the designed reward of that seed, where known.
     - `tolerated`: seed → the additional loss allowed on this seed if only few missions lose reward.
     - `controls`: drifted episodes without loss.
+    - `margin`: the tolerated mean loss against the designed missions of the same seeds, if known.
     """
 
     pairs: tuple[Pair, ...]
@@ -76,6 +75,7 @@ class Goal:
     # whether the drift's size varies by episode; then a mission may fail only because the drift is large
     ranged: bool = False
     steps: float | None = None  # mean length of a designed mission, if known
+    margin: float | None = None
 
     @property
     def wanted(self) -> float:
@@ -136,8 +136,7 @@ class Trials:
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
-    # rewards of designed missions, by seed
-    _course: dict[int, tuple[float, ...]] = field(default_factory=dict)
+    _designed: dict[int, Outcome] = field(default_factory=dict)  # designed missions, by seed
     # totals of candidates that fell short, by seed
     _short: list[dict[int, float]] = field(default_factory=list)
 
@@ -171,16 +170,30 @@ class Trials:
 
         Each designed mission that runs is charged to the budget once. Raise BudgetSpentError and RepairError.
         """
-        found = [deviation(self(candidate, seed).rewards, self._designed(seed)) for seed in seeds]
-        return fmean(found) if self.design is not None else 0.0
+        design = self.design
+        if design is None:
+            return 0.0
+        return fmean(
+            deviation(self(candidate, seed).rewards, self._as_designed(seed, design).rewards)
+            for seed in seeds
+        )
 
-    def _designed(self, seed: int) -> tuple[float, ...]:
-        if seed not in self._course:
-            if self.design is None:
-                return ()
+    def lost(self, candidate: Candidate, seeds: Sequence[int]) -> float | None:
+        """Return by how much a candidate earns less than the designed missions of the same seeds, on average.
+
+        Return None if no designed mission can run. Each one that runs is charged to the budget once. Raise
+        BudgetSpentError and RepairError.
+        """
+        design = self.design
+        if design is None or not seeds:
+            return None
+        return fmean(self._as_designed(seed, design).total - self(candidate, seed).total for seed in seeds)
+
+    def _as_designed(self, seed: int, design: Callable[[int], Outcome]) -> Outcome:
+        if seed not in self._designed:
             self.charge()
-            self._course[seed] = self.design(seed).rewards
-        return self._course[seed]
+            self._designed[seed] = design(seed)
+        return self._designed[seed]
 
     def charge(self) -> None:
         """Count an episode that is about to run in the designed world. Raise BudgetSpentError."""
@@ -287,55 +300,6 @@ def label(candidate: Candidate) -> str:
         else f"line {m.operand.span.line}: {m.operand.code} × {m.value:.4g}"
         for m in candidate.mutations
     )
-
-
-def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
-    """Return whether a candidate passes on further seeds, starting after `goal.pairs[first]`.
-
-    The seeds on which other candidates fell short run first. A candidate is rejected early if it loses missions of
-    rejected candidates' tests, at its first failed mission (if missions succeed in the designed world and the drift's
-    size does not vary), at its second seed with too little reward, if its mean total is estimated to be too low
-    (`falls_short`), or if each of its first `SHORT` missions clearly earns too little.
-    """
-    if trials.loses(candidate):
-        return False
-    seeds = _hardest_first(trials, goal, first)
-    outcomes: list[Outcome] = []
-    trials.expect((candidate, seed) for seed in seeds)
-    missed = 0
-    for seed in seeds:
-        outcomes.append(trials(candidate, seed))
-        if not goal.reached(outcomes[-1], seed):
-            missed += 1
-            trials.misses[seed] += 1
-        if missed > 1 or (goal.lost(outcomes[-1]) and not goal.ranged):
-            return False
-        if trials.falls_short(candidate, goal.pairs, goal.enough):
-            return False
-        if _always_short(candidate, trials, goal):
-            break
-    holds = not outcomes or fmean(outcome.total for outcome in outcomes) >= goal.enough_on(
-        seeds[: len(outcomes)]
-    )
-    if not holds and not missed:
-        trials.fell_short(candidate, goal.pairs)
-    return holds
-
-
-def _always_short(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
-    """Return whether each of at least `SHORT` missions earned clearly too little: nearer to `near` than to `enough`."""
-    totals, least = trials.totals_of(candidate, goal.pairs), (goal.enough - goal.near) / 2
-    return len(totals) >= SHORT and all(
-        total < goal.enough_on([seed]) - least for seed, total in totals.items()
-    )
-
-
-def _hardest_first(trials: Trials, goal: Goal, first: int) -> list[int]:
-    """Return the confirmation seeds: up to `HARD` on which most candidates fell short, then those after `first`."""
-    others = [goal.pairs[(first + i) % len(goal.pairs)].seed for i in range(1, len(goal.pairs))]
-    missed = [seed for seed in others if trials.misses[seed]]
-    hard = sorted(missed, key=lambda seed: -trials.misses[seed])[:HARD]
-    return [*hard, *(seed for seed in others if seed not in hard)][:CONFIRMATIONS]
 
 
 def operand_effect(mutation: Mutation, gain: float) -> OperandEffect:

@@ -17,10 +17,10 @@ from pytest_tarl.searching import plateau
 from pytest_tarl.searching.attempts import FLIP, Attempts
 from pytest_tarl.searching.crossing import Crossing
 from pytest_tarl.searching.families import families
-from pytest_tarl.searching.first_steps import BETWEEN, FINER, FirstSteps
+from pytest_tarl.searching.first_steps import BETWEEN, FINER, FirstSteps, Hint
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.refining import FURTHER
-from pytest_tarl.searching.screening import blocks, screened, worth_screening
+from pytest_tarl.searching.screening import BLOCK, blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import (
     NEAR,
@@ -41,6 +41,7 @@ FINE = (*FINER, 1.1, 0.91)  # factors for operands that change the reward but ga
 # factors for named constants, if the `FINE` steps gain nothing either
 BETWEEN_FINE = (1.16, 0.86, 1.05, 0.95, 1.35, 0.74)
 LAST = (10.0, 0.05)
+BRIEFLY = 0.3  # minimum gain, as a share of the wanted gain, with which a brief search goes on
 
 
 class Sweep:
@@ -51,9 +52,10 @@ class Sweep:
     yet. Such parameters are first tried with their own values. If the change has no effect, factors that make
     it `weaker` are skipped. Only parameters of the same change are combined. The last steps of the sweep are
     tried on every operand. If a search for structural changes follows, only the nearest of these steps are
-    tried, on named constants. `responding` contains the ids of statements whose constants increased the
-    reward. `interlude` is called with the largest gain before each step and each long phase, and may yield
-    candidates of another search.
+    tried, on named constants. If `brief` is true, the search ends after the first steps unless something gains
+    `BRIEFLY`. `responding` contains the ids of statements whose constants increased the reward. `interlude` is called
+    with the largest gain before each step and each long phase, and may yield candidates of another search. `measured`
+    returns changes that recorded missions suggest (see `FirstSteps`).
     """
 
     def __init__(
@@ -69,13 +71,16 @@ class Sweep:
         aside: Sequence[Operand] = (),
         weaker: Callable[[Operand, float], bool] = lambda _, __: False,
         structure_follows: bool = False,
+        brief: bool = False,
         charts: Mapping[Operand, Chart] = MappingProxyType({}),
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
         responding: Collection[str] = (),
         scope: Scope = everywhere,
         interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
+        measured: Callable[[], Sequence[Hint]] = tuple,
     ) -> None:
         self.structure_follows = structure_follows
+        self.brief = brief
         self.aside = units(aside)
         behind = units(late)
         searched = charted(units(operands), charts)
@@ -98,19 +103,25 @@ class Sweep:
             interlude=interlude,
         )
         self.crossing = Crossing(self.attempts)
-        self.first_steps = FirstSteps(self.attempts, self.crossing, responding)
+        self.first_steps = FirstSteps(self.attempts, self.crossing, responding, measured)
         self._families: tuple[Unit, ...] = ()
+        self._swept: frozenset[Unit] = frozenset()  # units whose first steps came before a screening
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield confirmed candidates."""
         tries, gains = self.attempts, self.attempts.gains
         chief = tries.guards[: 1 if not tries.guards[0].conjuncts else 2]
         if tries.generator is not None and worth_screening(tries.units):
-            tries.units = yield from screened(tries.joining({}), tries.guards[0], tries.generator)
+            yield from self._before_screening(chief)
+        if tries.generator is not None and worth_screening(self._unswept()):
+            order = yield from screened(tries.joining({}, self._unswept()), tries.guards[0], tries.generator)
+            tries.units = (*(unit for unit in tries.units if unit in self._swept), *order)
         self._families = () if tries.proposed else families(tries.units)
         tries.units = (*tries.units, *self._families)
         yield from self._in_large_steps(chief)
         gained = gains.anything()
+        if self._ends():
+            return
         if gained:
             yield from tries.interlude(gains.best())
             yield from tries.combining.sharpened(chief)
@@ -131,12 +142,40 @@ class Sweep:
                 among = gains.moving(tries.units) if tries.proposed else tries.units
                 yield from tries.sweep(factor, guard, among)
 
+    def _ends(self) -> bool:
+        """Return whether a brief search ends after its first steps."""
+        tries = self.attempts
+        return self.brief and not tries.gains.anything(BRIEFLY * tries.goal.wanted)
+
+    def _before_screening(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
+        """Try the named constants alone if they are few, since a maintainer is likelier to change them than a literal.
+
+        While missions that fail earn the same, a screening would only tell how many constants there are. Finer steps
+        on a few named constants then cost less than first steps on many literals.
+        """
+        tries = self.attempts
+        every, few = tries.units, named(tries.units)
+        if not 0 < len(few) <= BLOCK:
+            return
+        tries.units = tuple(few)
+        for guard in chief:
+            yield from self.first_steps.near(few, guard)
+        until = tries.trials.spent + (tries.trials.budget - tries.trials.spent) // 2
+        yield from self.crossing.across(chief[0], plateau.STEPS[: plateau.FINE_UNTIL], until)
+        self._swept = frozenset(tries.units)
+        tries.units = (*tries.units, *(unit for unit in every if unit not in self._swept))
+
+    def _unswept(self) -> tuple[Unit, ...]:
+        return tuple(unit for unit in self.attempts.units if unit not in self._swept)
+
     def _in_large_steps(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
         """Try every unit in steps that are large enough to show whether it matters."""
         tries, gains = self.attempts, self.attempts.gains
-        for block in blocks(tries.units):
+        for block in blocks(self._unswept()):
             for guard in chief:
                 yield from self.first_steps.near(block, guard)
+        if self._ends():
+            return
         for factor, before in FURTHER:
             for guard in chief:
                 leading = tries.leading(before, guard, -tries.slack)

@@ -182,7 +182,7 @@ def test_seeds_of_missions_with_a_loss_run_in_both_worlds_and_count_towards_the_
 ) -> None:
     order, rollout = missions(tmp_path)
     trials = Trials(unhelpful, 100)
-    found = signs(order, trials)
+    found = signs(order, mission_pairs.mission_pairs(order, trials))
     assert [(one.seed, one.drift) for one in rollout.plans] == [
         (seed, drift) for seed in (3, 4) for drift in (None, "echoes")
     ]
@@ -195,10 +195,10 @@ def test_seeds_of_missions_with_a_loss_run_in_both_worlds_and_count_towards_the_
 
 def test_without_episodes_or_without_a_drift_no_symptoms_are_measured(tmp_path: Path) -> None:
     order, rollout = missions(tmp_path)
-    assert signs(order, Trials(unhelpful, 1)) == Signs()
+    assert signs(order, mission_pairs.mission_pairs(order, Trials(unhelpful, 1))) == Signs()
     order.drift = None
     rollout.plans.clear()
-    assert signs(order, Trials(unhelpful, 100)) == Signs()
+    assert signs(order, mission_pairs.mission_pairs(order, Trials(unhelpful, 100))) == Signs()
     assert not rollout.plans
 
 
@@ -209,7 +209,8 @@ def test_a_sensor_is_compared_only_over_the_steps_that_both_missions_reached(tmp
     assert same.overlap(order, SENSOR) == 1.0
     assert other.overlap(order, SENSOR) == 0.5
     assert Signs().overlap(order, SENSOR) == 0.0
-    found = mission_pairs.signs(*((missions(tmp_path)[0]), Trials(unhelpful, 100)))
+    order, _ = missions(tmp_path)[:2]
+    found = signs(order, mission_pairs.mission_pairs(order, Trials(unhelpful, 100)))
     assert [len(one) for pair in found.cells for one in pair] == [20, 20, 20, 20]
 
 

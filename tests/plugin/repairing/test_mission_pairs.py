@@ -14,7 +14,7 @@ from pytest_tarl.instrumentation.sites import plan
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.repairing import early as module
 from pytest_tarl.repairing.early import FROM, LATER, MOST, PARTLY, Early
-from pytest_tarl.repairing.mission_pairs import NO_SIGNS, Signs, signs
+from pytest_tarl.repairing.mission_pairs import NO_SIGNS, Signs, mission_pairs, signs
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate, Trials
@@ -114,14 +114,14 @@ def test_symptoms_are_measured_where_both_drifted_missions_have_values(tmp_path:
         }
 
     order, _ = recorded(tmp_path, numbers)
-    found = signs(order, Trials(unhelpful, 100))
+    found = signs(order, mission_pairs(order, Trials(unhelpful, 100)))
     assert set(found.strengths) == {site(order, "self.range = ")}  # a publish call has no value of its own
     assert set(found.strengths[site(order, "self.range = ")]) == set(SYMPTOMS)
 
 
 def test_steps_before_the_first_message_and_after_the_shorter_mission_have_no_cell(tmp_path: Path) -> None:
     order, _ = recorded(tmp_path, lambda *_: {})
-    found = signs(order, Trials(unhelpful, 100))
+    found = signs(order, mission_pairs(order, Trials(unhelpful, 100)))
     assert found.cells == ((((7,), (1,)), ((7,), (1,))),) * 2
     assert found.strengths == {}
 
@@ -129,15 +129,15 @@ def test_steps_before_the_first_message_and_after_the_shorter_mission_have_no_ce
 def test_a_mission_that_cannot_run_leaves_no_symptoms(tmp_path: Path) -> None:
     order, rollout = recorded(tmp_path, lambda *_: {"self.range = ": 2}, broken=True)
     trials = Trials(unhelpful, 100)
-    assert signs(order, trials) == NO_SIGNS
+    assert signs(order, mission_pairs(order, trials)) == NO_SIGNS
     assert len(rollout.plans) == trials.spent == 2
 
 
 def test_missions_stop_at_the_end_of_the_budget(tmp_path: Path) -> None:
     order, rollout = recorded(tmp_path, lambda *_: {"self.range = ": 2})
-    assert signs(order, Trials(unhelpful, 3)) == NO_SIGNS
+    assert signs(order, mission_pairs(order, Trials(unhelpful, 3))) == NO_SIGNS
     assert len(rollout.plans) == 3
-    assert signs(order, Trials(unhelpful, 4)) != NO_SIGNS
+    assert signs(order, mission_pairs(order, Trials(unhelpful, 4))) != NO_SIGNS
 
 
 # early
@@ -170,7 +170,9 @@ class Fake:
 def early(monkeypatch: pytest.MonkeyPatch) -> Early:
     monkeypatch.setattr(Fake, "made", [])
     monkeypatch.setattr(module, "Structures", Fake)
-    monkeypatch.setattr(module, "signs", lambda order, trials: [trials.charge(), Signs({"x": {}})][1])
+    monkeypatch.setattr(module, "mission_pairs", lambda order, trials: [trials.charge(), ("pair",)][1])
+    monkeypatch.setattr(module, "signs", lambda order, recorded: Signs({"x": {}}) if recorded else NO_SIGNS)
+    monkeypatch.setattr(module, "hints", lambda order, recorded, operands: [recorded, operands])
     order: Any = SimpleNamespace(goal=SimpleNamespace(wanted=10.0))
     return Early(order, (), Trials(lambda *_: Outcome(0.0, False), 1000))
 
@@ -233,3 +235,11 @@ def test_effects_are_empty_until_changes_were_tried(early: Early) -> None:
     assert dict(early.effects()) == {"here": []}
     assert list(early.candidates()) == []
     assert len(Fake.made) == 1
+
+
+def test_the_changes_that_missions_suggest_use_the_same_pairs(early: Early) -> None:
+    found: Any = early.measured(["GAIN"])  # type: ignore[list-item]
+    assert found == [("pair",), ["GAIN"]]
+    assert early.trials.spent == 1
+    assert early.signs(early.trials) == Signs({"x": {}})
+    assert early.trials.spent == 1

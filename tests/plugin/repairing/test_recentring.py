@@ -58,3 +58,44 @@ def test_a_value_that_loses_nothing_is_not_moved() -> None:
 
 def test_failed_missions_do_not_move_the_value() -> None:
     assert recentred(1.94, failing=True) == []
+
+
+def nearer(window: tuple[float, float]) -> list[float]:
+    """Return the factors proposed after a test of factor 2.2 whose missions pass but cost too much as designed."""
+    candidate = Candidate((Mutation(LITERAL, 4.4),), ALWAYS)
+    seen = tuple(Outcome(10.0, True) for _ in range(60))
+    missed = Missed()
+    missed.learn(
+        candidate,
+        Acceptance(
+            False, "not shown", seen, seen, seeds=tuple(range(60)), designed=(10.0,) * 60, costly=True
+        ),
+        GOAL,
+        REFERENCE,
+    )
+    assert (missed.costly, set(missed.spread)) == ({candidate}, set())
+
+    def run(one: Candidate, seed: int) -> Outcome:
+        low = window[0] if seed == 2 else 1.0  # the other missions tell nothing
+        good = low < (factor(one.mutations[0]) or 1.0) < window[1]
+        return Outcome(10.0 if good else 0.0, good)
+
+    goal = Goal(tuple(Pair(seed, 0.0) for seed in range(4)), near=9.0, enough=9.5, online=0.0, passing=True)
+    mutants: Any = SimpleNamespace(mutate=mutations, order=SimpleNamespace(goal=goal, reference=REFERENCE))
+    trials = Trials(run, 300)
+    trials.misses[2] = 1
+    others = Others(mutants, Ledger(), missed)
+    found = [factor(one.mutations[0]) or 1.0 for one in others.improved(candidate, trials)]
+    assert list(others.nearer(candidate, trials)) == []  # once
+    assert trials.spent <= 12
+    return found
+
+
+@pytest.mark.parametrize("low", [1.3, 1.6, 1.9])
+def test_a_value_that_costs_too_much_as_designed_becomes_smaller_but_still_succeeds(low: float) -> None:
+    (by,) = nearer((low, 3.0))
+    assert low < by < 2.2
+
+
+def test_if_no_smaller_value_succeeds_nothing_is_proposed() -> None:
+    assert nearer((2.19, 3.0)) == []

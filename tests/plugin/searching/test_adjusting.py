@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,12 +11,13 @@ import pytest
 
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import mutations
-from pytest_tarl.searching.adjusting import REFINED, ROUNDS, Adjusting
+from pytest_tarl.searching.adjusting import IDLE, REFINED, ROUNDS, Adjusting
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.search import Candidate, Goal, Pair
 from pytest_tarl.searching.units import Unit
 from tests.plugin.searching.test_alternatives_by_hand import A, B, entered
+from tests.plugin.searching.test_gains import constant
 from tests.plugin.searching.test_search import operand
 
 
@@ -146,3 +148,27 @@ def test_the_fixed_parameters_of_a_promising_proposal_are_varied_once() -> None:
     assert climbed == [(((A, 2.2),), B)]
     assert varied(3.9) == 0
     assert varied(4.0, proposed=False) == 0
+
+
+def test_a_gain_that_stays_the_same_between_two_values_is_not_refined_for_ever() -> None:
+    """A threshold that is low enough lets missions last longer; another one fails them then."""
+    found, search = adjusted(entered((A, 2.2, 3.0)), {one / 1000: 3.0 for one in range(1, 60000)})
+    for _ in range(5):
+        assert list(found.refine(0)) == []
+    assert len(search.tried) == 2 * IDLE
+    much = entered((A, 2.2, 5.0))
+    found, search = adjusted(much, {one / 1000: 5.0 for one in range(1, 60000)})
+    for _ in range(5):
+        assert list(found.refine(0)) == []
+    assert len(search.tried) == REFINED
+
+
+def test_of_uses_that_act_alike_only_the_first_is_refined() -> None:
+    whole = Unit((constant(3, "AHEAD", 0.65),))
+    use = Unit((replace(constant(8, "AHEAD", 0.65), definition=whole.operands[0].definition),))
+    gains = entered((whole, 2.2, 3.0), (whole, 0.4, -1.0), (use, 2.2, 3.0), (use, 0.4, -1.0))
+    found, _ = adjusted(gains)
+    assert set(found.refined) == {(whole, ALWAYS)}
+    gains = entered((whole, 2.2, 2.0), (whole, 0.4, -1.0), (use, 2.2, 3.0), (use, 0.4, -1.0))
+    found, _ = adjusted(gains)
+    assert set(found.refined) == {(use, ALWAYS)}

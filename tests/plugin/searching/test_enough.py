@@ -6,7 +6,8 @@ import pytest
 
 from pytest_tarl.model import Guard
 from pytest_tarl.searching.accept import Outcome
-from pytest_tarl.searching.search import CONFIRMATIONS, Candidate, Goal, Pair, Trials, confirmed
+from pytest_tarl.searching.confirming import CONFIRMATIONS, confirmed
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 
 CANDIDATE = Candidate((), Guard(()))
 

@@ -9,7 +9,8 @@ from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.search import CONFIRMATIONS, Candidate, Goal, Pair, Trials, confirmed
+from pytest_tarl.searching.confirming import CONFIRMATIONS, confirmed
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.sensors import Sensor
 from tests.plugin.searching.test_forward_selection import operand

@@ -80,3 +80,40 @@ def test_a_change_found_in_a_screening_is_compared_with_named_constants() -> Non
         (*literals, threshold), mutations, (ALWAYS,), Trials(run, 400), GOAL, generator(0, "screening")
     )
     assert [one.operand for one in next(sweep.candidates()).mutations] == [threshold]
+
+
+def test_few_named_constants_come_before_a_screening_and_get_finer_steps_while_nothing_gains() -> None:
+    literals = [operand(line, "1.0", 1.0) for line in range(60)]
+    names = [operand(line, f"NAME_{line}", 1.0, named=True) for line in range(100, 104)]
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        values = {one.operand: float(one.value) for one in candidate.mutations}
+        right = 1.07 < values.get(names[2], 1.0) < 1.13
+        outputs = (("out", tuple(values.get(one, 1.0) for one in names)),)
+        return Outcome(10.0 if right else 0.0, right, steps=9, outputs=outputs)
+
+    def unchanged(seed: int) -> Outcome:
+        return run(Candidate((), ALWAYS), seed)
+
+    trials = Trials(run, 400, unchanged=unchanged)
+    sweep = Sweep((*literals, *names), mutations, (ALWAYS,), trials, GOAL, generator(0, "sweep"))
+    found = next(sweep.candidates())
+    assert [one.operand for one in found.mutations] == [names[2]]
+    assert not any("→" in label for label in trials.labels)
+
+
+def test_literals_are_screened_without_the_named_constants_that_were_tried_before() -> None:
+    literals = [operand(line, "1.0", 1.0) for line in range(60)]
+    names = [operand(line, f"NAME_{line}", 1.0, named=True) for line in range(100, 104)]
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        values = {one.operand: float(one.value) for one in candidate.mutations}
+        right = values.get(literals[40], 1.0) > 2.0
+        return Outcome(10.0 if right else 0.0, right)
+
+    trials = Trials(run, 400)
+    sweep = Sweep((*literals, *names), mutations, (ALWAYS,), trials, GOAL, generator(0, "sweep"))
+    assert [one.operand for one in next(sweep.candidates()).mutations] == [literals[40]]
+    together = [label for label in trials.labels if ", " in label]
+    assert together
+    assert not any("NAME" in label for label in together)

@@ -15,16 +15,14 @@ from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import Template
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.confirming import CONFIRMATIONS, SHORT, confirmed
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
 from pytest_tarl.searching.search import (
-    CONFIRMATIONS,
-    SHORT,
     BudgetSpentError,
     Candidate,
     Goal,
     Pair,
     Trials,
-    confirmed,
     effective_value,
     label,
 )

@@ -10,14 +10,13 @@ import pytest
 from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome, Reference, risk_of
 from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.confirming import _hardest_first, confirmed
 from pytest_tarl.searching.search import (
     BudgetSpentError,
     Candidate,
     Goal,
     Pair,
     Trials,
-    _hardest_first,
-    confirmed,
     effective_value,
     label,
     operand_effect,

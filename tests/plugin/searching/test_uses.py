@@ -107,3 +107,22 @@ def test_the_uses_of_a_constant_are_moved_and_compared_as_one() -> None:
     mixed = Candidate(Unit((FIRST, OTHERS[0])).mutations(mutations, 1.5), ALWAYS)
     assert common_factor(mixed) is None
     assert moved(mixed, 1.1, mutations) is None
+
+
+def test_a_use_runs_on_the_seed_of_the_whole_constant() -> None:
+    ran: dict[tuple[str, float], list[int]] = {}
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        values = {float(one.value) for one in candidate.mutations}
+        uses = "+".join(str(one.operand.span.line) for one in candidate.mutations)
+        ran.setdefault((uses, max(values)), []).append(seed)
+        return Outcome(0.1 * max(values), False, steps=50)
+
+    sweep = Sweep([FIRST, *OTHERS, SECOND], mutations, (ALWAYS,), Trials(run, 300), GOAL)
+    assert list(sweep.candidates()) == []
+    for by in (2.2, 0.4):
+        assert ran["3", by][0] == ran["8", by][0] == ran["3+8", by][0]
+    others = {
+        uses for uses, value in ran if value not in (2.2, 0.4)
+    }  # both uses act alike, so one of them goes on
+    assert "8" not in others

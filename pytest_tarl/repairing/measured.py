@@ -1,0 +1,193 @@
+"""Steps that recorded missions suggest: values of the node differ between both worlds by a factor or by an offset.
+
+If electrodes deliver 45 % of the signal, the threshold with which the signal is compared must be 45 % as large. If a
+sensor reads 14 more, so must the set point from which its value is subtracted. Such steps have the unit and the size of
+the error, which fixed factors hit by chance only. They are stated by mission pairs with common seeds.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import exp, log
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.instrumentation.sites import plan
+from pytest_tarl.patching.document import Document, document
+from pytest_tarl.repairing.mission_pairs import Recorded, series
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.searching.first_steps import Hint
+from pytest_tarl.searching.plainness import Oddness, writing
+from pytest_tarl.symptoms.series import Pair
+from tarl_lint.model import Operand
+
+MOST = 6  # maximum number of hints
+LEAST = 0.05  # minimum change of a value, as a logarithm or as a share of its designed size
+AGREE = 0.25  # maximum disagreement of the pairs, as a share of the change
+ALIKE = 0.05  # maximum difference of the logarithms of two factors that count as one
+LARGEST = 20.0  # maximum factor of a hint, and its inverse
+
+
+@dataclass(frozen=True)
+class Change:
+    """How a value differs in the drifted world: by a factor and by a difference, each None unless the pairs agree."""
+
+    ratio: float | None
+    difference: float | None
+
+
+def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand]) -> list[Hint]:
+    """Return the changes of named constants that the recorded mission pairs suggest, the most certain ones first.
+
+    A constant that is compared with a value, added to it or subtracted from it has its unit, so that it must change as
+    the value did: constants next to values with the same factor change together, then each alone, then by the
+    difference. A constant that multiplies or divides a value changes by the factor of the result, in either direction.
+    """
+    changes = _changes(order, recorded)
+    beside: list[tuple[Operand, float]] = []
+    shifted: list[Hint] = []
+    scaled: list[Hint] = []
+    for operand in _first_uses(operands):
+        found = _place(order, operand)
+        if found is None or not operand.value or isinstance(operand.value, bool):
+            continue
+        value = float(operand.value)
+        for change in _beside(order, changes, operand, *found):
+            beside += [(operand, change.ratio)] if change.ratio else []
+            shifted += [((operand, 1.0 + change.difference / value),)] if change.difference else []
+        own = changes.get(str(operand.site))
+        if own is not None and own.ratio is not None and _multiplies(*found):
+            scaled += [((operand, 1.0 / own.ratio),), ((operand, own.ratio),)]
+    every = [*_together(beside), *(((operand, by),) for operand, by in beside), *shifted, *scaled]
+    fitting = [hint for hint in every if all(_sensible(by) for _, by in hint)]
+    return list(dict.fromkeys(tuple((one, float(f"{by:.3g}")) for one, by in hint) for hint in fitting))[
+        :MOST
+    ]
+
+
+def _first_uses(operands: Sequence[Operand]) -> Iterator[Operand]:
+    """Yield the named constants; of the uses of one constant in one statement, only the first."""
+    known: set[object] = set()
+    for operand in operands:
+        key = (operand.site, operand.code)
+        if writing(operand) is Oddness.NAMED and key not in known:
+            known.add(key)
+            yield operand
+
+
+def _sensible(by: float) -> bool:
+    return 1.0 / LARGEST <= by <= LARGEST and abs(log(by)) >= LEAST
+
+
+def _together(beside: Sequence[tuple[Operand, float]]) -> Iterator[Hint]:
+    """Yield the constants that change by about the same factor, if there are several."""
+    left = list(beside)
+    while left:
+        first = left[0]
+        alike = {one: by for one, by in left if abs(log(by) - log(first[1])) <= ALIKE}
+        left = [part for part in left if abs(log(part[1]) - log(first[1])) > ALIKE]
+        if len({one.definition or one for one in alike}) > 1:
+            yield tuple(alike.items())
+
+
+def _changes(order: Order, recorded: Sequence[Recorded]) -> dict[str, Change]:
+    """Return, by site id, how the values of each statement differ in the drifted world."""
+    found: dict[str, Change] = {}
+    for number, place in enumerate(plan(order.analysis).places):
+        pairs = [Pair(series(one, number), series(other, number)).together() for one, other in recorded]
+        if pairs and all(one.designed.values.size and one.drifted.values.size for one in pairs):
+            found[place.id] = _change(pairs)
+    return found
+
+
+def _change(pairs: Sequence[Pair]) -> Change:
+    sizes = [tuple(float(abs(one.values).mean()) for one in (pair.designed, pair.drifted)) for pair in pairs]
+    means = [tuple(float(one.values.mean()) for one in (pair.designed, pair.drifted)) for pair in pairs]
+    ratio = None
+    if all(designed > 0 and drifted > 0 for designed, drifted in sizes):
+        by = _agreed([log(drifted / designed) for designed, drifted in sizes], LEAST)
+        ratio = exp(by) if by is not None else None
+    usual = max(designed for designed, _ in sizes)
+    return Change(ratio, _agreed([drifted - designed for designed, drifted in means], LEAST * usual))
+
+
+def _agreed(changes: Sequence[float], least: float) -> float | None:
+    """Return the mean of the pairs' changes if it is at least `least` and the pairs agree, else None."""
+    mean = sum(changes) / len(changes)
+    spread = max(changes) - min(changes)
+    return mean if abs(mean) >= max(least, 1e-12) and spread <= AGREE * abs(mean) else None
+
+
+def _place(order: Order, operand: Operand) -> tuple[Document, ast.expr] | None:
+    try:
+        source = document(operand.span.path, order.analysis.sources[operand.span.path])
+        return source, source.find(operand.span)
+    except (RepairError, KeyError):
+        return None
+
+
+def _beside(
+    order: Order, changes: Mapping[str, Change], operand: Operand, source: Document, node: ast.expr
+) -> Iterator[Change]:
+    """Yield the changes of the values with which a constant is compared, or to which it is added."""
+    inner: ast.AST = node
+    for around in source.ancestors(node):
+        if isinstance(around, ast.Compare):
+            others = [one for one in (around.left, *around.comparators) if one is not inner]
+        elif isinstance(around, ast.BinOp) and isinstance(around.op, ast.Add | ast.Sub):
+            others = [around.right if around.left is inner else around.left]
+        elif isinstance(around, ast.UnaryOp):
+            inner = around
+            continue
+        else:
+            return
+        for other in others:
+            sites = _made_at(order, operand, source, other)
+            known = (changes[site] for site in sites if site in changes)
+            yield from (_mirrored(one, around, inner, node) for one in known)
+        if isinstance(around, ast.Compare):
+            return
+        inner = around
+
+
+def _mirrored(change: Change, around: ast.AST, inner: ast.AST, node: ast.expr) -> Change:
+    """Return the change of the constant: opposite if `-constant` is compared, or if a value is added to it."""
+    opposite = isinstance(inner, ast.UnaryOp) and isinstance(inner.op, ast.USub) and inner.operand is node
+    if isinstance(around, ast.BinOp) and isinstance(around.op, ast.Add):
+        opposite = not opposite
+    difference = change.difference
+    return Change(change.ratio, -difference if opposite and difference else difference)
+
+
+def _made_at(order: Order, operand: Operand, source: Document, node: ast.expr) -> list[str]:
+    """Return the ids of the sites that assign a name or attribute, in the same function if it is a local name."""
+    if not isinstance(node, ast.Name | ast.Attribute):
+        return []
+    code, found = ast.unparse(node), []
+    for step in order.analysis.sites:
+        site = step.site
+        if step.span.path != source.path or (
+            isinstance(node, ast.Name) and site.qualname != operand.site.qualname
+        ):
+            continue
+        if _assigned(site.text) == code:
+            found.append(str(site))
+    return found
+
+
+def _assigned(text: str) -> str:
+    """Return the name or attribute that a statement assigns, or "" if it is none."""
+    try:
+        statement = ast.parse(text).body[0]
+    except (SyntaxError, IndexError):
+        return ""
+    if isinstance(statement, ast.AugAssign | ast.AnnAssign):
+        return ast.unparse(statement.target)
+    return ast.unparse(statement.targets[0]) if isinstance(statement, ast.Assign) else ""
+
+
+def _multiplies(source: Document, node: ast.expr) -> bool:
+    """Return whether a constant is a factor or a divisor."""
+    around = source.parents.get(node)
+    return isinstance(around, ast.BinOp) and isinstance(around.op, ast.Mult | ast.Div)

@@ -1,0 +1,128 @@
+"""Changes of constants that recorded missions suggest, from how values differ between both worlds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl.instrumentation.sites import plan
+from pytest_tarl.repairing.measured import MOST, hints
+from pytest_tarl.repairing.strategies import operands
+from pytest_tarl.searching.first_steps import Hint
+from tarl_lint.api import Analysis, analyse
+
+HAND = """\
+import rospy
+from std_msgs.msg import Float64
+
+FLEXOR_ON = 0.42
+EXTENSOR_ON = 0.36
+TARGET = 50.0
+TRIM = 4.0
+GAIN = 3.0
+
+
+class Hand:
+    def __init__(self):
+        self.flexor = 0.0
+        self.extensor = 0.0
+        self.out = rospy.Publisher("/out", Float64, queue_size=1)
+        rospy.Subscriber("/flexor", Float64, self.on_flexor)
+        rospy.Subscriber("/extensor", Float64, self.on_extensor)
+        rospy.Subscriber("/level", Float64, self.on_level)
+
+    def on_flexor(self, msg):
+        self.flexor = abs(msg.data)
+        if self.flexor > FLEXOR_ON:
+            self.out.publish(Float64(data=1.0))
+
+    def on_extensor(self, msg):
+        self.extensor = abs(msg.data)
+        if self.extensor > EXTENSOR_ON:
+            self.out.publish(Float64(data=-1.0))
+
+    def on_level(self, msg):
+        level = 2.0 * msg.data
+        error = TARGET - level
+        trimmed = level + TRIM
+        push = GAIN * error
+        self.out.publish(Float64(data=push + trimmed))
+
+
+rospy.init_node("hand")
+Hand()
+rospy.spin()
+"""
+FLEXOR, EXTENSOR, LEVEL, PUSH = "self.flexor = ", "self.extensor = ", "level = ", "push = "
+
+
+def analysed(folder: Path) -> Analysis:
+    (folder / "hand.py").write_text(HAND)
+    return analyse([folder / "hand.py"], root=folder)
+
+
+def suggested(folder: Path, *missions: dict[str, tuple[float, float]]) -> list[dict[str, float]]:
+    """Return the hints for mission pairs, given by the values of statements as designed and under the drift."""
+    analysis = analysed(folder)
+    places = plan(analysis).places
+
+    def trace(values: dict[str, tuple[float, float]], world: int) -> Any:
+        numbers = [
+            (number, pair[world])
+            for number, place in enumerate(places)
+            for code, pair in values.items()
+            if f":{code}" in place.id
+        ]
+        events = [(number, step, value) for step in range(5) for number, value in numbers]
+        site, step, flow = zip(*events, strict=True)
+        return SimpleNamespace(
+            site=np.array(site), event_step=np.array(step), flow=np.array(flow), reward=np.zeros(5)
+        )
+
+    order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=()))
+    recorded: Any = [(trace(values, 0), trace(values, 1)) for values in missions]
+    found: list[Hint] = hints(order, recorded, operands(order))
+    return [{operand.code: factor for operand, factor in hint} for hint in found]
+
+
+def test_constants_beside_values_with_the_same_factor_change_together_then_alone(tmp_path: Path) -> None:
+    weak = {FLEXOR: (0.8, 0.36), EXTENSOR: (0.6, 0.27)}
+    found = suggested(tmp_path, weak, {FLEXOR: (0.7, 0.315), EXTENSOR: (0.5, 0.225)})
+    assert found[:3] == [{"FLEXOR_ON": 0.45, "EXTENSOR_ON": 0.45}, {"FLEXOR_ON": 0.45}, {"EXTENSOR_ON": 0.45}]
+
+
+def test_a_constant_with_the_unit_of_a_value_changes_by_its_offset(tmp_path: Path) -> None:
+    found = suggested(tmp_path, {LEVEL: (40.0, 54.0)}, {LEVEL: (42.0, 56.0)})
+    assert {"TARGET": 1.28} in found  # 50 + 14
+    assert {"TRIM": -2.5} not in found  # a changed sign is no measured step
+    found = suggested(tmp_path, {LEVEL: (40.0, 37.0)}, {LEVEL: (42.0, 39.0)})
+    assert {"TRIM": 1.75} in found  # what the level lost is added
+    assert {"TARGET": 0.94} in found
+
+
+def test_a_factor_changes_by_that_of_its_result_in_either_direction(tmp_path: Path) -> None:
+    assert suggested(tmp_path, {PUSH: (2.0, 6.0)}, {PUSH: (1.0, 3.1)}) == [{"GAIN": 0.328}, {"GAIN": 3.05}]
+
+
+@pytest.mark.parametrize(
+    "second",
+    [{FLEXOR: (0.8, 0.7)}, {FLEXOR: (0.8, 0.9)}, {EXTENSOR: (0.8, 0.36)}],
+    ids=["another factor", "another direction", "no value"],
+)
+def test_pairs_that_disagree_suggest_nothing(tmp_path: Path, second: dict[str, tuple[float, float]]) -> None:
+    assert suggested(tmp_path, {FLEXOR: (0.8, 0.36)}, second) == []
+
+
+def test_small_and_huge_changes_suggest_nothing(tmp_path: Path) -> None:
+    assert suggested(tmp_path, {FLEXOR: (0.8, 0.79)}) == []
+    assert suggested(tmp_path, {PUSH: (0.001, 6.0)}) == []
+    assert hints(SimpleNamespace(analysis=analysed(tmp_path)), [], ()) == []  # type: ignore[arg-type]
+
+
+def test_there_are_few_suggestions(tmp_path: Path) -> None:
+    every = dict.fromkeys((FLEXOR, EXTENSOR, LEVEL, PUSH), (1.0, 1.5))
+    assert len(suggested(tmp_path, every)) == MOST
