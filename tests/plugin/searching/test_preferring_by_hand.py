@@ -197,7 +197,10 @@ def test_a_constant_in_a_place_without_the_sensor_is_tried_without_a_condition()
             raise RepairError("no sensor here")
         return Outcome(5.0 if candidate.mutations[0].operand.code == "A" else 0.0, False)
 
-    for guards, expected in (((WET, ALWAYS), [WET, WET, ALWAYS, ALWAYS, ALWAYS, ALWAYS]), ((WET,), [WET, WET])):
+    for guards, expected in (
+        ((WET, ALWAYS), [WET, WET, ALWAYS, ALWAYS, ALWAYS, ALWAYS]),
+        ((WET,), [WET, WET]),
+    ):
         search = Scripted([ZERO, A], run, guards=guards, proposed=True)
         before(search, ZERO, 2.2)
         assert search.guarded == expected
@@ -290,7 +293,9 @@ def window(*good: tuple[Unit, float, float], total: float = 10.0) -> Act:
     return run
 
 
-def test_the_value_halfway_to_the_old_one_comes_first_if_a_nearer_one_reaches_the_goal_on_three_seeds() -> None:
+def test_the_value_halfway_to_the_old_one_comes_first_if_a_nearer_one_reaches_the_goal_on_three_seeds() -> (
+    None
+):
     search = Scripted([A], window((A, 1.3, 3.0)), [(A, 1.483)])
     assert before(search, A, 2.2) == [change(A, 1.483)]
     assert search.log == [("holding", "A", 1.483, 0)]
@@ -375,6 +380,18 @@ def test_a_small_step_that_gains_nine_tenths_of_the_wanted_gain_is_moved_a_littl
     assert search.tries[: 2 + len(beside)] == [("B", 0.82), *beside, ("B", 1.22)]
 
 
+def test_a_small_step_that_cannot_be_written_is_not_moved() -> None:
+    def run(candidate: Candidate, _: int) -> Outcome:
+        if candidate.mutations[0].operand.code == "B":
+            raise RepairError("no place")
+        return Outcome(0.0, False)
+
+    search = Scripted([A, B], run, goal=replace(GOAL, near=0.2, enough=0.5))
+    search.gains.enter((A, ALWAYS), 1.5, 0.0)
+    before(search, A, 3.0)
+    assert search.tries == [("B", 0.82), ("B", 1.22)]
+
+
 def test_a_small_change_whose_missions_differ_more_from_the_design_is_set_aside() -> None:
     late = (0.0,) * 9 + (10.0,)
 
@@ -438,7 +455,7 @@ def courses(levels: Mapping[str, float], totals: Mapping[str, float] | None = No
     def run(candidate: Candidate, _: int) -> Outcome:
         code = candidate.mutations[0].operand.code
         late = levels[code]
-        rewards = tuple(1.0 - late for _ in range(9)) + (1.0 + 9 * late,)
+        rewards = (*[1.0 - late] * 9, 1.0 + 9 * late)
         return Outcome((totals or {}).get(code, 10.0), True, rewards=rewards, steps=10)
 
     return run
@@ -509,7 +526,7 @@ def test_the_exact_value_of_the_constant_itself_comes_before_any_rival() -> None
     def run(candidate: Candidate, _: int) -> Outcome:
         (one,) = candidate.mutations
         late = min(abs(one.value - 1.6246), 1.0)
-        return Outcome(10.0, True, rewards=tuple(1.0 - late for _ in range(9)) + (1.0 + 9 * late,))
+        return Outcome(10.0, True, rewards=(*[1.0 - late] * 9, 1.0 + 9 * late))
 
     search = Scripted([A, B], run, [(A, 1.625)], design=design)
     search.gains.enter((A, ALWAYS), 1.5, 0.0)
