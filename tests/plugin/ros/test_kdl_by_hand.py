@@ -1,0 +1,608 @@
+"""Geometry and kinematics of PyKDL, worked out apart from it: with numpy, and by hand."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from math import cos, inf, pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl.errors import UnsupportedApiError
+from pytest_tarl.ros import kdl
+from pytest_tarl.ros.kdl import Frame, Rotation, Twist, Vector, Wrench
+from pytest_tarl.ros.kdl.chains import Chain, Jacobian, JntArray, Joint, JointKind, Segment, Tree
+from pytest_tarl.ros.kdl.solvers import (
+    ChainFkSolverPos_recursive,
+    ChainIkSolverPos_LMA,
+    ChainIkSolverPos_NR,
+    ChainIkSolverVel_pinv,
+    ChainJntToJacSolver,
+)
+from pytest_tarl.ros.kdl_parser import treeFromString
+from tests.plugin.ros.test_kdl import LOAD, MOTION, POSE, TURN, arm, joints
+
+A, B = Vector(1.0, 2.0, 3.0), Vector(-4.0, 0.5, 6.0)
+
+
+def numbers(values: Any) -> list[float]:
+    return [*values]
+
+
+def near(*values: float) -> Any:
+    return pytest.approx(list(values), abs=1e-9)
+
+
+def matrix(turn: Rotation) -> np.ndarray:
+    return np.array([*turn]).reshape(3, 3)
+
+
+# vectors
+
+
+def test_vectors_are_added_scaled_and_multiplied_crosswise() -> None:
+    assert numbers(A + B) == [-3.0, 2.5, 9.0]
+    assert numbers(A - B) == [5.0, 1.5, -3.0]
+    assert numbers(-A) == [-1.0, -2.0, -3.0]
+    assert numbers(A * 2) == numbers(2 * A) == [2.0, 4.0, 6.0]
+    assert numbers(A / 2) == [0.5, 1.0, 1.5]
+    assert numbers(A * B) == np.cross([1, 2, 3], [-4, 0.5, 6]).tolist()
+    assert kdl.dot(A, B) == 15.0
+
+
+def test_a_vector_is_made_of_numbers_of_names_or_of_another_vector() -> None:
+    assert numbers(Vector()) == [0.0, 0.0, 0.0]
+    assert numbers(Vector(1, z=3, y=2)) == [1.0, 2.0, 3.0]
+    copied = Vector(A)
+    copied[0] = 9.0
+    assert numbers(A) == [1.0, 2.0, 3.0]
+    for wrong in (
+        lambda: Vector(1),
+        lambda: Vector(1, 2, 3, 4),
+        lambda: Vector(1, 2, 3, x=1),
+        lambda: Vector(y=1),
+    ):
+        with pytest.raises(TypeError, match="Vector takes nothing, three numbers or a Vector"):
+            wrong()
+
+
+def test_coordinates_are_read_and_set_by_name_and_number() -> None:
+    one = Vector(1, 2, 3)
+    assert (one.x(), one.y(), one.z()) == (1.0, 2.0, 3.0)
+    assert one.x(7) is None
+    one.y(0)
+    one[2] = -1
+    assert numbers(one) == [7.0, 0.0, -1.0]
+    for place in (-1, 3):
+        with pytest.raises(IndexError, match="Vector index out of range"):
+            one[place] = 1.0
+
+
+def test_changing_a_sum_does_not_change_its_parts() -> None:
+    one = Vector(A)
+    same = one
+    one += B
+    one -= Vector(1, 1, 1)
+    assert same is one
+    assert numbers(one) == [-4.0, 1.5, 8.0]
+    one.ReverseSign()
+    assert numbers(one) == [4.0, -1.5, -8.0]
+
+
+def test_lengths_below_the_tolerance_count_as_zero() -> None:
+    assert Vector(3, 4, 12).Norm() == 13.0
+    assert Vector(1e-6, 0, 0).Norm() == 1e-6
+    assert Vector(9e-7, 9e-7, 0).Norm() == 0.0
+    assert Vector(0, -2e-3, 0).Norm(1e-2) == 0.0
+    one = Vector(0, 0, -2)
+    assert one.Normalize() == 2.0
+    assert numbers(one) == [0.0, 0.0, -1.0]
+    assert one.Normalize(3.0) == 1.0
+    assert numbers(one) == [1.0, 0.0, 0.0]
+
+
+def test_vectors_are_equal_if_all_coordinates_differ_by_less_than_a_millionth() -> None:
+    assert Vector(1, 2, 3.0000009) == A
+    assert Vector(1, 2, 3.000002) != A
+    assert A != [1.0, 2.0, 3.0]
+    assert kdl.Equal(A, Vector(1, 2, 3.4), 0.5)
+    assert not kdl.Equal(A, Vector(1, 2.5, 3), 0.5)
+
+
+def test_other_operands_are_refused() -> None:
+    for wrong in (lambda: A + 1, lambda: A - 1, lambda: A * "x", lambda: A / A, lambda: MOTION + LOAD):
+        with pytest.raises(TypeError):
+            wrong()
+
+
+@pytest.mark.parametrize(
+    "one", [A, MOTION, LOAD, TURN, POSE], ids=["vector", "twist", "wrench", "rotation", "frame"]
+)
+def test_a_copy_is_equal_and_independent(one: Any) -> None:
+    for same in (copy.copy(one), copy.deepcopy(one), pickle.loads(pickle.dumps(one)), type(one)(one)):
+        assert type(same) is type(one)
+        assert same == one
+        assert same is not one
+    place: Any = 0 if isinstance(one, Vector | Twist | Wrench) else (0, 0)
+    before, changed = one[place], copy.copy(one)
+    changed[place] = before + 5.0
+    assert one[place] == before
+    assert changed != one
+
+
+# twists and wrenches
+
+
+def test_the_numbers_of_a_twist_are_its_velocity_and_its_angular_velocity() -> None:
+    one = Twist(A, B)
+    assert numbers(one) == [1.0, 2.0, 3.0, -4.0, 0.5, 6.0]
+    assert (one[2], one[3]) == (3.0, -4.0)
+    one[1], one[5] = 8.0, 9.0
+    assert (numbers(one.vel), numbers(one.rot)) == ([1.0, 8.0, 3.0], [-4.0, 0.5, 9.0])
+    for place in (-1, 6):
+        with pytest.raises(IndexError, match="Twist index out of range"):
+            one[place]
+        with pytest.raises(IndexError, match="Twist index out of range"):
+            one[place] = 0.0
+
+
+def test_twists_are_added_scaled_and_reversed() -> None:
+    one, other = Twist(A, B), Twist(B, A)
+    assert numbers(one + other) == numbers(other + one) == [-3.0, 2.5, 9.0] * 2
+    assert numbers(one - other) == [5.0, 1.5, -3.0, -5.0, -1.5, 3.0]
+    assert numbers(one * 2) == numbers(2 * one) == [2.0, 4.0, 6.0, -8.0, 1.0, 12.0]
+    assert numbers(one / 2) == [0.5, 1.0, 1.5, -2.0, 0.25, 3.0]
+    one += other
+    one -= Twist(Vector(1, 1, 1), Vector())
+    assert numbers(one) == [-4.0, 1.5, 8.0, -3.0, 2.5, 9.0]
+    one.ReverseSign()
+    assert numbers(one) == [4.0, -1.5, -8.0, 3.0, -2.5, -9.0]
+    assert numbers(Twist.Zero()) == [0.0] * 6
+
+
+def test_moving_the_reference_point_changes_the_velocity_or_the_torque() -> None:
+    moved = Vector(0, 1, 0)
+    twist = Twist(Vector(1, 0, 0), Vector(0, 0, 2)).RefPoint(moved)
+    assert numbers(twist) == [-1.0, 0.0, 0.0, 0.0, 0.0, 2.0]  # ω × r = (-2, 0, 0)
+    wrench = Wrench(Vector(1, 0, 0), Vector(0, 0, 2)).RefPoint(moved)
+    assert numbers(wrench) == [1.0, 0.0, 0.0, 0.0, 0.0, 3.0]  # f × r = (0, 0, 1)
+
+
+def test_the_parts_of_a_wrench_are_set_as_copies() -> None:
+    force = Vector(1, 2, 3)
+    one = Wrench()
+    one.force, one.torque = force, B
+    force[0] = 9.0
+    assert (numbers(one.force), numbers(one.torque)) == ([1.0, 2.0, 3.0], numbers(B))
+    with pytest.raises(TypeError, match="Wrench takes nothing, two Vectors or a copy"):
+        Wrench(A)
+    with pytest.raises(TypeError, match="Twist takes"):
+        Twist(Wrench())
+
+
+# rotations
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, -2.0, pi / 2])
+def test_a_rotation_about_an_axis_turns_the_other_two(angle: float) -> None:
+    c, s = cos(angle), sin(angle)
+    assert numbers(Rotation.RotX(angle)) == near(1, 0, 0, 0, c, -s, 0, s, c)
+    assert numbers(Rotation.RotY(angle)) == near(c, 0, s, 0, 1, 0, -s, 0, c)
+    assert numbers(Rotation.RotZ(angle)) == near(c, -s, 0, s, c, 0, 0, 0, 1)
+
+
+def test_angles_are_applied_in_their_order() -> None:
+    x, y, z = (matrix(one) for one in (Rotation.RotX(0.1), Rotation.RotY(0.2), Rotation.RotZ(0.3)))
+    assert np.allclose(matrix(Rotation.RPY(0.1, 0.2, 0.3)), z @ y @ x)
+    assert np.allclose(matrix(Rotation.EulerZYX(0.3, 0.2, 0.1)), z @ y @ x)
+    last = matrix(Rotation.RotZ(0.4))
+    assert np.allclose(matrix(Rotation.EulerZYZ(0.3, 0.2, 0.4)), z @ y @ last)
+    turned = Rotation.RotZ(0.3)
+    turned.DoRotY(0.2)
+    turned.DoRotX(0.1)
+    assert np.allclose(matrix(turned), z @ y @ x)
+    turned.DoRotZ(0.4)
+    assert np.allclose(matrix(turned), z @ y @ x @ last)
+
+
+def test_the_angles_of_a_rotation_are_read_back() -> None:
+    assert Rotation.RPY(0.1, 0.2, 0.3).GetEulerZYX() == pytest.approx((0.3, 0.2, 0.1))
+    assert Rotation.EulerZYZ(0.3, 0.2, 0.4).GetEulerZYZ() == pytest.approx((0.3, 0.2, 0.4))
+    assert Rotation.RPY(0.4, pi / 2, 0.1).GetRPY() == pytest.approx((0.0, pi / 2, -0.3))
+    assert Rotation.RPY(0.4, -pi / 2, 0.1).GetRPY() == pytest.approx((0.0, -pi / 2, 0.5))
+    assert Rotation.RotZ(0.7).GetEulerZYZ() == pytest.approx((0.7, 0.0, 0.0))
+    flipped = Rotation.EulerZYZ(0.7, pi, 0.2)
+    assert flipped.GetEulerZYZ() == pytest.approx((0.5, pi, 0.0))
+    assert kdl.Equal(Rotation.EulerZYZ(*flipped.GetEulerZYZ()), flipped, 1e-9)
+
+
+@pytest.mark.parametrize(
+    "axis", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 2, 3), (-2, 1, 1), (1, -3, 1), (1, 1, -4)]
+)
+@pytest.mark.parametrize("angle", [0.01, 1.5, 2.5, 3.1])
+def test_quaternions_and_axes_describe_the_same_rotation(axis: tuple[float, ...], angle: float) -> None:
+    unit = np.array(axis) / np.linalg.norm(axis)
+    turn = Rotation.Rot(Vector(*axis), angle)
+    expected = np.array([*(unit * sin(angle / 2)), cos(angle / 2)])
+    if np.trace(matrix(turn)) <= 0.0:  # the component with the largest absolute value is then positive
+        expected *= np.sign(unit[np.argmax(np.abs(unit))])
+    assert [*turn.GetQuaternion()] == pytest.approx(expected.tolist(), abs=1e-9)
+    assert np.allclose(matrix(Rotation.Quaternion(*turn.GetQuaternion())), matrix(turn))
+    found, about = turn.GetRotAngle()
+    assert found == pytest.approx(angle)
+    assert numbers(about) == pytest.approx(unit.tolist())
+    assert numbers(turn.GetRot()) == pytest.approx((unit * angle).tolist())
+
+
+@pytest.mark.parametrize(
+    "axis", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (3, 2, 1), (1, 3, 2), (1, 2, 3), (2, -3, 1)]
+)
+def test_a_half_turn_has_an_axis_and_a_quaternion_without_a_real_part(axis: tuple[float, ...]) -> None:
+    turn = Rotation.Rot(Vector(*axis), pi)
+    angle, about = turn.GetRotAngle()
+    assert angle == pytest.approx(pi)
+    assert abs(np.dot([*about], axis)) == pytest.approx(float(np.linalg.norm(axis)))
+    assert np.allclose(matrix(Rotation.Rot(about, angle)), matrix(turn))
+    quaternion = np.array(turn.GetQuaternion())
+    assert quaternion[3] == pytest.approx(0.0, abs=1e-9)
+    assert abs(quaternion[:3] @ axis) == pytest.approx(float(np.linalg.norm(axis)))
+
+
+def test_no_rotation_is_about_the_z_axis() -> None:
+    angle, axis = Rotation().GetRotAngle()
+    assert (angle, numbers(axis)) == (0.0, [0.0, 0.0, 1.0])
+    assert numbers(Rotation.Identity()) == [1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0]
+    tiny, _ = Rotation.RotX(1e-7).GetRotAngle()
+    assert tiny == 0.0
+
+
+def test_columns_are_read_and_set() -> None:
+    turn = Rotation(Vector(1, 2, 3), Vector(4, 5, 6), Vector(7, 8, 9))
+    assert numbers(turn) == [1.0, 4.0, 7.0, 2.0, 5.0, 8.0, 3.0, 6.0, 9.0]
+    assert [numbers(one()) for one in (turn.UnitX, turn.UnitY, turn.UnitZ)] == [
+        [1, 2, 3],
+        [4, 5, 6],
+        [7, 8, 9],
+    ]
+    assert turn.UnitY(Vector(0, 0, 1)) is None
+    assert numbers(turn) == [1.0, 0.0, 7.0, 2.0, 0.0, 8.0, 3.0, 1.0, 9.0]
+
+
+def test_entries_have_a_row_and_a_column() -> None:
+    turn = Rotation(*range(9))
+    assert [turn[place] for place in ((0, 2), (1, 0), (2, 1))] == [2.0, 3.0, 7.0]
+    turn[1, 2] = -1
+    assert numbers(turn)[5] == -1.0
+    for place in ((3, 0), (0, 3), (-1, 0), (0, -1)):
+        with pytest.raises(IndexError, match="Rotation index out of range"):
+            turn[place]
+    for wrong in (1, (1,), (1, 2, 3), [1, 2]):
+        with pytest.raises(TypeError, match="Rotation takes two indices"):
+            turn[wrong]  # type: ignore[index]
+    with pytest.raises(TypeError, match="nine numbers, three Vectors or a Rotation"):
+        Rotation(1, 2, 3)
+
+
+def test_the_inverse_undoes_a_rotation() -> None:
+    assert np.allclose(matrix(TURN.Inverse()), matrix(TURN).T)
+    assert numbers(TURN.Inverse(TURN * A)) == pytest.approx([1, 2, 3])
+    assert numbers(TURN.Inverse(TURN * MOTION)) == pytest.approx(numbers(MOTION))
+    turn = Rotation(TURN)
+    turn.SetInverse()
+    assert turn == TURN.Inverse()
+
+
+def test_a_rotation_turns_every_part_of_a_twist_and_a_wrench() -> None:
+    expected = [*(matrix(TURN) @ numbers(MOTION.vel)), *(matrix(TURN) @ numbers(MOTION.rot))]
+    assert numbers(TURN * MOTION) == pytest.approx(expected)
+    expected = [*(matrix(TURN) @ numbers(LOAD.force)), *(matrix(TURN) @ numbers(LOAD.torque))]
+    assert numbers(TURN * LOAD) == pytest.approx(expected)
+    assert np.allclose(matrix(TURN * Rotation.RotX(0.2)), matrix(TURN) @ matrix(Rotation.RotX(0.2)))
+
+
+# frames
+
+
+def homogeneous(frame: Frame) -> np.ndarray:
+    return np.array([[frame[row, column] for column in range(4)] for row in range(3)] + [[0, 0, 0, 1]])
+
+
+def test_frames_are_multiplied_as_homogeneous_matrices() -> None:
+    other = Frame(Rotation.RotX(0.4), Vector(0.5, 0.1, -2))
+    assert np.allclose(homogeneous(POSE * other), homogeneous(POSE) @ homogeneous(other))
+    assert np.allclose(homogeneous(POSE.Inverse()), np.linalg.inv(homogeneous(POSE)))
+    assert numbers(POSE * A) == pytest.approx((homogeneous(POSE) @ [1, 2, 3, 1])[:3].tolist())
+    assert numbers(POSE.Inverse(POSE * A)) == pytest.approx([1, 2, 3])
+
+
+def test_denavit_and_hartenberg_parameters_are_applied_in_their_order() -> None:
+    a, alpha, d, theta = 0.3, 0.4, 0.5, 0.6
+    turn, tilt = Frame(Rotation.RotZ(theta)), Frame(Rotation.RotX(alpha))
+    along, up = Frame(Vector(a, 0, 0)), Frame(Vector(0, 0, d))
+    assert Frame.DH(a, alpha, d, theta) == turn * up * along * tilt
+    assert Frame.DH_Craig1989(a, alpha, d, theta) == tilt * along * turn * up
+
+
+def test_a_frame_is_made_of_a_rotation_a_vector_both_or_a_frame() -> None:
+    assert Frame() == Frame.Identity() == Frame(Rotation(), Vector())
+    assert Frame(TURN).p == Vector()
+    assert Rotation() == Frame(A).M
+    assert Frame(Frame(TURN, A)) == Frame(TURN, A)
+    for wrong in (lambda: Frame(1), lambda: Frame(A, TURN), lambda: Frame(TURN, A, A)):
+        with pytest.raises(TypeError, match="Frame takes a Rotation, a Vector, both, or a Frame"):
+            wrong()
+    assert Frame(TURN) != Frame(TURN, Vector(0, 0, 1e-3))
+    assert Frame(TURN, A) != Frame(A)
+
+
+def test_a_twist_moves_a_frame_in_its_own_axes_for_the_inverse_of_a_frequency() -> None:
+    frame = Frame(Rotation.RotZ(pi / 2), Vector(1, 0, 0))
+    frame.Integrate(Twist(Vector(2, 0, 0), Vector(0, 0, 1)), 4)
+    assert numbers(frame.p) == near(1.0, 0.5, 0.0)
+    assert Rotation.RotZ(pi / 2 + 0.25) == frame.M
+
+
+def test_differences_and_sums_are_per_time() -> None:
+    assert numbers(kdl.diff(A, B, 2)) == [-2.5, -0.75, 1.5]
+    assert numbers(kdl.addDelta(A, Vector(1, 2, 3), 2)) == [3.0, 6.0, 9.0]
+    turned = kdl.addDelta(Rotation.RotX(0.2), Vector(0, 0, 0.3), 2)
+    assert np.allclose(matrix(turned), matrix(Rotation.RotZ(0.6) * Rotation.RotX(0.2)))
+    assert numbers(kdl.diff(Rotation.RotX(0.2), turned, 2)) == near(0.0, 0.0, 0.3)
+    assert numbers(kdl.diff(A, B)) == [-5.0, -1.5, 3.0]
+
+
+def test_values_are_set_to_zero_in_place() -> None:
+    for one in (Vector(1, 2, 3), Twist(A, B)):
+        kdl.SetToZero(one)
+        assert set(one) == {0.0}
+    array = joints(1.0, 2.0)
+    kdl.SetToZero(array)
+    assert array.data.tolist() == [0.0, 0.0]
+
+
+# chains
+
+
+def test_an_array_of_joints_is_resized_and_checked() -> None:
+    one = joints(1.0, 2.0)
+    assert (one.rows(), one.columns()) == (2, 1)
+    one.resize(3)
+    assert one.data.tolist() == [1.0, 2.0, 0.0]
+    one.resize(1)
+    assert one.data.tolist() == [1.0]
+    for place in (-1, 1):
+        with pytest.raises(IndexError, match="JntArray index out of range"):
+            one[place]
+        with pytest.raises(IndexError, match="JntArray index out of range"):
+            one[place] = 0.0
+    same = JntArray(one)
+    same[0] = 5.0
+    assert one[0] == 1.0
+    assert one == joints(1.0000001)
+    assert one != joints(1.0, 0.0)
+    assert one != 1.0
+    assert repr(joints(1.5, -2)) == "[         1.5           -2]"
+
+
+def test_a_jacobian_has_a_twist_for_each_joint() -> None:
+    one = Jacobian(2)
+    assert (one.rows(), one.columns()) == (6, 2)
+    one.setColumn(1, Twist(A, B))
+    assert one.getColumn(1) == Twist(A, B)
+    assert one[3, 1] == -4.0
+    one[5, 0] = 7
+    assert one.data[5].tolist() == [7.0, 6.0]
+    same = Jacobian(one)
+    same.resize(3)
+    assert (same.columns(), float(same.data.sum()), one.columns()) == (3, 0.0, 2)
+    for place in ((6, 0), (0, 2), (-1, 0), (0, -1)):
+        with pytest.raises(IndexError, match="Jacobian index out of range"):
+            one[place]
+        with pytest.raises(IndexError, match="Jacobian index out of range"):
+            one[place] = 1.0
+
+
+def test_the_columns_of_a_jacobian_are_expressed_elsewhere() -> None:
+    for change, expected in (
+        (lambda one: one.changeRefPoint(A), MOTION.RefPoint(A)),
+        (lambda one: one.changeBase(TURN), TURN * MOTION),
+        (lambda one: one.changeRefFrame(POSE), POSE * MOTION),
+    ):
+        one = Jacobian(2)
+        for place in range(2):
+            one.setColumn(place, MOTION)
+        change(one)  # type: ignore[no-untyped-call]
+        assert [one.getColumn(place) for place in range(2)] == [expected] * 2
+
+
+@pytest.mark.parametrize(("kind", "axis"), [(Joint.RotX, 0), (Joint.RotY, 1), (Joint.RotZ, 2)])
+def test_a_turning_joint_turns_about_its_axis(kind: JointKind, axis: int) -> None:
+    unit = Vector(*(float(one == axis) for one in range(3)))
+    one = Joint("j", kind, 2, 0.1)
+    assert one.pose(0.3) == Frame(Rotation.Rot2(unit, 0.7))
+    assert one.twist(1.5) == Twist(Vector(), unit * 3.0)
+    assert (one.getName(), one.getType(), one.getTypeName()) == ("j", kind, kind.name)
+    assert (one.JointAxis(), one.JointOrigin()) == (unit, Vector())
+
+
+@pytest.mark.parametrize(("kind", "axis"), [(Joint.TransX, 0), (Joint.TransY, 1), (Joint.TransZ, 2)])
+def test_a_sliding_joint_slides_along_its_axis(kind: JointKind, axis: int) -> None:
+    unit = Vector(*(float(one == axis) for one in range(3)))
+    one = Joint(kind, 2, 0.1)
+    assert one.pose(0.3) == Frame(unit * 0.7)
+    assert one.twist(1.5) == Twist(unit * 3.0, Vector())
+    assert one.getName() == "NoName"
+
+
+def test_a_joint_about_an_axis_has_an_origin_and_a_direction_of_length_one() -> None:
+    one = Joint("j", Vector(1, 0, 0), Vector(0, 0, 5), Joint.RotAxis)
+    assert one.pose(pi / 2) == Frame(Rotation.RotZ(pi / 2), Vector(1, 0, 0))
+    assert one.twist(1.0) == Twist(Vector(), Vector(0, 0, 1))
+    sliding = Joint(name="s", origin=Vector(1, 0, 0), axis=Vector(0, 2, 0), type=Joint.TransAxis)
+    assert sliding.pose(0.5) == Frame(Vector(1, 0.5, 0))
+    assert (sliding.getName(), sliding.JointAxis()) == ("s", Vector(0, 1, 0))
+
+
+def test_a_fixed_joint_does_not_move() -> None:
+    one = Joint("f", Joint.Fixed)
+    assert (one.pose(3.0), one.twist(2.0)) == (Frame(), Twist())
+    assert Joint().getType() is Joint.Fixed
+    assert Joint(one).getName() == "f"
+
+
+def test_a_segment_reaches_its_tip_at_the_joint_value_zero() -> None:
+    tip = Frame(Rotation.RotX(0.2), Vector(1, 0, 0))
+    one = Segment("s", Joint("j", Joint.RotZ, 1, 0.5), tip)
+    assert one.getFrameToTip() == tip
+    assert one.pose(0.3) == Frame(Rotation.RotZ(0.3)) * tip
+    moved = one.twist(0.3, 2.0)
+    assert moved.rot == Vector(0, 0, 2)
+    assert moved.vel == Vector(0, 0, 2) * (Rotation.RotZ(0.3) * Vector(1, 0, 0))
+    assert (Segment(one).getName(), Segment(one).getJoint().getName()) == ("s", "j")
+    assert Segment(joint=Joint("k", Joint.RotX)).getName() == "NoName"
+    with pytest.raises(UnsupportedApiError):
+        one.getInertia()
+
+
+def test_chains_count_their_segments_and_the_joints_that_move() -> None:
+    one = arm()
+    both = Chain(one)
+    both.addChain(one)
+    assert (one.getNrOfSegments(), one.getNrOfJoints()) == (4, 3)
+    assert (both.getNrOfSegments(), both.getNrOfJoints()) == (8, 6)
+    assert both.getSegment(4) is one.getSegment(0)
+
+
+def link(name: str, kind: JointKind = Joint.RotZ) -> Segment:
+    return Segment(name, Joint(f"{name}_joint", kind), Frame(Vector(1, 0, 0)))
+
+
+def test_a_tree_takes_segments_at_known_places_with_new_names() -> None:
+    tree = Tree("base")
+    assert tree.addSegment(link("a"), "base")
+    assert tree.addSegment(link("b", Joint.Fixed), "a")
+    assert tree.addSegment(link("c"), "a")
+    assert not tree.addSegment(link("d"), "nowhere")
+    assert not tree.addSegment(link("a"), "base")
+    assert not tree.addSegment(link("base"), "a")
+    assert (tree.getNrOfSegments(), tree.getNrOfJoints()) == (3, 2)
+    assert [one.getName() for one in tree.getChain("base", "b").segments] == ["a", "b"]
+    assert [one.getName() for one in tree.getChain("a", "c").segments] == ["c"]
+    assert tree.getChain("c", "c").segments == []
+    for root, tip in (("b", "c"), ("c", "a"), ("base", "nowhere")):
+        with pytest.raises(UnsupportedApiError):
+            tree.getChain(root, tip)
+
+
+def test_a_chain_is_attached_to_a_tree_in_a_row() -> None:
+    chain, tree = Chain(), Tree()
+    for name in ("a", "b"):
+        chain.addSegment(link(name))
+    assert not tree.addChain(chain, "nowhere")
+    assert tree.addChain(chain, "root")
+    assert [one.getName() for one in tree.getChain("root", "b").segments] == ["a", "b"]
+    assert not tree.addChain(chain, "b")
+
+
+# solvers
+
+
+def test_the_pose_of_each_segment_is_the_product_of_those_before() -> None:
+    chain, values, pose = arm(), [0.4, -0.5, 0.2], Frame()
+    solver = ChainFkSolverPos_recursive(chain)
+    parts = [chain.getSegment(place) for place in range(4)]
+    expected, used = Frame(), iter(values)
+    assert solver.JntToCart(joints(*values), pose, 0) == 0
+    assert pose == Frame()
+    for count, part in enumerate(parts, 1):
+        expected = expected * part.pose(0.0 if part.getJoint().getType() is Joint.Fixed else next(used))
+        assert solver.JntToCart(joints(*values), pose, count) == 0
+        assert pose == expected
+    assert solver.JntToCart(joints(*values), pose) == 0
+    assert pose == expected
+    assert solver.JntToCart(joints(*values), pose, 5) == -6
+    assert (solver.getError(), pose) == (-6, Frame())
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, -1])
+def test_the_jacobian_is_the_derivative_of_the_pose(count: int) -> None:
+    chain, values, jacobian = arm(), np.array([0.4, -0.5, 0.2]), Jacobian(3)
+    solver, forward, step = ChainJntToJacSolver(chain), ChainFkSolverPos_recursive(chain), 1e-6
+    assert solver.JntToJac(joints(*values), jacobian, count) == 0
+    here = Frame()
+    forward.JntToCart(joints(*values), here, count)
+    for place in range(3):
+        then, moved = Frame(), values.copy()
+        moved[place] += step
+        forward.JntToCart(joints(*moved), then, count)
+        assert numbers(jacobian.getColumn(place)) == pytest.approx(
+            numbers(kdl.diff(here, then, step)), abs=1e-5
+        )
+
+
+def test_sizes_that_do_not_match_are_refused_by_every_solver() -> None:
+    chain, pose = arm(), Frame()
+    forward, speeds = ChainFkSolverPos_recursive(chain), ChainIkSolverVel_pinv(chain)
+    short, right = joints(0.0), JntArray(3)
+    jacobian = ChainJntToJacSolver(chain)
+    assert jacobian.JntToJac(short, Jacobian(3)) == -4
+    assert jacobian.JntToJac(right, Jacobian(2)) == -4
+    assert jacobian.JntToJac(right, Jacobian(3), 9) == -6
+    for one, other in ((short, right), (right, short)):
+        assert speeds.CartToJnt(one, MOTION, other) == -4
+        assert ChainIkSolverPos_NR(chain, forward, speeds).CartToJnt(one, pose, other) == -4
+        assert ChainIkSolverPos_LMA(chain).CartToJnt(one, pose, other) == -4
+    assert [speeds.strError(code) for code in (0, -1, -5, -6, 7)] == [
+        "No error",
+        "Failed to converge",
+        "The maximum number of iterations is exceeded",
+        "The requested index is out of range",
+        "UNKNOWN ERROR",
+    ]
+
+
+def test_joint_speeds_cause_the_twist_as_well_as_possible() -> None:
+    chain, values, speeds, jacobian = arm(), joints(0.4, -0.5, 0.2), JntArray(3), Jacobian(3)
+    ChainJntToJacSolver(chain).JntToJac(values, jacobian)
+    twist = Twist(
+        Vector(*(jacobian.data @ [0.1, -0.2, 0.3])[:3]), Vector(*(jacobian.data @ [0.1, -0.2, 0.3])[3:])
+    )
+    assert ChainIkSolverVel_pinv(chain).CartToJnt(values, twist, speeds) == 0
+    assert speeds.data.tolist() == near(0.1, -0.2, 0.3)
+    ChainIkSolverVel_pinv(chain, eps=inf).CartToJnt(values, twist, speeds)
+    assert speeds.data.tolist() == [0.0, 0.0, 0.0]
+
+
+def test_a_search_that_is_cut_off_ends_with_its_number_of_iterations() -> None:
+    chain, pose, found = arm(), Frame(), JntArray(3)
+    forward, speeds = ChainFkSolverPos_recursive(chain), ChainIkSolverVel_pinv(chain)
+    forward.JntToCart(joints(0.4, -0.5, 0.2), pose)
+    assert ChainIkSolverPos_NR(chain, forward, speeds, 1).CartToJnt(joints(0.3, -0.4, 0.1), pose, found) == -5
+    assert ChainIkSolverPos_NR(chain, forward, speeds, 1).CartToJnt(joints(0.4, -0.5, 0.2), pose, found) == 0
+    assert ChainIkSolverPos_LMA(chain, maxiter=1).CartToJnt(joints(0.3, -0.4, 0.1), pose, found) == -1
+    assert ChainIkSolverPos_LMA(chain).CartToJnt(joints(0.4, -0.5, 0.2), pose, found) == 0
+    assert found.data.tolist() == [0.4, -0.5, 0.2]
+
+
+ROBOT = """<robot name="r"><link name="base"/><link name="arm"/><link name="hand"/><link name="eye"/>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><origin xyz="1 2 3" rpy="0 0 0.5"/>
+    </joint>
+  <joint name="grip" type="prismatic"><parent link="arm"/><child link="hand"/><axis xyz="0 1 0"/>
+    <limit effort="1" velocity="1"/></joint>
+  <joint name="weld" type="fixed"><parent link="arm"/><child link="eye"/><origin xyz="0 0 1"/></joint></robot>"""
+
+
+def test_a_description_becomes_a_tree_with_joints_in_the_frame_of_the_parent() -> None:
+    ok, tree = treeFromString(ROBOT)  # type: ignore[arg-type]
+    assert (ok, tree.getNrOfSegments(), tree.getNrOfJoints()) == (True, 3, 2)
+    turn, grip = tree.getChain("base", "hand").segments
+    assert turn.getJoint().getType() is Joint.RotAxis
+    assert turn.getJoint().JointAxis() == Rotation.RotZ(0.5) * Vector(1, 0, 0)  # x is the default axis
+    assert turn.getJoint().JointOrigin() == Vector(1, 2, 3)
+    assert turn.getFrameToTip() == Frame(Rotation.RotZ(0.5), Vector(1, 2, 3))
+    assert (grip.getJoint().getType(), grip.getJoint().JointAxis()) == (Joint.TransAxis, Vector(0, 1, 0))
+    (weld,) = tree.getChain("arm", "eye").segments
+    assert (weld.getJoint().getType(), weld.getFrameToTip().p) == (Joint.Fixed, Vector(0, 0, 1))
+    assert sqrt(kdl.dot(A, A)) == pytest.approx(A.Norm())
