@@ -195,21 +195,24 @@ class Scheduler:
 
     def advance(self, until: int) -> None:
         """Move the clock to `until` (ns); run tasks and alarms that fall due, in order of their instants."""
-        while self._alarms and self._alarms[0][0] <= until and self.failure is None:
-            instant, _, job = self._alarms[0]
-            self._advance(instant - 1)
-            if self._alarms[0][2] is job:  # tasks that ran may have set an earlier alarm
-                heappop(self._alarms)
-                self.time = max(self.time, instant)
-                job()
-        self._advance(until)
+        alarms = self._alarms
+        self._run_tasks(until)
+        while alarms and alarms[0][0] <= until and self.failure is None:
+            instant, _, job = heappop(alarms)
+            self.time = max(self.time, instant)
+            job()
+            self._run_tasks(until)
+        if self.failure is None:
+            self.time = max(self.time, until)
 
-    def _advance(self, until: int) -> None:
-        """Move the clock to `until`; no alarm may be due before it."""
+    def _run_tasks(self, until: int) -> None:
+        """Run the tasks that fall due up to `until`, but only those before the next alarm, which they may set."""
         if self._ready:
             self.settle()
-        sleeping = self._sleeping
+        sleeping, alarms = self._sleeping, self._alarms
         while sleeping and sleeping[0][0] <= until and self.failure is None:
+            if alarms and alarms[0][0] <= sleeping[0][0]:
+                return
             time, _, task, ticket = heappop(sleeping)
             if ticket != task.ticket or task.done:
                 continue
@@ -220,8 +223,6 @@ class Scheduler:
             self._resume(task, False)
             if self._ready:
                 self.settle()
-        if self.failure is None:
-            self.time = max(self.time, until)
 
     def kill(self, task: Task) -> None:
         """Kill a task at the place where it waits."""

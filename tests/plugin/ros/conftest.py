@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.ros import Ros
+from pytest_tarl.ros.process import Network
 
 Start = Callable[..., Ros]
 
@@ -42,6 +43,19 @@ def start(tmp_path: Path) -> Iterator[Start]:
     for ros, installed in reversed(open_episodes):
         ros.close()
         installed.__exit__(None, None, None)
+
+
+@pytest.fixture
+def network() -> Network:
+    """Return the clock, topics, services and parameters of an episode without nodes."""
+    made: list[Network] = []
+
+    def run(job: Callable[..., None], *given: Any) -> None:
+        job(*given)
+        made[0].scheduler.settle()
+
+    made.append(Network(run, {"gain": 2.0}, {"old": "new"}, 10.0))
+    return made[0]
 
 
 def heard(ros: Ros, topic: str) -> list[Any]:

@@ -26,18 +26,6 @@ from pytest_tarl.ros.watchdog import Spinning, Watchdog
 SECOND = 10**9
 
 
-@pytest.fixture
-def network() -> Network:
-    made: list[Network] = []
-
-    def run(job: Callable[..., None], *given: Any) -> None:
-        job(*given)
-        made[0].scheduler.settle()
-
-    made.append(Network(run, {"gain": 2.0}, {"old": "new"}, 10.0))
-    return made[0]
-
-
 def started(network: Network, program: Callable[[], None], name: str = "pilot") -> Process:
     process = Process(network, name, [])
     network.processes.append(process)

@@ -195,6 +195,23 @@ def test_an_alarm_set_by_a_task_is_not_overtaken_by_a_later_one(clock: Scheduler
     assert trail == ["of the task", "late"]
 
 
+def test_an_alarm_set_by_a_task_rings_at_its_instant_even_if_it_is_the_only_one(
+    clock: Scheduler, program: Program
+) -> None:
+    trail: list[tuple[str, int]] = []
+
+    def task() -> None:
+        clock.wait(2)
+        clock.at(5, lambda: trail.append(("alarm", clock.time)))
+        clock.wait(7)
+        trail.append(("task", clock.time))
+
+    clock.spawn(program, task)
+    clock.advance(20)
+    assert trail == [("alarm", 5), ("task", 7)]
+    assert clock.time == 20
+
+
 def test_a_failure_stops_the_clock(clock: Scheduler, program: Program) -> None:
     trail: list[str] = []
 

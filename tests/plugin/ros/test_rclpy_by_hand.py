@@ -1,0 +1,776 @@
+"""The parameters, the executors and the bytes of ROS messages, one by one and without files of nodes."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.ros import message_type
+from pytest_tarl.ros.messages import ros1_wire, ros2_wire
+from pytest_tarl.ros.messages.definitions import Constant, Definition, Field, _sections, parse
+from pytest_tarl.ros.messages.ros1 import build, field_class, md5_text
+from pytest_tarl.ros.messages.ros1_wire import WireError
+from pytest_tarl.ros.messages.times import Duration, Time
+from pytest_tarl.ros.messages.values import (
+    FieldError,
+    as_bool,
+    as_float,
+    as_float32,
+    as_integer,
+    as_list,
+    as_numbers,
+    as_text,
+)
+from pytest_tarl.ros.process import Network, Process
+from pytest_tarl.ros.rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from pytest_tarl.ros.rclpy.context import Context
+from pytest_tarl.ros.rclpy.descriptors import new_descriptor, objection
+from pytest_tarl.ros.rclpy.exceptions import (
+    InvalidParameterException,
+    InvalidParameterTypeException,
+    InvalidParameterValueException,
+    ParameterAlreadyDeclaredException,
+    ParameterImmutableException,
+    ParameterNotDeclaredException,
+    ParameterUninitializedException,
+)
+from pytest_tarl.ros.rclpy.executors import (
+    Executor,
+    ExternalShutdownException,
+    MultiThreadedExecutor,
+    SingleThreadedExecutor,
+)
+from pytest_tarl.ros.rclpy.parameter import Parameter, ParameterType
+from pytest_tarl.ros.rclpy.parameters import NodeParameters, outcome
+from tests.plugin.ros.test_process_by_hand import started
+
+SECOND = 10**9
+
+
+# parameters
+
+
+def declared(
+    *entries: Any, overrides: dict[str, Any] | None = None, undeclared: bool = False
+) -> NodeParameters:
+    made = NodeParameters(overrides or {}, undeclared)
+    made.declare_parameters("", entries)
+    return made
+
+
+def values(node: NodeParameters) -> dict[str, Any]:
+    return {name: one.value for name, one in node._parameters.items() if name != "use_sim_time"}
+
+
+def test_every_node_has_the_parameter_for_simulated_time() -> None:
+    assert declared().get_parameter("use_sim_time").value is False
+
+
+def test_an_override_takes_precedence_unless_it_is_ignored() -> None:
+    node = NodeParameters({"a": 5, "b": 6}, False)
+    assert node.declare_parameter("a", 1).value == 5
+    assert node.declare_parameter("b", 1, ignore_override=True).value == 1
+    assert node.declare_parameter("c", 1).value == 1
+    assert (
+        node.declare_parameters("ns", ["x", ("y", 2), ("z", 3, new_descriptor(read_only=True))])[1].name
+        == "ns.y"
+    )
+    assert node.has_parameter("ns.z")
+    assert not node.has_parameter("z")
+
+
+def test_a_name_is_declared_once_and_is_not_empty() -> None:
+    node = declared(("a", 1))
+    with pytest.raises(ParameterAlreadyDeclaredException):
+        node.declare_parameter("a", 2)
+    for wrong in ("", None):
+        with pytest.raises(InvalidParameterException):
+            node.declare_parameter(wrong)  # type: ignore[arg-type]
+
+
+def test_the_type_is_that_of_the_default_or_the_declared_one_and_of_the_override_without_both() -> None:
+    with pytest.raises(InvalidParameterTypeException):
+        declared(("a", 1), overrides={"a": 1.5})
+    with pytest.raises(InvalidParameterTypeException):
+        declared(("a", ParameterType.STRING), overrides={"a": 1})
+    node = declared("free", ("a", ParameterType.INTEGER), overrides={"free": "text", "a": 4})
+    assert values(node) == {"free": "text", "a": 4}
+    assert [node.set_parameters([Parameter("free", value=one)])[0].successful for one in ("x", 1)] == [
+        True,
+        False,
+    ]
+    dynamic = declared("free")
+    assert dynamic.describe_parameter("free").dynamic_typing
+    assert dynamic.set_parameters([Parameter("free", value=1)])[0].successful
+
+
+def test_a_declared_type_without_a_value_is_uninitialised() -> None:
+    node = declared(("a", ParameterType.INTEGER), "free")
+    with pytest.raises(ParameterUninitializedException):
+        node.get_parameter("a")
+    assert node.get_parameter("free").value is None
+    assert node.get_parameter_or("a", Parameter("a", value=3)).value == 3
+    assert node.get_parameter_or("b").type_ == ParameterType.NOT_SET
+    assert node.set_parameters([Parameter("a", value=7)])[0].successful
+    assert node.get_parameter("a").value == node.get_parameter_or("a", Parameter("a", value=3)).value == 7
+    assert node.get_parameter_type("a") == ParameterType.INTEGER
+    assert node.get_parameter_types(["a", "use_sim_time"]) == [ParameterType.INTEGER, ParameterType.BOOL]
+
+
+def test_an_unknown_parameter_is_an_error_unless_the_node_allows_it() -> None:
+    node, free = declared(), declared(undeclared=True)
+    for call in (
+        lambda one: one.get_parameter("x"),
+        lambda one: one.describe_parameter("x"),
+        lambda one: one.set_parameters([Parameter("x", value=1)]),
+        lambda one: one.set_parameters_atomically([Parameter("x", value=1)]),
+    ):
+        with pytest.raises(ParameterNotDeclaredException):
+            call(node)  # type: ignore[no-untyped-call]
+    assert free.get_parameter("x").value is None
+    assert free.describe_parameter("x").name == "x"
+    assert free.set_parameters([Parameter("x", value=1)])[0].successful
+    assert free.get_parameter("x").value == 1
+    assert free.describe_parameter("x").dynamic_typing
+    with pytest.raises(ParameterNotDeclaredException):
+        free.undeclare_parameter("y")
+
+
+def test_a_read_only_parameter_is_neither_set_nor_undeclared_nor_described_anew() -> None:
+    node = declared(("a", 1, new_descriptor(read_only=True)), ("b", 1))
+    result = node.set_parameters([Parameter("a", value=2)])[0]
+    assert (result.successful, result.reason) == (False, "Trying to set a read-only parameter: a.")
+    for call in (lambda: node.undeclare_parameter("a"), lambda: node.set_descriptor("a", new_descriptor())):
+        with pytest.raises(ParameterImmutableException):
+            call()  # type: ignore[no-untyped-call]
+    node.undeclare_parameter("b")
+    assert values(node) == {"a": 1}
+
+
+def test_an_atomic_change_sets_all_or_nothing_and_others_one_by_one() -> None:
+    changes = [Parameter("a", value=2), Parameter("b", value="text")]
+    node = declared(("a", 1), ("b", 1))
+    assert not node.set_parameters_atomically(changes).successful
+    assert values(node) == {"a": 1, "b": 1}
+    assert [one.successful for one in node.set_parameters(changes)] == [True, False]
+    assert values(node) == {"a": 2, "b": 1}
+
+
+def test_callbacks_rewrite_refuse_and_hear_of_changes_newest_first() -> None:
+    node, trail = declared(("a", 1)), list[Any]()
+
+    def noting(name: str, result: Any = None) -> Callable[[list[Parameter]], Any]:
+        def callback(parameters: list[Parameter]) -> Any:
+            trail.append((name, [one.value for one in parameters]))
+            return parameters if result is None else result
+
+        return callback
+
+    first, second = noting("pre 1"), noting("pre 2")
+    refusing, allowing, after = (
+        noting("refuse", outcome(False, "no")),
+        noting("allow", outcome(True)),
+        noting("post"),
+    )
+    for callback in (first, second):
+        node.add_pre_set_parameters_callback(callback)
+    node.add_on_set_parameters_callback(refusing)
+    node.add_on_set_parameters_callback(allowing)
+    node.add_post_set_parameters_callback(after)
+    result = node.set_parameters([Parameter("a", value=2)])[0]
+    assert (result.successful, result.reason) == (False, "no")
+    assert [name for name, _ in trail] == ["pre 2", "pre 1", "allow", "refuse"]
+    trail.clear()
+    node.remove_on_set_parameters_callback(refusing)
+    node.remove_pre_set_parameters_callback(second)
+    assert node.set_parameters([Parameter("a", value=3)])[0].successful
+    assert trail == [("pre 1", [3]), ("allow", [3]), ("post", [3])]
+    node.remove_post_set_parameters_callback(after)
+    trail.clear()
+    node.set_parameters([Parameter("a", value=4)])
+    assert trail == [("pre 1", [4]), ("allow", [4])]
+
+
+def test_a_callback_must_return_a_result_and_may_refuse_a_declaration() -> None:
+    node = declared(("a", 1))
+    node.add_on_set_parameters_callback(lambda _: None)
+    result = node.set_parameters([Parameter("a", value=2)])[0]
+    assert (result.successful, result.reason) == (False, "Callback returned an invalid type")
+    other = NodeParameters({}, False)
+    other.add_on_set_parameters_callback(lambda _: outcome(False))
+    with pytest.raises(InvalidParameterValueException, match="refused"):
+        other.declare_parameter("a", 1)
+    assert not other.has_parameter("a")
+    other.declare_parameter("free")  # there is no value to refuse
+
+
+def test_a_dynamic_parameter_is_removed_by_a_value_that_is_not_set() -> None:
+    node = declared(("a", 1, new_descriptor(dynamic_typing=True)), ("b", 1))
+    assert node.set_parameters([Parameter("a")])[0].successful
+    assert not node.has_parameter("a")
+    result = node.set_parameters([Parameter("b")])[0]
+    assert (result.successful, result.reason) == (False, "Static parameter cannot be undeclared")
+
+
+def test_parameters_are_listed_by_their_prefix_and_depth() -> None:
+    node = declared(("a.b", 1), ("a.c.d", 2), ("ab", 3), ("a", 4))
+    assert {name: one.value for name, one in node.get_parameters_by_prefix("a").items()} == {"b": 1, "c.d": 2}
+    assert len(node.get_parameters_by_prefix("")) == 5
+    listed = [node.list_parameters(["a"], depth) for depth in (0, 1, 2)]
+    assert [one.names for one in listed] == [["a", "a.b", "a.c.d"], ["a", "a.b"], ["a", "a.b", "a.c.d"]]
+    assert listed[0].prefixes == ["a", "a.c"]
+    assert node.list_parameters([], 1).names == ["a", "ab", "use_sim_time"]
+
+
+def test_a_new_descriptor_must_fit_the_value_that_it_may_replace() -> None:
+    limits = message_type("rcl_interfaces/msg/IntegerRange")(from_value=0, to_value=4, step=2)
+    node = declared(("a", 7))
+    with pytest.raises(InvalidParameterValueException):
+        node.set_descriptor("a", new_descriptor(integer_range=[limits]))
+    assert node.set_descriptor("a", new_descriptor(integer_range=[limits]), 2).integer_value == 2
+    assert node.describe_parameters(["a"])[0].type == ParameterType.INTEGER
+    assert values(node) == {"a": 2}
+
+
+def test_all_overrides_are_declared_with_a_dynamic_type() -> None:
+    node = NodeParameters({"a": 1, "b": "x"}, False)
+    node.declare_parameter("a", 0)
+    node.declare_all_overrides()
+    assert values(node) == {"a": 1, "b": "x"}
+    assert node.set_parameters([Parameter("b", value=2.0)])[0].successful
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "step", "allowed"),
+    [
+        (0, 0, 4, 2, True),
+        (4, 0, 4, 3, True),
+        (3, 0, 4, 2, False),
+        (3, 0, 4, 0, True),
+        (5, 0, 4, 0, False),
+        (1, 4, 0, 1, True),
+    ],
+)
+def test_integers_lie_on_a_step_of_their_range_or_at_its_end(
+    value: int, low: int, high: int, step: int, allowed: bool
+) -> None:
+    limits = message_type("rcl_interfaces/msg/IntegerRange")(from_value=low, to_value=high, step=step)
+    described = new_descriptor(integer_range=[limits], type=int(ParameterType.INTEGER))
+    assert (objection(Parameter("a", value=value), described, declaring=False) == "") is allowed
+
+
+# executors
+
+
+class Work:
+    """An entity of a node that is ready a number of times."""
+
+    def __init__(
+        self, name: str, trail: list[Any], times: int = 1, group: Any = None, act: Any = None
+    ) -> None:
+        self.name, self.trail, self.times, self.callback_group, self.act = name, trail, times, group, act
+
+    def is_ready(self) -> bool:
+        return self.times > 0
+
+    def run(self) -> Any:
+        self.times -= 1
+        self.trail.append(self.name)
+        return self.act() if self.act is not None else None
+
+
+class Timer(Work):
+    """A timer with one due instant."""
+
+    def __init__(self, name: str, trail: list[Any], due: int, clock: Any) -> None:
+        super().__init__(name, trail)
+        self.due, self.canceled, self.clock = due, False, clock
+
+    def is_ready(self) -> bool:
+        return self.times > 0 and not self.canceled and self.due <= self.clock.time
+
+
+class Node:
+    """A node with entities, which come first, and timers."""
+
+    def __init__(self, *entities: Any, timers: tuple[Any, ...] = ()) -> None:
+        self.entities, self.timers_, self.executor = (timers, entities), timers, None
+
+    def take_executor(self, executor: Any) -> None:
+        self.executor = executor
+
+
+def spinning(
+    network: Network,
+    program: Callable[[Executor, list[Any]], None],
+    kind: Any = SingleThreadedExecutor,
+) -> tuple[list[Any], Process]:
+    """Run a program with an executor in a node; return what it noted, and its process."""
+    trail: list[Any] = []
+
+    def main() -> None:
+        made = kind()
+        made.context.init()
+        program(made, trail)
+
+    process = started(network, main)
+    network.scheduler.advance(100 * SECOND)
+    if network.scheduler.failure is not None:
+        raise network.scheduler.failure
+    return trail, process
+
+
+def test_one_callback_runs_for_each_call(network: Network) -> None:
+    def program(executor: Executor, trail: list[Any]) -> None:
+        executor.add_node(Node(Work("a", trail), Work("b", trail)))  # type: ignore[arg-type]
+        executor.spin_once()
+        trail.append("|")
+        executor.spin_once(1.0)
+        trail.append(network.scheduler.time)
+        executor.spin_once(1.5)
+        trail.append(network.scheduler.time)
+        executor.spin_once(0)
+        trail.append(network.scheduler.time)
+
+    assert spinning(network, program)[0] == ["a", "|", "b", 0, 3 * SECOND // 2, 3 * SECOND // 2]
+
+
+def test_timers_come_first_and_wake_the_executor_when_they_are_due(network: Network) -> None:
+    clock = network.scheduler
+
+    def program(executor: Executor, trail: list[Any]) -> None:
+        late, cancelled = Timer("late", trail, 5, clock), Timer("never", trail, 3, clock)
+        cancelled.canceled = True
+        now = Timer("now", trail, 0, clock)
+        executor.add_node(Node(Work("a", trail), timers=(late, cancelled, now)))  # type: ignore[arg-type]
+        for _ in range(3):
+            executor.spin_once()
+            trail.append(clock.time)
+
+    assert spinning(network, program)[0] == ["now", 0, "a", 0, "late", 5]
+
+
+def test_a_future_ends_the_spin_and_so_does_its_time_limit(network: Network) -> None:
+    clock = network.scheduler
+
+    def program(executor: Executor, trail: list[Any]) -> None:
+        done, never = executor.create_future(), executor.create_future()
+        clock.at(7, lambda: done.set_result("x"))
+        executor.spin_until_future_complete(done)
+        trail.append((done.result(), clock.time))
+        executor.spin_until_future_complete(never, 5e-9)
+        trail.append((never.done(), clock.time))
+        executor.spin_until_future_complete(done)
+        for _ in range(2):  # the first one runs the callback of the future that is done
+            executor.spin_once_until_future_complete(never, 1e-9)
+            trail.append(clock.time)
+
+    assert spinning(network, program)[0] == [("x", 7), (False, 12), 12, 13]
+
+
+def test_a_task_of_the_executor_comes_before_the_nodes_and_may_be_a_coroutine(network: Network) -> None:
+    def program(executor: Executor, trail: list[Any]) -> None:
+        gate = executor.create_future()
+
+        async def coroutine() -> str:
+            trail.append("begun")
+            await gate
+            return "ended"
+
+        made = executor.create_task(coroutine)
+        executor.add_node(Node(Work("a", trail)))  # type: ignore[arg-type]
+        executor.spin_once()
+        executor.spin_once()
+        gate.set_result(None)
+        executor.spin_until_future_complete(made)
+        trail.append(made.result())
+
+    assert spinning(network, program)[0] == ["begun", "a", "ended"]
+
+
+def test_a_node_belongs_to_one_executor(network: Network) -> None:
+    def program(executor: Executor, trail: list[Any]) -> None:
+        other, node = SingleThreadedExecutor(), Node()
+        trail += [executor.add_node(node), executor.add_node(node), executor.get_nodes() == [node]]  # type: ignore[arg-type]
+        trail += [other.add_node(node), executor.get_nodes(), node.executor is other]  # type: ignore[arg-type]
+        executor.remove_node(node)  # type: ignore[arg-type]
+        trail.append(node.executor is other)
+        with other:
+            pass
+        trail += [node.executor, other.get_nodes()]
+
+    assert spinning(network, program)[0] == [True, False, True, True, [], True, True, None, []]
+
+
+def test_the_end_of_an_episode_ends_the_spin(network: Network) -> None:
+    trail: list[Any] = []
+
+    def main(kind: Any) -> Callable[[], None]:
+        def run() -> None:
+            made = kind()
+            made.context.init()
+            try:
+                made.spin_once()
+                trail.append("returned")
+            except ExternalShutdownException:
+                trail.append("raised")
+
+        return run
+
+    for kind in (SingleThreadedExecutor, MultiThreadedExecutor):
+        process = started(network, main(kind))
+        process.end()
+    assert trail == ["raised", "returned"]
+
+
+def test_a_spin_ends_with_the_shutdown_of_its_context_or_executor(network: Network) -> None:
+    def program(executor: Executor, trail: list[Any]) -> None:
+        network.scheduler.at(5, executor.shutdown)
+        executor.spin()
+        trail.append(network.scheduler.time)
+        other = SingleThreadedExecutor()
+        network.scheduler.at(9, other.context.shutdown)
+        other.spin()
+        trail.append(network.scheduler.time)
+
+    assert spinning(network, program)[0] == [5, 9]
+
+
+def test_callbacks_of_a_multi_threaded_executor_overlap_as_far_as_their_groups_allow(
+    network: Network,
+) -> None:
+    clock = network.scheduler
+
+    def program(executor: Executor, trail: list[Any]) -> None:
+        exclusive, free = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()
+
+        def slow() -> None:
+            clock.wait(clock.time + 10)
+            trail.append(("ended", clock.time))
+
+        works = [
+            Work("x1", trail, 1, exclusive, slow),
+            Work("x2", trail, 1, exclusive, slow),
+            Work("f", trail, 2, free, slow),
+        ]
+        executor.add_node(Node(*works))  # type: ignore[arg-type]
+        clock.at(50, executor.shutdown)
+        executor.spin()
+
+    found = spinning(network, program, MultiThreadedExecutor)[0]
+    assert [one for one in found if isinstance(one, str)] == ["x1", "f", "f", "x2"]
+    assert [one for one in found if not isinstance(one, str)] == [("ended", 10)] * 3 + [("ended", 20)]
+
+
+def test_a_multi_threaded_executor_has_a_number_of_threads(network: Network) -> None:
+    clock = network.scheduler
+
+    def program(executor: Executor, trail: list[Any]) -> None:
+        def slow() -> None:
+            clock.wait(clock.time + 10)
+            trail.append(clock.time)
+
+        executor.add_node(Node(*[Work("w", [], 1, ReentrantCallbackGroup(), slow) for _ in range(3)]))  # type: ignore[arg-type]
+        clock.at(90, executor.shutdown)
+        executor.spin()
+
+    assert spinning(network, program, lambda: MultiThreadedExecutor(2))[0] == [10, 10, 20]
+
+
+def test_a_coroutine_occupies_its_group_until_it_returns(network: Network) -> None:
+    def program(executor: Executor, trail: list[Any]) -> None:
+        group, gate = MutuallyExclusiveCallbackGroup(), executor.create_future()
+
+        async def coroutine() -> None:
+            await gate
+            trail.append("end of a")
+
+        executor.add_node(Node(Work("a", trail, 1, group, coroutine), Work("b", trail, 1, group)))  # type: ignore[arg-type]
+        for _ in range(3):
+            executor.spin_once(1e-9)
+        trail.append("|")
+        gate.set_result(None)
+        for _ in range(2):
+            executor.spin_once(1e-9)
+
+    assert spinning(network, program)[0] == ["a", "|", "end of a", "b"]
+
+
+def test_a_context_is_initialised_once_and_calls_back_at_its_shutdown(network: Network) -> None:
+    trail: list[Any] = []
+
+    def main() -> None:
+        context = Context()
+        trail.append((context is Context(), context.ok()))
+        with pytest.raises(RuntimeError, match="must be initialized before it can be shutdown"):
+            context.shutdown()
+        context.init()
+        with pytest.raises(RuntimeError, match="must only be called once"):
+            context.init()
+        context.on_shutdown(lambda: trail.append("callback"))
+        trail.append(context.ok())
+        context.shutdown()
+        context.try_shutdown()
+        trail.append(context.ok())
+        with context:
+            context.init()
+        trail.append(context.ok())
+
+    started(network, main)
+    assert network.scheduler.failure is None
+    assert trail == [(True, False), True, "callback", False, False]
+
+
+# definitions
+
+
+def test_a_definition_has_fields_constants_and_defaults() -> None:
+    text = """
+        # comment
+        int8 LOW=-1      # a constant
+        uint8 HIGH = 0x10
+        string NAME= "x # y"
+        bool ON=true
+        float32 HALF=0.5
+        Header header
+        float64[3] xyz
+        float64[] many
+        float64[<=4] few
+        string<=5 text "hi"
+        int32[] numbers [1, 2]
+        Point at
+        other/Kind kind
+        time when
+        uint8 structure_needs_at_least_one_member
+    """
+    found = parse("ros2", "pkg", "Name", text)
+    assert [(one.name, one.value) for one in found.constants] == [
+        *(("LOW", -1), ("HIGH", 16), ("NAME", "x"), ("ON", True), ("HALF", 0.5)),
+    ]
+    assert found.constants[0].text == "int8 LOW=-1"
+    assert [(one.name, one.base, one.shape, one.size, one.default) for one in found.fields] == [
+        ("header", "std_msgs/Header", "one", 0, None),
+        ("xyz", "float64", "array", 3, None),
+        ("many", "float64", "sequence", 0, None),
+        ("few", "float64", "sequence", 0, None),
+        ("text", "string", "one", 0, "hi"),
+        ("numbers", "int32", "sequence", 0, [1, 2]),
+        ("at", "pkg/Point", "one", 0, None),
+        ("kind", "other/Kind", "one", 0, None),
+        ("when", "builtin_interfaces/Time", "one", 0, None),
+    ]
+
+
+def test_in_ros1_a_string_constant_keeps_its_hash_and_times_are_primitive() -> None:
+    found = parse("ros1", "pkg", "Name", "string NAME=a # b\ntime when\nint8 X=1 # c")
+    assert [one.value for one in found.constants] == ["a # b", 1]
+    assert (found.fields[0].base, found.fields[0].primitive) == ("time", True)
+
+
+def test_a_field_is_written_as_in_a_file() -> None:
+    fields: list[Any] = [Field("a", "int8", shape, 3) for shape in ("one", "array", "sequence")]  # type: ignore[arg-type]
+    assert [one.text for one in fields] == ["int8", "int8[3]", "int8[]"]
+    assert not Field("a", "pkg/Name").primitive
+
+
+def test_the_sections_of_a_service_are_separated_by_dashes() -> None:
+    assert _sections("a\n---\nb\n", 2) == ["a\n", "b\n"]
+    assert _sections("a\n", 3) == ["a\n", "", ""]
+    assert _sections("a\n --- \nb\n---\nc", 2) == ["a\n", "b\n"]
+
+
+def test_the_text_for_a_checksum_has_constants_first_and_nested_types_as_checksums() -> None:
+    constants = (Constant("B", 2, "int8 B=2"),)
+    found = Definition(
+        "ros1", "pkg", "Name", (Field("a", "int8"), Field("s", "std_msgs/String", "sequence")), constants
+    )
+    nested: Any = field_class("std_msgs/String")
+    assert md5_text(found) == f"int8 B=2\nint8 a\n{nested._md5sum} s"
+
+
+# values
+
+
+@pytest.mark.parametrize(
+    ("base", "low", "high"),
+    [
+        ("int8", -128, 127),
+        ("char", 0, 255),
+        ("byte", -128, 127),
+        ("uint16", 0, 65535),
+        ("int64", -(2**63), 2**63 - 1),
+    ],
+)
+def test_integers_fit_their_type(base: str, low: int, high: int) -> None:
+    assert [as_integer(one, base, "f") for one in (low, high, True)] == [low, high, 1]
+    for wrong in (low - 1, high + 1):
+        with pytest.raises(FieldError, match=rf"must lie within {base}, from {low} to {high}, not {wrong}"):
+            as_integer(wrong, base, "f")
+    with pytest.raises(FieldError, match=r"must be an integer, not 1\.0"):
+        as_integer(1.0, base, "f")
+
+
+def test_values_of_other_types_are_refused_in_a_sentence() -> None:
+    assert (as_float(3, "f"), as_bool(1, "f"), as_bool(False, "f"), as_text("x", "f")) == (
+        3.0,
+        True,
+        False,
+        "x",
+    )
+    assert as_float32(0.1, "f") == struct.unpack("<f", struct.pack("<f", 0.1))[0]
+    for call, words in (
+        (lambda: as_float("1", "f"), "field 'f' must be a number, not '1'"),
+        (lambda: as_float(None, "f"), "must be a number"),
+        (lambda: as_float32(1e39, "f"), "too large for float32"),
+        (lambda: as_bool("x", "f"), "must be a bool"),
+        (lambda: as_text(b"x", "f"), "must be a string"),
+        (lambda: as_numbers("12", "int8", 0, "f"), "must be a sequence of int8"),
+        (lambda: as_numbers(3, "int8", 0, "f"), "must be a sequence of int8"),  # type: ignore[arg-type]
+        (lambda: as_numbers([200], "int8", 0, "f"), "must hold values of type int8"),
+        (lambda: as_numbers([1, 2], "int8", 3, "f"), "must hold 3 values, not 2"),
+        (lambda: as_list("ab", 0, "f", as_text), "must be a sequence, not 'ab'"),
+        (lambda: as_list(3, 0, "f", as_text), "must be a sequence"),
+        (lambda: as_list(["a"], 2, "f", as_text), "must hold 2 elements, not 1"),
+    ):
+        with pytest.raises(FieldError, match=words):
+            call()
+    assert as_list(("a", "b"), 2, "f", as_text) == ["a", "b"]
+    assert list(as_numbers((1, 2), "int8", 2, "f")) == [1, 2]
+
+
+# bytes
+
+
+def one_field(*fields: Field) -> Any:
+    return build(Definition("ros1", "pkg", "Name", fields), "pkg.msg")
+
+
+def both_ways(kind: Any, message: Any) -> bytes:
+    data = ros1_wire.serialize(message)
+    again = ros1_wire.deserialize(kind, data, field_class)
+    assert again == message
+    return data
+
+
+def test_ros1_numbers_are_little_endian_and_lists_begin_with_their_length() -> None:
+    kind = one_field(Field("a", "uint16"), Field("b", "int16", "sequence"), Field("c", "uint8", "array", 2))
+    assert both_ways(kind, kind(258, [1, -1], b"\x07\x08")) == bytes.fromhex("0201020000000100ffff0708")
+    flags = one_field(Field("a", "bool", "sequence"), Field("b", "float32"), Field("c", "uint8", "sequence"))
+    assert both_ways(flags, flags([True, False], 0.5, b"xy")) == bytes.fromhex(
+        "0200000001000000003f020000007879"
+    )
+
+
+def test_ros1_strings_times_and_messages_follow_each_other() -> None:
+    kind = one_field(
+        Field("a", "string", "sequence"),
+        Field("t", "time"),
+        Field("d", "duration", "array", 1),
+        Field("m", "std_msgs/String"),
+    )
+    nested: Any = field_class("std_msgs/String")
+    sent = kind(["é", ""], Time(1, 2), [Duration(-1, 3)], nested("x"))
+    assert both_ways(kind, sent) == bytes.fromhex(
+        "0200000002000000c3a9000000000100000002000000ffffffff030000000100000078"
+    )
+
+
+@pytest.mark.parametrize(
+    ("field", "data", "words"),
+    [
+        (Field("a", "uint16"), "01", "not a valid pkg/Name"),
+        (Field("a", "uint16"), "010203", "1 bytes are left after a pkg/Name"),
+        (Field("a", "string"), "050000006162", "a string is longer than the remaining bytes"),
+        (Field("a", "uint8", "sequence"), "030000006162", "an array is longer than the remaining bytes"),
+        (Field("a", "string", "sequence"), "ff000000", "an array of 255 elements does not fit 4 bytes"),
+        (Field("a", "int32", "array", 2), "01000000", "not a valid pkg/Name"),
+    ],
+)
+def test_ros1_bytes_that_are_too_few_or_too_many_are_refused(field: Field, data: str, words: str) -> None:
+    with pytest.raises(WireError, match=words):
+        ros1_wire.deserialize(one_field(field), bytes.fromhex(data), field_class)
+
+
+def test_ros1_bytes_of_an_unknown_nested_type_are_refused() -> None:
+    kind = SimpleNamespace(_type="a/B")
+
+    class Made:
+        _type, __slots__, _slot_types = "a/B", ("x",), ["nowhere/Kind"]
+
+    with pytest.raises(WireError, match="message type nowhere/Kind is not known"):
+        ros1_wire.deserialize(Made, b"12345678", lambda _: None)
+    assert kind._type == "a/B"
+
+
+def test_the_full_text_of_a_type_contains_each_nested_type_once() -> None:
+    text = ros1_wire.full_text(field_class("geometry_msgs/PoseStamped"))
+    assert text.startswith("std_msgs/Header header\ngeometry_msgs/Pose pose\n")
+    assert text.count("MSG: geometry_msgs/Point\n") == 1
+    assert text.count("=" * 80) == 4
+
+
+class Structure:
+    """A ROS 2 message of the given fields: name → type and value."""
+
+    fields: dict[str, str] = {}  # noqa: RUF012 (replaced in each subclass)
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        return cls.fields
+
+
+def structure(**fields: str) -> Any:
+    return type("Made", (Structure,), {"fields": fields})
+
+
+def ros2_bytes(kinds: dict[str, str], **given: Any) -> str:
+    """Return the hexadecimal bytes of a message without their header; check that they are read back."""
+    kind = structure(**kinds)
+    message = kind()
+    for name, value in given.items():
+        setattr(message, name, value)
+    data = ros2_wire.serialize(message)
+    assert data[:4] == b"\x00\x01\x00\x00"
+    again = ros2_wire.deserialize(data, kind)
+    assert {name: getattr(again, name) for name in given} == given
+    return data[4:].hex()
+
+
+@pytest.mark.parametrize(
+    ("kinds", "given", "expected"),
+    [
+        ({"a": "uint8", "b": "uint16"}, {"a": 1, "b": 2}, "01000200"),
+        ({"a": "uint8", "b": "double"}, {"a": 1, "b": 1.0}, "0100000000000000000000000000f03f"),
+        ({"a": "boolean", "b": "int8", "c": "int32"}, {"a": True, "b": -1, "c": -2}, "01ff0000feffffff"),
+        ({"a": "sequence<uint8>", "b": "uint32"}, {"a": [1, 2, 3], "b": 4}, "030000000102030004000000"),
+        ({"a": "sequence<int16, 4>"}, {"a": []}, "00000000"),
+        ({"a": "int16[2]"}, {"a": [1, -1]}, "0100ffff"),
+        ({"a": "octet", "b": "sequence<octet>"}, {"a": b"\x07", "b": [b"\x08"]}, "070000000100000008"),
+        ({"a": "string", "b": "string<5>"}, {"a": "é", "b": ""}, "03000000c3a900000100000000"),
+        ({"a": "wstring"}, {"a": "é€"}, "02000000e900ac20"),
+        ({"a": "sequence<string>"}, {"a": ["x", "yz"]}, "02000000020000007800000003000000797a00"),
+        ({"a": "uint8", "b": "sequence<double>"}, {"a": 1, "b": []}, "0100000000000000"),
+    ],
+)
+def test_ros2_values_are_aligned_to_their_size(
+    kinds: dict[str, str], given: dict[str, Any], expected: str
+) -> None:
+    assert ros2_bytes(kinds, **given) == expected
+
+
+def test_ros2_structures_without_fields_have_one_byte() -> None:
+    assert ros2_bytes({}) == "00"
+
+
+def test_ros2_bytes_that_end_too_early_are_refused() -> None:
+    for kinds, data in (
+        ({"a": "uint32"}, "000100000102"),
+        ({"a": "sequence<string>"}, "00010000ff000000"),
+        ({"a": "string"}, "000100000500000061"),
+    ):
+        with pytest.raises(ValueError, match="the bytes are not a valid Made"):
+            ros2_wire.deserialize(bytes.fromhex(data), structure(**kinds))  # type: ignore[arg-type]
