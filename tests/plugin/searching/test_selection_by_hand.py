@@ -12,14 +12,15 @@ import pytest
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.mutate import mutations
-from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.accept import Designed, Outcome, Reference, World
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
+from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.halving import Halving, arm_effects
 from pytest_tarl.searching.race import Arm, Race
 from pytest_tarl.searching.ranking import FLIP, Ranking
 from pytest_tarl.searching.screening import RUNS, screened
-from pytest_tarl.searching.search import FACTORS, Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.search import FACTORS, BudgetSpentError, Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
@@ -257,6 +258,27 @@ def test_a_promising_union_is_balanced_and_units_without_an_effect_are_added_to_
     assert any("D7.5" in words for words in tried)  # 8 exceeds 6 by more than the slack, so it is balanced
 
 
+def test_units_without_an_effect_are_added_to_the_first_two_parts_of_the_best_union() -> None:
+    def world(by: dict[str, float], _: int) -> float:
+        return 2.0 * len(by.keys() & {"A", "B", "C"})
+
+    search, seen = selection(world)
+    list(search.unions([(A, 2.2), (B, 2.2), (C, 2.2)], ALWAYS, [D]))
+    assert [words for words in first(seen) if "D" in words] == []  # 4 of 10 is not promising for a pair
+    richer, seen = selection(lambda by, _: 2.9 * len(by.keys() & {"A", "B", "C"}))
+    list(richer.unions([(A, 2.2), (B, 2.2), (C, 2.2)], ALWAYS, [D]))
+    assert [words for words in first(seen) if "D" in words] == ["A2.2 B2.2 D5"]
+
+
+def test_a_pair_that_cannot_run_gets_no_hidden_unit_however_small_the_wanted_gain_is() -> None:
+    def world(by: dict[str, float], _: int) -> float:
+        raise refused(by)
+
+    search, seen = selection(world, goal=replace(GOAL, near=0.5, enough=1.0))
+    assert list(search._with_what_was_hidden(joint((A, 2.2), (B, 2.2)), [C])) == []
+    assert first(seen) == ["A2.2 B2.2"]
+
+
 def test_a_pair_that_suffices_on_the_first_seed_gets_no_third_part() -> None:
     search, seen = selection(lambda by, seed: (30.0 if seed == 0 else 5.0) if len(by) > 1 else 0.0)
     list(search.unions([(A, 2.2), (B, 2.2), (C, 2.2)], ALWAYS))
@@ -407,6 +429,8 @@ def test_new_arms_lie_halfway_to_the_neighbours_under_the_same_guard() -> None:
     assert [one.factor for one in race.around(Arm(A, 2.4, ALWAYS))] == [round(sqrt(2.4 * 9.0), 3)]
     assert race.around(Arm(A, -1.0, ALWAYS)) == []
     assert race.around(Arm(A, 5.0, ALWAYS)) == []
+    race.gains[Arm(A, 0.0, ALWAYS)] = {0: 0.0}
+    assert [one.factor for one in race.around(Arm(A, 0.4, ALWAYS))] == [round(sqrt(0.4 * 2.2), 3)]
 
 
 def test_the_best_arm_of_an_operand_is_its_effect() -> None:
@@ -458,3 +482,132 @@ def test_a_ranking_that_runs_out_of_episodes_is_not_whole() -> None:
     ranking = Ranking([A.operands[0]], mutations, ALWAYS, Trials(lambda *_: Outcome(0.0, False), 1), GOAL)
     ranking.run()
     assert not ranking.whole
+
+
+# gains
+
+
+def table(*tries: tuple[Unit, float, float], slack: float = 1.0, **given: Any) -> Gains:
+    found = Gains(slack, **given)
+    for unit, factor, gain in tries:
+        found.enter((unit, ALWAYS), factor, gain)
+    return found
+
+
+def test_the_best_units_under_guards_are_sorted_by_gain_and_not_by_factor() -> None:
+    found = table((A, 5.0, 2.0), (B, 0.4, 9.0), (C, 2.2, -1.0), (D, 1.5, 4.0))
+    assert found.best_under([ALWAYS]) == [(B, 0.4), (D, 1.5), (A, 5.0)]
+    assert found.best_under([WET]) == []
+
+
+def test_the_leaders_of_statements_are_sorted_by_gain() -> None:
+    found = table((A, 5.0, 2.0), (A, 0.4, 3.0), (B, 2.2, 9.0), (C, 2.2, 0.0))
+    assert found.leaders(ALWAYS) == [(9.0, (B, 2.2)), (3.0, (A, 0.4))]
+
+
+def test_units_lead_a_step_by_their_gain_with_the_step_before() -> None:
+    found = table((A, 2.2, -0.5), (B, 2.2, 3.0), (C, 2.2, 1.0), (D, 0.4, 9.0))
+    assert found.leading(2.2, ALWAYS, [A, B, C, D], -1.0) == [B, C, A]
+    assert found.leading(2.2, ALWAYS, [A, B, C, D], 1.0) == [B, C]
+    assert found.leading(2.2, WET, [A, B, C, D], -1.0) == []
+
+
+def test_units_that_are_tried_twice_without_any_effect_do_not_move() -> None:
+    found = table((A, 2.2, 0.0), (A, 0.4, 0.0), (B, 2.2, 0.0), (C, 2.2, 0.0), (C, 0.4, -1.0))
+    assert found.moving([A, B, C, D]) == [B, C, D]
+    assert [found.moves(one) for one in (A, B, C, D)] == [False, False, True, False]
+    acting = table((A, 2.2, 0.0), (A, 0.4, 0.0), acting=lambda unit: True)
+    assert acting.moving([A]) == [A]
+    acting.enter((B, ALWAYS), 2.2, 5.0)
+    assert acting.moving([A]) == []  # a gain shows the way, so changed commands no longer count
+
+
+def test_the_largest_gain_is_at_least_zero_and_above_the_slack_counts() -> None:
+    assert Gains(1.0).best() == 0.0
+    assert table((A, 2.2, -3.0)).best() == 0.0
+    found = table((A, 2.2, 1.5))
+    assert (found.best(), found.anything(), found.anything(1.5), found.anything(1.4)) == (
+        1.5,
+        True,
+        False,
+        True,
+    )
+    assert not table((A, 2.2, 1.0)).anything()
+    assert found.most((A, ALWAYS)) == 1.5
+    assert found.most((B, ALWAYS)) == 0.0
+
+
+def test_a_proposal_is_idle_if_its_own_value_changed_nothing() -> None:
+    found = table((A, 1.0, 0.0), (B, 1.0, 2.0), (C, 2.2, 0.0), proposed=True)
+    assert [found.idle(one) for one in (A, B, C, D)] == [True, False, False, False]
+    assert not table((A, 1.0, 0.0)).idle(A)
+
+
+# acceptance
+
+
+def test_a_world_hears_which_seeds_come_next_and_the_designed_one_only_of_new_ones() -> None:
+    heard: list[list[int]] = []
+
+    def run(seed: int) -> Outcome:
+        return Outcome(float(seed), True)
+
+    designed = Designed(World(run, lambda seeds: heard.append([*map(int, seeds)])))  # type: ignore[call-overload]
+    assert designed([3, 4]) == [3.0, 4.0]
+    assert designed([4, 5]) == [4.0, 5.0]
+    assert heard == [[3, 4], [5]]
+
+
+def test_the_tolerated_failure_rate_is_five_points_above_the_recorded_one_and_at_most_one() -> None:
+    reference = Reference((10.0, 8.0), 0.9, 0.5, 0.0)
+    assert reference.tolerated == pytest.approx(0.15)
+    assert replace(reference, pass_rate=0.01).tolerated == 1.0
+    assert reference.mean == 9.0
+    assert reference.least == -10.0  # twenty margins of 0.5, and 0 to 10
+    assert replace(reference, highest=20.0).least == -10.0
+    assert replace(reference, margin=5.0).least == -10.0
+    assert replace(reference, margin=5.0, highest=20.0).least == -20.0
+    assert replace(reference, margin=5.0, lowest=-4.0).least == -14.0
+
+
+# reserves
+
+
+@pytest.mark.parametrize(("seeds", "total", "released"), [(2, 6.0, True), (2, 5.9, False), (1, 9.0, False)])
+def test_the_reserve_is_released_by_a_candidate_that_gains_enough_on_two_seeds(
+    seeds: int, total: float, released: bool
+) -> None:
+    trials = Trials(lambda *_: Outcome(total, False), seeds, reserve=5, worth=GOAL)
+    candidate = joint((A, 2.2)).candidate(mutations)
+    for seed in range(seeds):
+        trials(candidate, seed)
+    if not released:
+        with pytest.raises(BudgetSpentError):
+            trials(candidate, 3)
+        return
+    trials(candidate, 3)
+    assert (trials.budget, trials.reserve) == (seeds + 5, 0)
+
+
+def test_missions_without_loss_do_not_count_for_the_reserve() -> None:
+    goal = replace(GOAL, pairs=GOAL.pairs[:2], controls=(Pair(2, 10.0), Pair(3, 10.0)))
+    trials = Trials(lambda *_: Outcome(10.0, True), 2, reserve=5, worth=goal)
+    for seed in (2, 3):
+        trials(joint((A, 2.2)).candidate(mutations), seed)
+    with pytest.raises(BudgetSpentError):
+        trials(joint((A, 2.2)).candidate(mutations), 0)
+
+
+def test_outcomes_of_another_phase_and_of_an_equal_candidate_are_known() -> None:
+    one, two = (joint((unit, 2.2)).candidate(mutations) for unit in (A, B))
+    trials = Trials(lambda candidate, seed: Outcome(float(seed), False), 9)
+    trials(one, 3)
+    trials(two, 4)
+    trials.equate(one, two)
+    assert [trials(two, seed).total for seed in (3, 4)] == [3.0, 4.0]
+    assert trials.spent == 2
+    other = Trials(lambda candidate, seed: Outcome(-1.0, False), 9)
+    other(two, 4)
+    other.know(trials)
+    assert [other(one, 3).total, other(two, 3).total, other(two, 4).total] == [3.0, 3.0, -1.0]
+    assert other.spent == 1
