@@ -62,7 +62,7 @@ from pytest_tarl.seeds import episode_seeds, generator  # noqa: E402
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal  # noqa: E402
 from pytest_tarl.stressing.combinations import Together  # noqa: E402
 from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, outcome  # noqa: E402
-from pytest_tarl.stressing.findings import Curve, confirmed  # noqa: E402
+from pytest_tarl.stressing.findings import Curve, confirmed, farther  # noqa: E402
 from pytest_tarl.stressing.guarantee import Guarantee, guaranteed  # noqa: E402
 from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
 from pytest_tarl.stressing.search import divided, explore  # noqa: E402
@@ -172,7 +172,9 @@ def searched(one: Arena, seed: int) -> tuple[list[Point], Together]:
     risks = divided(RISK, len(curves))
     together = Together(risks.combinations, curves)
     explore(evaluator, together, risks.each)
-    found = sorted([*confirmed(curves), *together.found], key=lambda failure: failure.distance)
+    found = sorted(
+        [*confirmed(curves), *together.found, *farther(curves)], key=lambda failure: failure.distance
+    )
     return [failure.point for failure in found], together
 
 

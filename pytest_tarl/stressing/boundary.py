@@ -48,7 +48,7 @@ def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
         if curve.confirmed is not None and t >= curve.confirmed:
             return
         if evaluator.confirm(curve.ray.point(t), RAYS, risk / (k * (k + 1))):
-            curve.confirmed = t
+            curve.confirm(t)
             return
         curve.rejected = (*curve.rejected, t)
 

@@ -25,8 +25,10 @@ NEARER = 0.98  # maximum distance of the next confirmed drift, as a share of the
 LIKELY, UNLIKELY = 0.5, 0.05
 VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
 POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a drift beyond the near end
-# multiples of the near end of a chain that are tested as well if drifts fail too often: before it, and after it
+# multiples of the near end of a chain that are tested as well: before it, if the same seeds fail under all drifts;
+# before it, if the chain is not only about the rate of failures; and after it
 OUTWARD = (1.12, 1.08, 1.04)
+BEFORE = (1.03,)
 INWARD = tuple(0.96**step for step in range(1, 17))
 # multiples of the drift at the near end of a chain that may become drifts of the chain
 STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
@@ -48,7 +50,7 @@ class Plan:
 
 
 # the plan while no drift in several directions is confirmed
-FIRST = Plan(0.5, 1.2, ((0.9, 1.06), (0.98, 1.2)))
+FIRST = Plan(0.5, 1.2, ((0.9, 1.06), (0.95, 1.06), (0.98, 1.2)))
 NEXT = Plan(0.35, 1.05, ((0.9, 1.03),))
 
 
@@ -83,22 +85,29 @@ def part_of(nearest: Nearest, chain: Sequence[Point]) -> Part:
     return "loss" if by_rate.max() < UNLIKELY else "both"
 
 
-def finer(nearest: Nearest, chain: list[Point]) -> list[Point]:
-    """Return a chain whose drifts fail too often with further drifts on the ray through its near end.
+def finer(nearest: Nearest, chain: Sequence[Point], part: Part) -> list[Point]:
+    """Return a chain with further drifts on the ray through its near end, if the model covers this end.
 
-    Each takes few episodes if the same seeds fail under all drifts. If they do not, according to the model, the steps
-    are longer.
+    Each takes fewer episodes than a chain of its own: its nominal episodes have run already, and a test about the rate
+    of failures first runs the seeds that failed before.
     """
-    coordinates, near = nearest.coordinates, nearest.coordinates.vector(chain[-1])
+    coordinates = nearest.coordinates
+    if not chain or not coordinates.covers(chain[-1]):
+        return [*chain]
+    near, length = coordinates.vector(chain[-1]), nearest.distance(chain[-1])
     before = nearest.distance(chain[-2]) if len(chain) > 1 else inf
-    length = nearest.distance(chain[-1])
-    alike = nearest.model().luck > 0.0
-    outward = [
-        coordinates.point(np.clip(share * near, coordinates.low, coordinates.high)) for share in OUTWARD
+    outward: Sequence[float] = BEFORE if len(chain) > 1 else ()
+    if part == "rate":
+        outward = OUTWARD if nearest.model().luck > 0.0 else ()
+    farther = [
+        coordinates.point(np.clip(share * near, coordinates.low, coordinates.high)) for share in outward
     ]
-    found = [point for point in outward if length < nearest.distance(point) < before] if alike else []
-    inward = INWARD if alike else INWARD[1::2]
-    return [*chain[:-1], *found, chain[-1], *(coordinates.point(share * near) for share in inward)]
+    return [
+        *chain[:-1],
+        *(point for point in farther if length < nearest.distance(point) < before),
+        chain[-1],
+        *(coordinates.point(share * near) for share in INWARD),
+    ]
 
 
 def clear(nearest: Nearest) -> list[Point]:

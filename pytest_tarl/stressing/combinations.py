@@ -14,7 +14,7 @@ from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import chains
 from pytest_tarl.stressing.boundary import COARSE, bisect
 from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, Evaluator
-from pytest_tarl.stressing.findings import Curve, Failure, MarginMap, confirmed, failure
+from pytest_tarl.stressing.findings import APART, Curve, Failure, MarginMap, confirmed, contains, failure
 from pytest_tarl.stressing.guarantee import Part
 from pytest_tarl.stressing.nearest import EXPECTED, LARGEST, ROUNDS, Nearest
 from pytest_tarl.stressing.rate_tests import RateTests
@@ -30,7 +30,6 @@ REFINED = 0.08  # share of the budget for the search between the first chains of
 ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first chain that confirms a drift
 # shares of the whole risk that the first chains get; each further chain gets half of the rest
 SHARES = (0.2, 0.3, 0.2, 0.1)
-APART = 1.05  # minimum distance of a reported failure that contains another, as a multiple of the other's distance
 QUICK = SIZES[0]  # number of episodes that the search runs at a confirmed failure
 
 
@@ -68,7 +67,7 @@ class Together:
         chain = [
             point
             for point in chain
-            if point != usual and not any(_at_most(other.point, point, evaluator) for other in known)
+            if point != usual and not any(contains(evaluator.space, point, other.point) for other in known)
         ]
         if not chain:
             return False
@@ -105,7 +104,7 @@ class Together:
             t = found.distance / curve.ray.length
             if curve.ray.names == (name,) and isclose(curve.ray.value(t), found.point[name]):
                 curve.evidence[t] = evaluator.examine(curve.ray.point(t), QUICK)
-                curve.confirmed = t
+                curve.confirm(t)
 
 
 def _share(number: int) -> float:
@@ -123,19 +122,11 @@ def _apart(found: Sequence[Failure], evaluator: Evaluator) -> list[Failure]:
     kept: list[Failure] = []
     for one in sorted(found, key=lambda one: (one.distance, one.names)):
         if not any(
-            one.distance < APART * near.distance and _at_most(near.point, one.point, evaluator)
+            one.distance < APART * near.distance and contains(evaluator.space, one.point, near.point)
             for near in kept
         ):
             kept.append(one)
     return [one for one in found if one in kept]
-
-
-def _at_most(one: Point, other: Point, evaluator: Evaluator) -> bool:
-    """Return whether `one` lies between nominal and `other` in each direction."""
-    return all(
-        min(usual, other[name]) <= one[name] <= max(usual, other[name])
-        for name, usual in evaluator.space.nominal.items()
-    )
 
 
 class Combined:
@@ -230,9 +221,7 @@ class Combined:
         try:
             leading = self._leading
             part = chains.part_of(leading, chain)
-            if part == "rate":
-                chain = chains.finer(leading, [*chain])
-            return self.together.confirm(chain, self.evaluator, part)
+            return self.together.confirm(chains.finer(leading, chain, part), self.evaluator, part)
         finally:
             for one in (self.nearest, *self.options):
                 one.tested = self.together.tested

@@ -15,6 +15,8 @@ CONFIDENCE = 0.9  # probability that a boundary lies in the interval that is rep
 # maximum probability that the guarantee still holds at the far end of the interval
 FAR_RISK = (1.0 - CONFIDENCE) / 6
 NEARER = 0.98  # maximum ratio of two distances at which the first counts as nearer
+# minimum distance of a reported failure that contains another one, as a multiple of the other's distance
+APART = 1.03
 # maximum probability that the guarantee already fails at the near end of the interval
 NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
 
@@ -23,16 +25,23 @@ NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
 class Curve:
     """The evidence along a ray, by the place t; the search adds to it.
 
-    `confirmed` is the nearest t at which fresh seeds showed a failure. `rejected` holds each t at which the
-    episodes showed no failure.
+    `confirmed` is the nearest t at which fresh seeds showed a failure, and `farther` are other ones. `rejected` holds
+    each t at which the episodes showed no failure.
     """
 
     ray: Ray
     evidence: dict[float, Evidence] = field(default_factory=dict)
     confirmed: float | None = None
+    farther: tuple[float, ...] = ()
     rejected: tuple[float, ...] = ()
     held: float | None = None  # farthest t at which fresh seeds showed that the guarantee holds
     swept: bool = False  # whether the coarse sweep is complete
+
+    def confirm(self, t: float) -> None:
+        """Keep t, at which fresh seeds showed a failure."""
+        every = {t, *self.farther} | ({self.confirmed} if self.confirmed is not None else set())
+        self.confirmed, *others = sorted(every)
+        self.farther = tuple(others)
 
     @property
     def failing(self) -> list[float]:
@@ -226,10 +235,13 @@ class Stress:
 
     @property
     def failures(self) -> tuple[Failure, ...]:
-        """Return all confirmed failing drifts, nearest first."""
-        return tuple(
-            sorted([*confirmed(self.curves), *self.combinations], key=lambda one: (one.distance, one.names))
-        )
+        """Return the confirmed failing drifts, nearest first: the nearest along each ray, and the combinations."""
+        return _sorted([*confirmed(self.curves), *self.combinations])
+
+    @property
+    def every_failure(self) -> tuple[Failure, ...]:
+        """Return the failures and the farther ones along single directions, which are often surer, nearest first."""
+        return _sorted([*self.failures, *farther(self.curves)])
 
 
 def failure(space: Space, point: Point) -> Failure:
@@ -238,8 +250,32 @@ def failure(space: Space, point: Point) -> Failure:
     return Failure(point, distance(space, point), names)
 
 
+def contains(space: Space, outer: Point, inner: Point) -> bool:
+    """Return whether `inner` lies between nominal and `outer` in each direction."""
+    return all(
+        min(usual, outer[name]) <= inner[name] <= max(usual, outer[name])
+        for name, usual in space.nominal.items()
+    )
+
+
 def confirmed(curves: Sequence[Curve]) -> list[Failure]:
     """Return the confirmed failing drifts along single directions."""
     return [
         failure(one.ray.space, one.ray.point(one.confirmed)) for one in curves if one.confirmed is not None
     ]
+
+
+def farther(curves: Sequence[Curve]) -> list[Failure]:
+    """Return the confirmed failing drifts beyond the nearest along each ray, each APART times as far as the last."""
+    found = []
+    for one in curves:
+        last = one.confirmed
+        for t in one.farther:
+            if last is not None and t >= APART * last:
+                found.append(failure(one.ray.space, one.ray.point(t)))
+                last = t
+    return found
+
+
+def _sorted(found: Sequence[Failure]) -> tuple[Failure, ...]:
+    return tuple(sorted(found, key=lambda one: (one.distance, one.names)))

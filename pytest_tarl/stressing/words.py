@@ -7,7 +7,16 @@ from itertools import groupby
 from typing import Any
 
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal, value_of
-from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Failure, Stress, confirmed, failure
+from pytest_tarl.stressing.findings import (
+    CONFIDENCE,
+    Boundary,
+    Curve,
+    Failure,
+    Stress,
+    confirmed,
+    contains,
+    failure,
+)
 from pytest_tarl.stressing.rays import Ray
 
 MOST_SHOWN = 5  # maximum number of combinations shown, and of statements shown
@@ -85,19 +94,28 @@ def directions(stress: Stress) -> Iterator[tuple[str, list[str]]]:
 
 
 def together(stress: Stress) -> Iterator[str]:
-    """Yield sentences about failing combinations, nearest first."""
-    found = sorted(stress.combinations, key=lambda one: (one.distance, one.names))
-    for one in found[:MOST_SHOWN]:
+    """Yield sentences about failing combinations, nearest first, without those that contain a nearer one."""
+    found, shown = stress.combinations, _innermost(stress)[:MOST_SHOWN]
+    for one in shown:
         where = of_point(stress.space, one.point)
         yield f"Fails with {where} (distance {one.distance:.2g}){_alone(stress, one)}."
-    if len(found) > MOST_SHOWN:
-        yield f"{len(found) - MOST_SHOWN} more failing combinations are in the JSON result."
+    if len(found) > len(shown):
+        yield f"{len(found) - len(shown)} more failing combinations are in the JSON result."
     if stress.nearer is not None:
         where = of_point(stress.space, stress.nearer.point)
         distance = f"{stress.nearer.distance:.2g}"
         yield f"The guarantee probably already fails with {where} (distance {distance}); this is not confirmed."
     elif not found and stress.tried:
         yield f"No combination was found that fails although each of its changes alone passes ({stress.tried} tried)."
+
+
+def _innermost(stress: Stress) -> list[Failure]:
+    """Return the failing combinations that contain no nearer one, nearest first."""
+    kept: list[Failure] = []
+    for one in sorted(stress.combinations, key=lambda one: (one.distance, one.names)):
+        if not any(contains(stress.space, one.point, near.point) for near in kept):
+            kept.append(one)
+    return kept
 
 
 def _alone(stress: Stress, one: Failure) -> str:
@@ -175,7 +193,7 @@ def repair_lines(stress: Stress) -> Iterator[str]:
 def broken_promises(stress: Stress) -> list[str]:
     """Return a sentence for each confirmed failure inside `must_hold`: for each direction, then for combinations."""
     alone = [one for one in confirmed(stress.curves) if _promised(stress, one)]
-    together = [one for one in stress.combinations if _promised(stress, one)]
+    together = [one for one in _innermost(stress) if _promised(stress, one)]
     return [
         *(f"The guarantee fails {_but_must_hold(stress, one)}." for one in alone),
         *(

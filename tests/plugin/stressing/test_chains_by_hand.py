@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from pytest_tarl.stressing import chains
-from pytest_tarl.stressing.chains import INWARD, LIKELY, OUTWARD, UNLIKELY, finer, part_of
+from pytest_tarl.stressing.chains import BEFORE, INWARD, LIKELY, OUTWARD, UNLIKELY, finer, part_of
 from pytest_tarl.stressing.evaluating import Count
-from pytest_tarl.stressing.guarantee import Guarantee, most_passed
+from pytest_tarl.stressing.guarantee import Guarantee, Part, most_passed
 from pytest_tarl.stressing.rate_tests import BLOCK, LOOKS, SPENT, RateTests
 
 GIVEN = Guarantee(0.95, 0.5, (1.0,) * 100, 1.0)
@@ -184,7 +184,7 @@ def lengths(points: Sequence[Any]) -> list[float]:
 
 
 def test_a_chain_is_refined_before_and_after_its_near_end_if_the_same_seeds_fail() -> None:
-    found = finer(model_of((), (), luck=0.1), DRIFTS)  # distances of 1, 0.75 and 0.5
+    found = finer(model_of((), (), luck=0.1), DRIFTS, "rate")  # distances of 1, 0.75 and 0.5
     assert lengths(found) == pytest.approx(
         [1.0, 0.75, *(0.5 * one for one in OUTWARD), 0.5, *(0.5 * one for one in INWARD)]
     )
@@ -194,14 +194,30 @@ def test_a_chain_is_refined_before_and_after_its_near_end_if_the_same_seeds_fail
 def test_further_drifts_lie_nearer_than_the_drift_before_the_near_end_and_in_the_space() -> None:
     close: list[Any] = [{"a": 0.432, "b": 0.324}, {"a": 0.4, "b": 0.3}]  # 1.08 times as far
     alike = model_of((), (), luck=0.1)
-    assert lengths(finer(alike, close))[:3] == pytest.approx([0.54, 0.52, 0.5])
-    (edge, *_) = finer(alike, [{"a": 1.0, "b": 0.5}])
+    assert lengths(finer(alike, close, "rate"))[:3] == pytest.approx([0.54, 0.52, 0.5])
+    (edge, *_) = finer(alike, [{"a": 1.0, "b": 0.5}], "rate")
     assert edge == {"a": 1.0, "b": pytest.approx(0.5 * OUTWARD[0])}
 
 
-def test_the_steps_are_longer_if_other_seeds_fail() -> None:
-    found = finer(model_of((), ()), DRIFTS)
-    assert lengths(found) == pytest.approx([1.0, 0.75, 0.5, *(0.5 * one for one in INWARD[1::2])])
+def test_a_chain_is_only_refined_towards_nominal_if_other_seeds_fail() -> None:
+    found = finer(model_of((), ()), DRIFTS, "rate")
+    assert lengths(found) == pytest.approx([1.0, 0.75, 0.5, *(0.5 * one for one in INWARD)])
+
+
+@pytest.mark.parametrize("part", ["loss", "both"])
+def test_a_chain_about_losses_continues_towards_nominal_and_has_a_drift_just_before_its_near_end(
+    part: Part,
+) -> None:
+    found = finer(model_of((), (), luck=0.1), DRIFTS, part)
+    inward = [0.5 * one for one in INWARD]
+    assert lengths(found) == pytest.approx([1.0, 0.75, *(0.5 * one for one in BEFORE), 0.5, *inward])
+    assert lengths(finer(model_of((), ()), DRIFTS[2:], part)) == pytest.approx([0.5, *inward])
+
+
+def test_a_chain_that_the_model_does_not_cover_is_not_refined() -> None:
+    option: list[Any] = [{"a": 0.6, "b": 0.8, "option": 1.0}]
+    assert finer(model_of((), ()), option, "both") == option
+    assert finer(model_of((), ()), [], "both") == []
 
 
 def test_chains_without_a_failing_drift_or_with_an_option_are_short() -> None:

@@ -16,11 +16,9 @@ from pytest_tarl.learning.bounds import Range
 from pytest_tarl.spaces import Choice, Span
 from pytest_tarl.stressing.boundary import _candidates, bisect
 from pytest_tarl.stressing.candidates import Model
-from pytest_tarl.stressing.combinations import Together, _at_most, _inside, _share
+from pytest_tarl.stressing.combinations import Together, _inside, _share
 from pytest_tarl.stressing.coordinates import Coordinates
-from pytest_tarl.stressing.findings import (
-    Curve,
-)
+from pytest_tarl.stressing.findings import Curve, contains
 from pytest_tarl.stressing.guarantee import (
     Evidence,
     Outcome,
@@ -267,13 +265,12 @@ def test_directions_that_do_not_fail_alone_are_listed_with_the_share_up_to_which
     assert [*_inside([harmless[0], *failing, harmless[1]])] == [(MUD, 1.0), (FLAT, 0.45), (LEFT, 1.0)]
 
 
-def test_a_drift_counts_as_no_larger_than_another_if_no_direction_is_farther_from_nominal() -> None:
-    evaluator: Any = SimpleNamespace(space=SPACE)
+def test_a_drift_contains_another_if_no_direction_of_the_other_is_farther_from_nominal() -> None:
     one = combined(mud=2.0, slope=-0.5).point
-    assert _at_most(combined(mud=2.0).point, one, evaluator)
-    assert _at_most(one, one, evaluator)
-    assert not _at_most(combined(mud=1.9).point, one, evaluator)
-    assert not _at_most(combined(slope=0.1).point, one, evaluator)
+    assert contains(SPACE, one, combined(mud=2.0).point)
+    assert contains(SPACE, one, one)
+    assert not contains(SPACE, one, combined(mud=1.9).point)
+    assert not contains(SPACE, one, combined(slope=0.1).point)
 
 
 def test_a_chain_has_one_risk_for_each_of_its_tests_and_ends_at_the_first_that_fails() -> None:

@@ -158,10 +158,42 @@ def test_combinations_are_printed_with_the_nearest_first() -> None:
         "No combination was found that fails although each of its changes alone passes (3 tried)."
     ]
     assert [*words.together(stress(*whole))] == []
-    many = tuple(combined(mud=3.9 - n / 10, slope=0.1) for n in range(6))
+    many = tuple(combined(mud=3.4 + n / 10, slope=0.1 + n / 50) for n in range(6))  # none contains another
     assert [*words.together(stress(*whole, combinations=many))][5:] == [
         "1 more failing combinations are in the JSON result."
     ]
+
+
+def test_combinations_that_contain_a_nearer_one_are_counted_but_not_printed() -> None:
+    near, aside = combined(mud=3.0, slope=0.3), combined(mud=3.5, slope=0.75)
+    chain = [combined(mud=3.0 - n / 10, slope=0.3 + n / 50) for n in range(1, 6)]
+    found = [*words.together(stress(combinations=(*chain, aside, near)))]
+    assert [one.split(" (")[0] for one in found] == [
+        "Fails with mud=3 and slope=0.3",
+        "Fails with mud=3.5 and slope=0.75",
+        "5 more failing combinations are in the JSON result.",
+    ]
+    document = json_result.document(stress(combinations=(*chain, aside, near)))
+    assert len(document["failures"]) == 7
+    inside: dict[str, Any] = {"mud": (0.0, 4.0), "slope": (-1.0, 1.0)}
+    (promised,) = words.broken_promises(stress(combinations=(*chain, near), must_hold=inside))
+    assert promised == "The guarantee fails with mud=3 and slope=0.3, but must_hold includes this combination."
+
+
+def test_the_json_result_also_lists_farther_failures_along_a_direction() -> None:
+    one = curve(MUD, {0.5: -1.0})
+    for t in (0.9, 0.6, 0.5, 0.505):
+        one.confirm(t)
+    assert (one.confirmed, one.farther) == (0.5, (0.505, 0.6, 0.9))
+    found = stress(one)
+    assert [failure.point["mud"] for failure in found.failures] == [MUD.value(0.5)]
+    document = json_result.document(found)
+    assert [failure["drift"]["mud"] for failure in document["failures"]] == [
+        MUD.value(0.5),
+        MUD.value(0.6),
+        MUD.value(0.9),
+    ]
+    assert document["directions"][0]["boundary"]["failed_at"] == MUD.value(0.5)
 
 
 def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_confirmed_ones() -> None:
