@@ -29,7 +29,7 @@ ALONE = 3  # number of rounds of the search with nominal options before the othe
 REFINED = 0.08  # share of the budget for the search between the first chains of tests
 ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first chain that confirms a drift
 # shares of the whole risk that the first chains get; each further chain gets half of the rest
-SHARES = (0.2, 0.3, 0.2, 0.1)
+SHARES = (0.4, 0.3, 0.15, 0.05)
 QUICK = SIZES[0]  # number of episodes that the search runs at a confirmed failure
 
 
@@ -81,7 +81,7 @@ class Together:
                 if not (
                     rates.confirm(point)
                     if part == "rate"
-                    else evaluator.confirm(point, pool, risk, NEAREST, SPENT, part)
+                    else evaluator.confirm(point, pool, risk, NEAREST, SPENT, part, strict=True)
                 ):
                     break
                 found = True

@@ -30,8 +30,7 @@ FRESH = (16, 32)  # numbers of fresh episodes after which a test along a ray che
 GLANCE = 2
 # number of seeds among which the drifts of this search choose their first seed in turn
 TURNS = 16
-# numbers of fresh episodes after which a test of a combination checks for a decision; more episodes can
-# confirm failures nearer to the boundary
+# numbers of fresh episodes after which a test of a combination checks for a decision; more show nearer failures
 NEAREST = (16, 32, 64)
 # shares of the risk for these numbers of episodes; the last share is the largest, because most episodes show most
 SPENT = (0.1, 0.2, 0.7)
@@ -136,6 +135,8 @@ class Evaluator:
         sizes: Sequence[int] = FRESH,
         shares: Sequence[float] | None = None,
         part: Part = "both",
+        *,
+        strict: bool = False,
     ) -> bool:
         """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails at a point.
 
@@ -143,7 +144,7 @@ class Evaluator:
         outcomes. The test checks for a decision after each of `sizes` episodes, at its share of `risk`; without
         `shares`, `risk` is divided evenly. With `part`, only this part of the guarantee is tested, at the whole risk;
         the choice of the part must not depend on the pool. The test also stops once a failure can hardly be shown any
-        more. Raise BudgetSpentError.
+        more, with `strict` earlier (see `hopeless`). Raise BudgetSpentError.
         """
         risks = [risk * share for share in shares or [1.0 / len(sizes)] * len(sizes)]
         for size, share in zip(sizes, risks, strict=True):
@@ -151,7 +152,7 @@ class Evaluator:
             nominal = self._of(pool, self.space.nominal, size)
             if refuted(self.guarantee, outcomes, nominal, share, part):
                 return True
-            if hopeless(self.guarantee, outcomes, nominal, sizes[-1], risks[-1], part):
+            if hopeless(self.guarantee, outcomes, nominal, sizes[-1], risks[-1], part, strict=strict):
                 return False
         return False
 

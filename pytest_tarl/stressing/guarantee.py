@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import takewhile
-from math import sqrt
+from math import ceil, sqrt
 from statistics import fmean, stdev
 from typing import Literal
 
@@ -188,17 +188,29 @@ def hopeless(
     most: int,
     risk: float,
     part: Part = "both",
+    *,
+    strict: bool = False,
 ) -> bool:
     """Return whether the first episodes make it unlikely that `most` episodes will refute the guarantee.
 
     A refutation is unlikely if the guarantee would still hold after adding about one standard error to both
-    the loss and the number of failures; `part` is that of `refuted`.
+    the loss and the number of failures; `part` is that of `refuted`. With `strict`, a refutation is also unlikely if
+    further episodes that lose as much as these, plus one standard error, would not refute the guarantee.
     """
     if part != "loss":
         count, failed = len(outcomes), sum(not one.passed for one in outcomes)
         if hopeful(failed, count) * most >= most - most_passed(given, most, risk, part):
             return False
-    return part == "rate" or mean_of(_losses(outcomes, nominal), HOPEFUL).high <= given.tolerance
+    if part == "rate":
+        return True
+    losses = _losses(outcomes, nominal)
+    high = mean_of(losses, HOPEFUL).high
+    if high <= given.tolerance or not strict:
+        return high <= given.tolerance
+    further = (high - fmean(losses)) * (1.0 - len(losses) / most)
+    repeated = (losses * ceil(most / len(losses)))[:most]
+    confidence = 1.0 - (risk / 2 if part == "both" else risk)
+    return mean_of(repeated, confidence, _differences(given)).low + further <= given.tolerance
 
 
 def hopeful(failed: float, count: int) -> float:

@@ -71,27 +71,27 @@ def test_the_model_tells_which_part_of_the_guarantee_a_chain_tests(
 
 def test_a_chain_of_failures_goes_on_towards_nominal_in_short_steps_if_seeds_share_their_luck() -> None:
     alike: Any = Told({}, {}, luck=1.0)
-    found = [point["a"] for point in chains.finer(alike, [at(0.8), at(0.5)])]
+    found = [point["a"] for point in chains.finer(alike, [at(0.8), at(0.5)], "rate")]
     assert found[:5] == [0.8, *(pytest.approx(0.5 * share) for share in chains.OUTWARD), 0.5]
     assert found[5:] == [pytest.approx(0.5 * share) for share in chains.INWARD]
     assert found == sorted(found, reverse=True)
-    assert [point["a"] for point in chains.finer(alike, [at(0.53), at(0.5)])][:3] == [
+    assert [point["a"] for point in chains.finer(alike, [at(0.53), at(0.5)], "rate")][:3] == [
         0.53,
         pytest.approx(0.52),
         0.5,
     ]
     independent: Any = Told({}, {})
-    assert [point["a"] for point in chains.finer(independent, [at(0.8), at(0.5)])][:3] == [
+    assert [point["a"] for point in chains.finer(independent, [at(0.8), at(0.5)], "rate")][:3] == [
         0.8,
         0.5,
-        pytest.approx(0.5 * chains.INWARD[1]),
+        pytest.approx(0.5 * chains.INWARD[0]),
     ]
 
 
 def test_failures_that_contain_a_nearer_one_and_hardly_differ_from_it_are_not_reported() -> None:
     evaluator = evaluator_of(lambda point, _: (point["a"] < 0.9, 1.0), SQUARE)
-    every = [failure(SQUARE, point) for point in (at(0.6), at(0.52), at(0.51), at(0.5), at(0.4, 0.31))]
-    assert 0.51 < 0.52 < APART * 0.5 < 0.6
+    every = [failure(SQUARE, point) for point in (at(0.6), at(0.51), at(0.505), at(0.5), at(0.4, 0.31))]
+    assert 0.505 < 0.51 < APART * 0.5 < 0.6
     assert _apart(every, evaluator) == [every[0], every[3], every[4]]
     assert _apart([], evaluator) == []
 

@@ -22,6 +22,7 @@ from pytest_tarl.stressing.findings import Curve, contains
 from pytest_tarl.stressing.guarantee import (
     Evidence,
     Outcome,
+    Part,
     enough_pass,
     examined,
     hopeless,
@@ -29,6 +30,7 @@ from pytest_tarl.stressing.guarantee import (
     margin_of,
     margin_of_one,
     most_passed,
+    refuted,
     unlike_recorded,
 )
 from pytest_tarl.stressing.holding import least
@@ -190,6 +192,29 @@ def test_a_test_stops_early_if_the_guarantee_can_hardly_be_refuted_any_more() ->
     assert not ends(8, 0.0)
 
 
+def test_a_strict_test_also_stops_if_alike_further_losses_would_not_refute_the_guarantee() -> None:
+    """Losses alternate around their mean; they deviate by 0.1, so the mean of 16 has a standard error of 0.026.
+
+    If 48 of 64 episodes lose one standard error more, the mean grows by 0.019. The quantiles are Student's.
+    """
+    nominal = [Outcome(True, 10.0)] * 16
+
+    def ends(excess: float, failed: int = 0, part: Part = "loss") -> bool:
+        loss = GIVEN.tolerance + excess
+        outcomes = [Outcome(n >= failed, 10.0 - loss + 0.1 * (-1) ** n) for n in range(16)]
+        return hopeless(GIVEN, outcomes, nominal, 64, 0.005, part, strict=True)
+
+    needed = 2.66 * 0.1 / sqrt(63) - 0.75 * 1.03 * 0.1 / sqrt(15)
+    assert ends(needed - 0.002)
+    assert not ends(needed + 0.002)
+    assert ends(needed + 0.002, part="both")  # at half of the risk
+    assert not ends(needed - 0.1, failed=8, part="both")
+    assert ends(needed + 0.1, part="rate")
+    whole = [Outcome(True, 10.0 - GIVEN.tolerance - 0.05 + 0.1 * (-1) ** n) for n in range(64)]
+    assert not hopeless(GIVEN, whole, nominal * 4, 64, 0.005, "loss", strict=True)
+    assert refuted(GIVEN, whole, nominal * 4, 0.005, "loss")
+
+
 @pytest.mark.parametrize("directions", [1, 4, 50])
 @pytest.mark.parametrize("alpha", [0.01, 0.05, 0.3])
 def test_the_risks_of_all_claims_add_up_to_alpha_at_most(alpha: float, directions: int) -> None:
@@ -277,7 +302,8 @@ def test_a_chain_has_one_risk_for_each_of_its_tests_and_ends_at_the_first_that_f
     risks: list[tuple[str, float]] = []
     released: list[str] = []
 
-    def confirm(point: Any, pool: str, risk: float, *_: Any) -> bool:
+    def confirm(point: Any, pool: str, risk: float, *_: Any, strict: bool) -> bool:
+        assert strict
         risks.append((pool, risk))
         return point["mud"] >= 2.0
 

@@ -177,7 +177,9 @@ def test_combinations_that_contain_a_nearer_one_are_counted_but_not_printed() ->
     assert len(document["failures"]) == 7
     inside: dict[str, Any] = {"mud": (0.0, 4.0), "slope": (-1.0, 1.0)}
     (promised,) = words.broken_promises(stress(combinations=(*chain, near), must_hold=inside))
-    assert promised == "The guarantee fails with mud=3 and slope=0.3, but must_hold includes this combination."
+    assert (
+        promised == "The guarantee fails with mud=3 and slope=0.3, but must_hold includes this combination."
+    )
 
 
 def test_the_json_result_also_lists_farther_failures_along_a_direction() -> None:
