@@ -31,6 +31,7 @@ JUDGING = (
     "drift_judging_14",
     "drift_judging_15",
     "drift_judging_16",
+    "drift_judging_17",
     "drift_structure",
 )
 TASKS = sorted(
@@ -252,6 +253,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "two constants",
     ],
+    "drift_judging_17": [
+        "narrow window",
+        "one constant",
+        "one constant",
+        "one constant",
+        "permanent",
+        "rare failures",
+        "structure",
+        "structure",
+    ],
 }
 
 
@@ -306,6 +317,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_14",
         "drift_judging_15",
         "drift_judging_16",
+        "drift_judging_17",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
