@@ -7,9 +7,7 @@ import pytest
 from tarl_lint.method_effects import changes
 
 
-@pytest.mark.parametrize(
-    "name", ["addstr", "addnstr", "addch", "insstr", "insnstr", "send", "get_data"]
-)
+@pytest.mark.parametrize("name", ["addstr", "addnstr", "addch", "insstr", "insnstr", "send", "get_data"])
 def test_methods_that_only_show_or_send_their_arguments_change_nothing(name: str) -> None:
     assert not changes(name, dropped=True)
 
