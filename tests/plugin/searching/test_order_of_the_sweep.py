@@ -73,11 +73,11 @@ def tried(world: World, operands: Sequence[Operand], **given: Any) -> list[str]:
 def test_a_world_in_which_nothing_matters_gets_every_step_once() -> None:
     assert order(dead, [A, LITERAL]) == [
         *(("A=2.2", 0), ("A=0.4", 1)),  # named constants first
-        *(("3.0=6.6", 0), ("3.0=1.2", 1)),
+        *(("3.0=6.6", 1), ("3.0=1.2", 2)),
         *(("A=1.5", 1), ("3.0=4.5", 1), ("A=0.65", 2), ("3.0=1.95", 2)),
-        *(("A=10", 3), ("3.0=30", 3), ("A=0.05", 0), ("3.0=0.15", 0)),
-        *(("A=5", 3), ("3.0=15", 3), ("A=0.15", 0), ("3.0=0.45", 0)),
-        *(("A=-1", 1), ("3.0=-3", 1)),
+        *(("A=10", 0), ("3.0=30", 0), ("A=0.05", 1), ("3.0=0.15", 1)),
+        *(("A=5", 1), ("3.0=15", 1), ("A=0.15", 2), ("3.0=0.45", 2)),
+        *(("A=-1", 0), ("3.0=-3", 0)),
     ]
 
 
@@ -161,7 +161,7 @@ def test_a_second_guard_is_searched_as_well_only_if_the_first_has_a_condition() 
 
 def test_a_gain_under_a_condition_is_tried_without_it_at_once() -> None:
     search, seen = sweeping(lambda changes: 4.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL, A])
-    search.guards = (WET, ALWAYS)
+    search.attempts.guards = (WET, ALWAYS)
     list(search.candidates())
     words = [one for one, _ in seen]
     assert words.index("3.0=6.6") < words.index("A=2.2")
@@ -250,19 +250,19 @@ def test_a_candidate_of_the_sweep_is_tried_on_further_seeds_and_yielded_once() -
 def test_a_change_that_was_yielded_counts_as_refused_when_the_search_goes_on() -> None:
     search, _ = sweeping(lambda changes: 10.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL])
     (unit,) = units([LITERAL])
-    found = search.attempt(unit, ALWAYS, 2.2, 0)
+    found = search.attempts.attempt(unit, ALWAYS, 2.2, 0)
     assert next(found).mutations[0].value == 6.6
-    assert search.refused == set()
+    assert search.attempts.refused == set()
     assert list(found) == []
-    assert search.refused == {(unit, ALWAYS)}
+    assert search.attempts.refused == {(unit, ALWAYS)}
 
 
 def test_a_change_that_loses_missions_of_refused_ones_counts_as_refused() -> None:
     search, _ = sweeping(lambda changes: 10.0, [LITERAL])
-    search.trials.loses = lambda _: True
+    search.attempts.trials.loses = lambda _: True
     (unit,) = units([LITERAL])
-    assert list(search.attempt(unit, ALWAYS, 2.2, 0)) == []
-    assert search.refused == {(unit, ALWAYS)}
+    assert list(search.attempts.attempt(unit, ALWAYS, 2.2, 0)) == []
+    assert search.attempts.refused == {(unit, ALWAYS)}
 
 
 def announced(operands: Sequence[Operand]) -> list[list[tuple[float, int]]]:
@@ -273,7 +273,7 @@ def announced(operands: Sequence[Operand]) -> list[list[tuple[float, int]]]:
     def foresee(wanted: Sequence[Wanted]) -> None:
         heard.append([(one.mutations[0].value, seed) for one, seed in wanted])
 
-    search.trials.foresee = foresee
+    search.attempts.trials.foresee = foresee
     list(search.candidates())
     return heard
 
@@ -309,30 +309,30 @@ def test_the_effects_are_those_of_the_best_factor_by_statement() -> None:
 def test_reaching_the_goal_once_leaves_a_change_open_only_if_it_may_be_confirmed_later() -> None:
     search, seen = sweeping(lambda changes: 10.0, [LITERAL])
     (unit,) = units([LITERAL])
-    assert search.reaches(unit, 2.2, ALWAYS, 1, confirmable=False)
-    assert search.holding(unit, 2.2, ALWAYS, 1) is None
-    assert search.reaches(unit, 3.0, ALWAYS, 1)
-    assert search.holding(unit, 3.0, ALWAYS, 1) is not None
-    assert not search.reaches(unit, 3.0, ALWAYS, 1)
+    assert search.attempts.reaches(unit, 2.2, ALWAYS, 1, confirmable=False)
+    assert search.attempts.holding(unit, 2.2, ALWAYS, 1) is None
+    assert search.attempts.reaches(unit, 3.0, ALWAYS, 1)
+    assert search.attempts.holding(unit, 3.0, ALWAYS, 1) is not None
+    assert not search.attempts.reaches(unit, 3.0, ALWAYS, 1)
     assert seen[:2] == [("3.0=6.6", 1), ("3.0=9", 1)]
 
 
 def test_a_change_that_misses_the_goal_is_neither_confirmed_nor_tried_again() -> None:
     search, seen = sweeping(lambda changes: 4.0, [LITERAL])
     (unit,) = units([LITERAL])
-    assert not search.reaches(unit, 2.2, ALWAYS, 1)
-    assert search.holding(unit, 2.2, ALWAYS, 1) is None
-    assert search.holding(unit, 1.5, ALWAYS, 2) is None
+    assert not search.attempts.reaches(unit, 2.2, ALWAYS, 1)
+    assert search.attempts.holding(unit, 2.2, ALWAYS, 1) is None
+    assert search.attempts.holding(unit, 1.5, ALWAYS, 2) is None
     assert seen == [("3.0=6.6", 1), ("3.0=4.5", 2)]
-    assert search.gains.of(unit, ALWAYS) == {1.0: 0.0, 2.2: 4.0, 1.5: 4.0}
+    assert search.attempts.gains.of(unit, ALWAYS) == {1.0: 0.0, 2.2: 4.0, 1.5: 4.0}
 
 
 def test_a_change_that_changes_nothing_reaches_and_holds_nothing() -> None:
     search, seen = sweeping(lambda changes: 10.0, [LITERAL])
     (unit,) = units([LITERAL])
-    assert not search.reaches(unit, 1.0, ALWAYS, 0)
-    assert search.holding(unit, 1.0, ALWAYS, 0) is None
-    assert list(search.attempt(unit, ALWAYS, 1.0, 0)) == []
+    assert not search.attempts.reaches(unit, 1.0, ALWAYS, 0)
+    assert search.attempts.holding(unit, 1.0, ALWAYS, 0) is None
+    assert list(search.attempts.attempt(unit, ALWAYS, 1.0, 0)) == []
     assert seen == []
 
 
@@ -342,7 +342,7 @@ def test_a_change_that_cannot_be_written_reaches_and_holds_nothing() -> None:
 
     search, _ = sweeping(world, [LITERAL])
     (unit,) = units([LITERAL])
-    assert not search.reaches(unit, 2.2, ALWAYS, 0)
-    assert search.holding(unit, 1.5, ALWAYS, 0) is None
-    assert list(search.attempt(unit, ALWAYS, 3.0, 0)) == []
-    assert search.gains.of(unit, ALWAYS) == {}
+    assert not search.attempts.reaches(unit, 2.2, ALWAYS, 0)
+    assert search.attempts.holding(unit, 1.5, ALWAYS, 0) is None
+    assert list(search.attempts.attempt(unit, ALWAYS, 3.0, 0)) == []
+    assert search.attempts.gains.of(unit, ALWAYS) == {}

@@ -325,10 +325,10 @@ def test_each_use_of_a_constant_that_holds_is_learned_from() -> None:
         return Outcome(10.0, True)
 
     sweep = Sweep([one, two], mutations, (ALWAYS,), Trials(run, 100), GOAL)
-    (whole,) = sweep.units
-    assert sweep.holding(whole, 2.2, ALWAYS, 0) is not None
+    (whole,) = sweep.attempts.units
+    assert sweep.attempts.holding(whole, 2.2, ALWAYS, 0) is not None
     assert seen == [2, 2, 2, 2, 1, 1]
-    assert set(sweep.gains.under(ALWAYS)) == {whole, Unit((one,)), Unit((two,))}
+    assert set(sweep.attempts.gains.under(ALWAYS)) == {whole, Unit((one,)), Unit((two,))}
 
 
 # screening

@@ -147,7 +147,7 @@ def test_each_look_has_its_share_of_the_risk(monkeypatch: pytest.MonkeyPatch) ->
         return False
 
     monkeypatch.setattr(evaluating, "refuted", refuted)
-    monkeypatch.setattr(evaluating, "hopeless", lambda *_: False)
+    monkeypatch.setattr(evaluating, "hopeless", lambda *_, strict: strict)
     made, _ = evaluator(constant(9.5))
     assert not made.confirm(UP, "chain 0", 0.08)
     assert risks == [0.04, 0.04]
@@ -159,7 +159,9 @@ def test_each_look_has_its_share_of_the_risk(monkeypatch: pytest.MonkeyPatch) ->
 def test_whether_a_test_is_hopeless_is_judged_by_its_last_look(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[tuple[int, int, float, str]] = []
 
-    def hopeless(given: Any, outcomes: Any, nominal: Any, most: int, risk: float, part: str) -> bool:
+    def hopeless(
+        given: Any, outcomes: Any, nominal: Any, most: int, risk: float, part: str, *, strict: bool
+    ) -> bool:
         asked.append((len(outcomes), most, risk, part))
         return len(outcomes) == 8
 

@@ -12,7 +12,7 @@ from pytest_tarl import Drift
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import combinations, search
 from pytest_tarl.stressing.chains import FIRST, NEXT, clear, part_of
-from pytest_tarl.stressing.combinations import Combined, Together, _inside
+from pytest_tarl.stressing.combinations import SHARES, Combined, Together, _inside
 from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.evaluating import BudgetSpentError
 from pytest_tarl.stressing.findings import Curve, Failure, failure
@@ -236,7 +236,9 @@ class Confirming:
         self.asked: list[tuple[float, str, float, str]] = []
         self.released: list[str] = []
 
-    def confirm(self, point: Point, pool: str, risk: float, sizes: Any, shares: Any, part: str) -> bool:
+    def confirm(
+        self, point: Point, pool: str, risk: float, sizes: Any, shares: Any, part: str, strict: bool
+    ) -> bool:
         self.asked.append((point["a"], pool, risk, part))
         return point["a"] >= self.least
 
@@ -251,7 +253,9 @@ def test_the_tests_of_a_chain_stop_at_the_first_drift_that_is_not_confirmed() ->
     together, evaluator = Together(0.1, [Curve(ray) for ray in rays(CUBE, {})]), Confirming(0.5)
     chain = [drift(a=size, b=size) for size in (0.9, 0.6, 0.4, 0.2)]
     assert together.confirm(chain, evaluator, "loss")  # type: ignore[arg-type]
-    assert evaluator.asked == [(size, "chain 0", pytest.approx(0.02), "loss") for size in (0.9, 0.6, 0.4)]
+    assert evaluator.asked == [
+        (size, "chain 0", pytest.approx(0.1 * SHARES[0]), "loss") for size in (0.9, 0.6, 0.4)
+    ]
     assert [one.point["a"] for one in together.every] == [0.9, 0.6]
     assert together.tested == chain[:3]
     assert evaluator.released == ["chain 0"]
@@ -281,10 +285,10 @@ def test_an_end_of_the_budget_still_releases_the_pool_and_keeps_what_was_confirm
     together, evaluator = Together(0.1, []), Confirming(0.0)
     confirm = evaluator.confirm
 
-    def spent(point: Point, *given: Any) -> bool:
+    def spent(point: Point, *given: Any, strict: bool) -> bool:
         if point["a"] < 0.5:
             raise BudgetSpentError
-        return confirm(point, *given)
+        return confirm(point, *given, strict=strict)
 
     evaluator.confirm = spent  # type: ignore[method-assign]
     with pytest.raises(BudgetSpentError):

@@ -14,9 +14,10 @@ import pytest
 from pytest_tarl import Drift
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import delivering, page
-from pytest_tarl.stressing.combinations import _apart, _at_most, pairs
+from pytest_tarl.stressing.combinations import _apart, pairs
 from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.findings import (
+    APART,
     Attempt,
     Boundary,
     Draws,
@@ -26,6 +27,7 @@ from pytest_tarl.stressing.findings import (
     Share,
     Sobol,
     Statements,
+    contains,
     failure,
 )
 from pytest_tarl.stressing.generating import _number, _point
@@ -281,22 +283,22 @@ def test_failures_are_sorted_by_distance_and_then_by_name() -> None:
 # combinations
 
 
-def test_failures_that_contain_a_nearer_one_must_be_five_percent_farther() -> None:
+def test_failures_that_contain_a_nearer_one_must_be_farther_by_some_percent() -> None:
     evaluator: Any = SimpleNamespace(space=SPACE)
     small = near(1.0, slope=0.5, mud=2.0)
-    for distance, kept in ((1.04, 1), (1.06, 2)):
+    for distance, kept in ((APART - 0.005, 1), (APART + 0.005, 2)):
         larger = near(distance, slope=0.6, mud=2.0)
         assert len(_apart([larger, small], evaluator)) == kept
-    aside = near(1.01, slope=-0.5, mud=2.0)
+    aside = near(1.005, slope=-0.5, mud=2.0)
     assert _apart([aside, small], evaluator) == [aside, small]
 
 
 def test_a_drift_lies_between_nominal_and_another_one_in_every_direction() -> None:
     evaluator: Any = SimpleNamespace(space=SPACE)
-    assert _at_most(point(slope=0.5), point(slope=0.5, mud=1.0), evaluator)
-    assert _at_most(point(slope=-0.1), point(slope=-0.5), evaluator)
-    assert not _at_most(point(slope=-0.1), point(slope=0.5), evaluator)
-    assert not _at_most(point(mud=3.0, slope=0.6), point(mud=3.0, slope=0.5), evaluator)
+    assert contains(evaluator.space, point(slope=0.5, mud=1.0), point(slope=0.5))
+    assert contains(evaluator.space, point(slope=-0.5), point(slope=-0.1))
+    assert not contains(evaluator.space, point(slope=0.5), point(slope=-0.1))
+    assert not contains(evaluator.space, point(mud=3.0, slope=0.5), point(mud=3.0, slope=0.6))
 
 
 def test_both_ends_of_one_range_are_not_a_pair() -> None:
