@@ -7,6 +7,7 @@ therefore deterministic.
 
 from __future__ import annotations
 
+import sys
 from collections import deque
 from collections.abc import Callable
 from functools import partial
@@ -23,6 +24,7 @@ from pytest_tarl.errors import NodeError, StuckNodeError
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.watchdog import WATCHDOG, Spinning
 
+NO_HOOKS: tuple[Any, ...] = (None, None)
 PATIENCE = 500  # number of polls at one instant before a task counts as polling, see polling.py
 
 
@@ -53,7 +55,18 @@ class Program(Protocol):
 class Task:
     """One thread of control of a process: its main program, a running callback, or a timer."""
 
-    __slots__ = ("args", "done", "function", "loop", "parked", "patience", "process", "ticket", "worker")
+    __slots__ = (
+        "args",
+        "asyncgen_hooks",
+        "done",
+        "function",
+        "loop",
+        "parked",
+        "patience",
+        "process",
+        "ticket",
+        "worker",
+    )
 
     def __init__(self, process: Program, function: Callable[..., Any], args: tuple[Any, ...]) -> None:
         self.process = process
@@ -64,6 +77,8 @@ class Task:
         self.patience = PATIENCE  # number of polls left until the task must wait
         self.done = False
         self.loop: Any = None  # asyncio's running loop while the task waits inside it
+        # the hooks that asyncio sets for asynchronous generators while its loop runs, one pair per thread
+        self.asyncgen_hooks: tuple[Any, ...] = NO_HOOKS
         self.worker: Worker | None = None
 
     def execute(self) -> None:
@@ -260,14 +275,16 @@ class Scheduler:
         self._running = task
         if self.entering is not None:
             self.entering(task.process)
-        outer = None
+        outer, outer_hooks = None, NO_HOOKS
         if self.keeps_loops:
-            outer = _get_running_loop()
+            outer, outer_hooks = _get_running_loop(), sys.get_asyncgen_hooks()
             _set_running_loop(task.loop)
+            sys.set_asyncgen_hooks(*task.asyncgen_hooks)
         worker.switch(woken)
         if self.keeps_loops:
-            task.loop = _get_running_loop()
+            task.loop, task.asyncgen_hooks = _get_running_loop(), tuple(sys.get_asyncgen_hooks())
             _set_running_loop(outer)
+            sys.set_asyncgen_hooks(*outer_hooks)
 
 
 __all__ = ["Program", "Scheduler", "Spinning", "Task", "current_task", "running_task"]

@@ -61,4 +61,5 @@ def test_the_cache_key_covers_all_packages_that_influence_findings():
         "tarl_lint.report",
         "tarl_lint.queries",
         "tarl_lint.workspace",
+        "tarl_lint.workspace.python",
     }

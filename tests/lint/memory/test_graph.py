@@ -183,3 +183,13 @@ def test_a_cycle_of_carry_nodes_depends_on_its_origin(graph, node):
         graph.data[carry].add(other)
     settle(graph)
     assert item in graph.data[one] | graph.data[two]
+
+
+def test_a_copy_of_a_node_has_other_conditions_instead_of_one_decision(graph, node):
+    kept, decided = (7, True), (3, False)
+    read = node("read", kept, decided)
+    copy = graph.under(read, 3, frozenset([(5, True)]))
+    assert graph.branches[copy] == frozenset([kept, (5, True)])
+    assert graph.data[copy] == {read}
+    assert graph.under(read, 3, frozenset([(5, True)])) == copy
+    assert graph.under(read, 4, frozenset()) == read

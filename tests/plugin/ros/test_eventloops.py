@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import concurrent.futures.thread as pools
+import sys
 from typing import Any
 
 import pytest
@@ -78,6 +79,26 @@ asyncio.run(main())
         start(HEAD.format(name=name) + body, ros=ros)
     ros.step(1.0)
     assert texts(out) == ["one at 0.75", "two at 0.75"]
+
+
+def test_loops_that_end_in_turn_leave_no_hooks_for_asynchronous_generators(start: Start) -> None:
+    ros = start("")
+    out = heard(ros, "/out")
+    body = """
+async def numbers():
+    for number in range(3):
+        yield number
+async def main():
+    found = [number async for number in numbers()]
+    await asyncio.sleep({seconds})
+    say(f"{{found}}")
+asyncio.run(main())
+"""
+    for name, seconds in (("one", 0.25), ("two", 0.5), ("three", 5.0)):
+        start(HEAD.format(name=name) + body.format(seconds=seconds), ros=ros)
+    ros.step(1.0)
+    assert texts(out) == ["[0, 1, 2] at 0.25", "[0, 1, 2] at 0.50"]
+    assert tuple(sys.get_asyncgen_hooks()) == (None, None)
 
 
 def test_threads_pools_and_loops_work_together(start: Start) -> None:

@@ -249,7 +249,7 @@ def test_errors_name_missing_libraries_and_functions(start: Start) -> None:
         r"rosgraph\.Master\.registerPublisher is not in": "import rosgraph; rosgraph.Master('/me').registerPublisher",
         r"roslaunch is not in .*call it in the test": "import roslaunch",
         r"tf2_ros\.Spaceship is not in": "from tf2_ros import Spaceship",
-        r"actionlib\.ActionServer is not in": "import actionlib; actionlib.ActionServer",
+        r"actionlib\.Spaceship is not in": "import actionlib; actionlib.Spaceship",
         r"tf2_ros\.spaceship is not in": "import tf2_ros.spaceship",
         r"OpenCV": "import sys; sys.modules['cv2'] = None; from cv_bridge import CvBridge;"
                    " CvBridge().cv2_to_compressed_imgmsg(None)",

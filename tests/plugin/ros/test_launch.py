@@ -286,7 +286,7 @@ def test_edited_parameter_files_are_read_anew(tarl: Tarl, tmp_path: Path) -> Non
         ("robot.launch", {"only": "first"}, r'only takes a list of node names, such as only=\["first"\]'),
         ("robot.launch", {"replace": {"laser": 5}}, "replace takes a function for each node, but laser has 5"),
         ("robot.launch", {"arguments": ["camera"]}, r"arguments takes a mapping, not \['camera'\]"),
-        ("robot.launch", {"parameters": "gain"}, "parameters takes a mapping, not 'gain'"),
+        ("robot.launch", {"parameters": ["gain"]}, r"a mapping or the path of a YAML file, not \['gain'\]"),
         ("robot.launch", {"arguments": {"camera": True}}, (r"the node /\$\(arg camera_ns\)/camera .*depends on "
          r"'/\$\(arg camera_ns\)', which has no value here: pass arguments=\{\"camera_ns\": …\}")),
         ("pair.launch.xml", {}, r"depends on '/\$\(var robot\)', .* pass arguments=\{\"robot\": …\}"),
