@@ -275,12 +275,17 @@ DRAWING: Final = frozenset(
     ]
 )
 
+FILLS_MESSAGES: Final = (
+    "genpy.message.fill_message_args", "genpy.fill_message_args", "roslib.message.fill_message_args",
+    "rosidl_runtime_py.set_message_fields", "rosidl_runtime_py.set_message.set_message_fields",
+)  # fmt: skip
 ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **{f"cv2.{name}": 0 for name in sorted(DRAWING)},
     "numpy.copyto": 0, "numpy.put": 0, "numpy.place": 0, "numpy.putmask": 0, "random.shuffle": 0,
     "numpy.fill_diagonal": 0, "setattr": 0, "struct.pack_into": 1,
     **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
     **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
+    **dict.fromkeys(FILLS_MESSAGES, 0),
 }  # fmt: skip
 # method → position of the argument that it fills
 METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}

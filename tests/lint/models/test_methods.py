@@ -292,6 +292,13 @@ FUNCTIONS: dict[tuple[str, ...], str] = {
         out.publish(kept[0])  # data
         out.publish(other[0])  # clean
     """,
+    catalog.FILLS_MESSAGES: """
+        kept, other = Made(), Made()
+        NAME(kept, [msg.data])
+        NAME(other, [1.0])
+        out.publish(kept)  # data
+        out.publish(other)  # clean
+    """,
     ("random.shuffle",): """
         kept = [0.0, msg.data]
         NAME(kept)
@@ -327,10 +334,12 @@ WRITING: dict[tuple[str, ...], str] = {
 HEAD = "\n".join(
     f"import {name}"
     for name in (
-        *("asyncio", "bisect", "collections", "concurrent.futures", "cv2", "heapq", "io", "numpy", "queue"),
-        *("random", "serial", "struct", "threading"),
+        *("asyncio", "bisect", "collections", "concurrent.futures", "cv2", "genpy.message", "heapq", "io"),
+        *("numpy", "queue", "random", "roslib.message", "rosidl_runtime_py.set_message", "serial", "struct"),
+        "threading",
     )
 )
+HEAD += "\nfrom shop.msg import Made"
 TABLES = {"read": READ, "changed": CHANGED, "functions": FUNCTIONS, "writing": WRITING}
 COVERED = [(name, body) for table in TABLES.values() for names, body in table.items() for name in names]
 
