@@ -8,6 +8,9 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching import plateau
 from pytest_tarl.searching.attempts import Attempts
 from pytest_tarl.searching.search import Candidate
+from pytest_tarl.searching.units import Unit
+
+CLEARLY = 0.3  # gain, as a share of the wanted gain, that ends the finer steps on a few constants
 
 
 class Crossing:
@@ -17,15 +20,25 @@ class Crossing:
         self.attempts = attempts
         self._inside: set[Guard] = set()
 
-    def across(
-        self, guard: Guard, steps: Sequence[plateau.Step], until: int | None = None
-    ) -> Iterator[Candidate]:
-        """Try the steps of `plateau` under a guard while no unit gains reward; begin none after `until` episodes."""
+    def across(self, guard: Guard, steps: Sequence[plateau.Step]) -> Iterator[Candidate]:
+        """Try the steps of `plateau` under a guard while no unit gains reward."""
         tries, gains = self.attempts, self.attempts.gains
         for factor, before in () if tries.proposed else steps:
-            if gains.anything() or (until is not None and tries.trials.spent >= until):
+            if gains.anything():
                 return
             yield from tries.sweep(factor, guard, plateau.among(before, tries.units, gains, guard))
+
+    def of_few(self, guard: Guard, few: Sequence[Unit]) -> Iterator[Candidate]:
+        """Try the steps up to `plateau.FINE_UNTIL` on a few units, for at most half of the episodes that are left.
+
+        They end when a unit gains `CLEARLY`: a wrong constant may gain a little on one seed.
+        """
+        tries, gains = self.attempts, self.attempts.gains
+        until = tries.trials.spent + (tries.trials.budget - tries.trials.spent) // 2
+        for factor, before in plateau.STEPS[: plateau.FINE_UNTIL]:
+            if gains.anything(CLEARLY * tries.goal.wanted) or tries.trials.spent >= until:
+                return
+            yield from tries.sweep(factor, guard, plateau.among(before, few, gains, guard))
 
     def inward(self, guard: Guard) -> Iterator[Candidate]:
         """Try inward steps (see `plateau`) once under a guard while a large change gains most."""

@@ -170,13 +170,12 @@ class Trials:
 
         Each designed mission that runs is charged to the budget once. Raise BudgetSpentError and RepairError.
         """
+        ran = [self(candidate, seed) for seed in seeds]
         design = self.design
         if design is None:
             return 0.0
-        return fmean(
-            deviation(self(candidate, seed).rewards, self._as_designed(seed, design).rewards)
-            for seed in seeds
-        )
+        designed = [self._as_designed(seed, design) for seed in seeds]
+        return fmean(deviation(one.rewards, other.rewards) for one, other in zip(ran, designed, strict=True))
 
     def lost(self, candidate: Candidate, seeds: Sequence[int]) -> float | None:
         """Return by how much a candidate earns less than the designed missions of the same seeds, on average.

@@ -160,8 +160,7 @@ class Sweep:
         tries.units = tuple(few)
         for guard in chief:
             yield from self.first_steps.near(few, guard)
-        until = tries.trials.spent + (tries.trials.budget - tries.trials.spent) // 2
-        yield from self.crossing.across(chief[0], plateau.STEPS[: plateau.FINE_UNTIL], until)
+        yield from self.crossing.of_few(chief[0], few)
         self._swept = frozenset(tries.units)
         tries.units = (*tries.units, *(unit for unit in every if unit not in self._swept))
 
