@@ -97,9 +97,8 @@ class Examiner:
             if examined.reason in WEAK:
                 weak.append(guard)
                 edges += [examined.candidate] if examined.fresh else []
-            costly = examined.candidate in self._missed.costly
-            if examined.fresh and (costly or examined.candidate in self._missed.spread):
-                weak += [] if costly else [guard]
+            if examined.fresh and self._missed.nearly_right(examined.candidate):
+                weak.append(guard)
                 accepted = self._followed(self.others.improved(examined.candidate, trials), trials)
                 if accepted is not None or self._exhausted():
                     return accepted
@@ -108,7 +107,7 @@ class Examiner:
                     candidate, mutations=examined.candidate.changes
                 )  # keep the centred values, so that they are not centred again
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
-            if wide and examined.reason in (*TOO_LITTLE, *WEAK) and not costly:
+            if wide and examined.reason in (*TOO_LITTLE, *WEAK):
                 # this guard is as wide as that of the search, and narrower guards cannot gain more
                 break
         for others in (

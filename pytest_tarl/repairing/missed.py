@@ -60,6 +60,10 @@ class Missed:
             self.poor.add(candidate)
             self.spread[candidate] = _spread(found)
 
+    def nearly_right(self, candidate: Candidate) -> bool:
+        """Return whether a refused candidate's missions succeeded, so that its value may only have to be improved."""
+        return candidate in self.costly or candidate in self.spread
+
     def again(self, candidate: Candidate, trials: Trials, goal: Goal) -> bool:
         """Return whether a candidate loses reward in most of the missions stored last. Raise BudgetSpentError."""
         lost, asked = 0, self.seeds[-LATEST:]

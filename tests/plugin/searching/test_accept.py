@@ -72,6 +72,16 @@ def test_a_repair_that_breaks_the_designed_world_is_refused() -> None:
     assert (found.accepted, found.reason) == (False, "nominal gets worse")
 
 
+@pytest.mark.parametrize("loss", [0.45, 2.0])
+def test_the_result_says_whether_the_designed_world_is_the_reason(loss: float) -> None:
+    """A loss of nearly the margin is not shown to be tolerable, and one of four margins is shown not to be."""
+    costly = judged(world(DESIGNED), world(DESIGNED - loss, seed=1))
+    weak = judged(world(DESIGNED - loss), world(DESIGNED, seed=1))
+    assert [costly.accepted, weak.accepted] == [False, False]
+    assert (costly.costly, weak.costly) == (True, False)
+    assert not judged(world(DESIGNED), world(DESIGNED, seed=1)).costly
+
+
 def test_the_candidate_does_not_run_in_the_designed_world_if_its_guard_never_holds_there() -> None:
     found = judged(world(DESIGNED))
     assert found.accepted
