@@ -74,6 +74,8 @@ class Hidden:
 class Workspace:
     """All packages below a folder, sorted by name; of packages with the same name, the first counts.
 
+    A package with a `package.xml` comes before a mere folder of definitions.
+
     `hidden` are further packages. Hidden packages are found by name and by path, but are not among
     `packages`.
     """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
@@ -46,7 +46,7 @@ def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
     Packages below a marker such as COLCON_IGNORE are hidden, unless the marked folder contains one of `kept`.
     """
     markers: list[Path] = []
-    packages = {one.name: one for one in reversed(_packages(root.resolve(), kept, markers))}
+    packages = _by_name(_packages(root.resolve(), kept, markers))
     hidden: dict[str, Hidden] = {}
     for marker in markers:  # the loop appends the markers below hidden folders
         for package in _packages(marker.parent, kept, markers):
@@ -57,6 +57,25 @@ def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
         tuple(packages[name] for name in sorted(packages)),
         tuple(hidden[name] for name in sorted(hidden)),
     )
+
+
+def _by_name(found: list[Package]) -> dict[str, Package]:
+    """Return the packages by name: the first with a `package.xml`, or else the first folder of definitions.
+
+    Further folders of definitions with that name add types that it lacks.
+    """
+    by_name: dict[str, Package] = {}
+    for one in sorted(found, key=lambda one: not _is_declared(one)):
+        first = by_name.setdefault(one.name, one)
+        if first is not one and not _is_declared(one):
+            known = {file.name for file in first.interfaces}
+            more = tuple(file for file in one.interfaces if file.name not in known)
+            by_name[one.name] = replace(first, interfaces=first.interfaces + more)
+    return by_name
+
+
+def _is_declared(package: Package) -> bool:
+    return (package.folder / "package.xml").is_file()
 
 
 def _packages(root: Path, kept: frozenset[Path], markers: list[Path]) -> list[Package]:

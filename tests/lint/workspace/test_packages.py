@@ -516,3 +516,27 @@ def test_macros_and_loops_of_cmake_are_expanded(tmp_path):
 def test_endless_and_unfinished_blocks_of_cmake_end(tmp_path, text, number):
     found = called(tmp_path, text)
     assert len(found) < 10_000 if number is None else len(found) == number
+
+
+def test_a_package_of_messages_comes_before_a_copy_of_its_definitions(tmp_path: Path) -> None:
+    folders = {
+        "a_first/arm_msgs/msg/Old.msg": "float64 value",
+        "a_first/arm_msgs/msg/Grip.msg": "float64 old",
+        "arm_msgs/srv/Grip.srv": "---",
+        "src/arm_msgs/package.xml": "<package><name>arm_msgs</name></package>",
+        "src/arm_msgs/msg/Grip.msg": "float64 force",
+        "src/arm_msgs/srv/Move.srv": "---",
+        "z_again/arm_msgs/package.xml": "<package><name>arm_msgs</name></package>",
+        "z_again/arm_msgs/msg/Other.msg": "float64 value",
+    }
+    for name, text in folders.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    (package,) = read(tmp_path).packages
+    assert package.folder == tmp_path / "src/arm_msgs"
+    assert [str(one.relative_to(tmp_path)) for one in package.interfaces] == [
+        "src/arm_msgs/msg/Grip.msg",
+        "src/arm_msgs/srv/Move.srv",
+        "a_first/arm_msgs/msg/Old.msg",
+        "arm_msgs/srv/Grip.srv",
+    ]
