@@ -30,6 +30,7 @@ _INTEGER_NEEDED = re.compile(
 )
 _LACKING: Final = re.compile(r"^module '([\w.]+)' has no attribute ")
 _NONE: Final = re.compile(r"\bNone(Type)?\b")
+_WORD: Final = 4  # minimum length of a word that can resemble a parameter's name
 _SHOWN: Final = 3  # maximum number of parameters in one sentence
 _ARGUMENTS: Final = re.compile(r"\bargv\b|\bmyargv\b|\bparse_(known_)?args\b")
 
@@ -59,7 +60,7 @@ def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str
     if isinstance(error, SystemExit | IndexError):
         return _of_arguments(error, given)
     if unset and isinstance(error, TypeError | AttributeError | ValueError) and _NONE.search(str(error)):
-        return _of_unset(unset)
+        return _of_unset(unset, _line_of(error))
     if isinstance(error, TypeError) and "required positional argument: 'Loader'" in str(error):
         return (
             "PyYAML 6 has no default for it: call yaml.safe_load in the node, or run pip install 'PyYAML<6' in the "
@@ -73,9 +74,18 @@ def _of_name(module: str) -> str:
     return f"The in-process ROS lacks this name of {module}: put a replacement into the module in the test."
 
 
-def _of_unset(unset: Sequence[str]) -> str:
-    """Return advice for a node that fails with None after it has asked for parameters without a value."""
-    names = [one.removeprefix("~") for one in unset]
+def _of_unset(unset: Sequence[str], line: str) -> str:
+    """Return advice for a node that fails with None after it has asked for parameters without a value.
+
+    Parameters whose name resembles a word of the failed line come first.
+    """
+    words = [one for one in re.findall(r"\w+", line) if len(one) >= _WORD]
+
+    def differs(name: str) -> bool:
+        last = name.rpartition("/")[2]
+        return not any(one in last or (len(last) >= _WORD and last in one) for one in words)
+
+    names = sorted(dict.fromkeys(one.removeprefix("~") for one in unset), key=differs)
     shown = ", ".join(names[:_SHOWN]) + (f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else "")
     return (
         f'Parameters that it asked for have no value: {shown}. If it needs one, pass parameters={{"{names[0]}": …}} '

@@ -46,6 +46,9 @@ CASES = {
         r"have no value: /a, b\. If it needs one, pass parameters=\{\"/a\": …\} to tarl\.start\.$"
     ),
     "[rospy.has_param(name) for name in 'abcde']; 2 * None": "no value: a, b, c and 2 more",
+    "speed = [rospy.get_param(one, None) for one in ('a', '~top_speed', 'top_speed')][0]; 2.0 * speed": (
+        r"have no value: top_speed, a\. If it needs one, pass parameters=\{\"top_speed\": …\}"
+    ),
     "rospy.topics._SubscriberImpl": "lacks this name of rospy.topics: put a replacement into the module in the test",
     "import tf2_ros.buffer; tf2_ros.buffer.nothing_here": "lacks this name of tf2_ros.buffer",
     "from actionlib.simple_action_client import nothing_here": "lacks this name of actionlib.simple_action_client",
