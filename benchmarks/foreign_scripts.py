@@ -111,7 +111,7 @@ def script(repository: Path, path: Path, entry: str | None) -> Script | None:
     imported = set(imports(tree))
     if not TESTING.isdisjoint(imported):
         return Script(repository, path, apart="a test, not a node")
-    runs = any(map(_runs, tree.body))
+    runs = any(map(starts_something, tree.body))
     if entry is None and not runs:
         return Script(repository, path, apart="a module that starts nothing when it is run")
     for kind, names in (("GPU library", GPU), ("hardware SDK", HARDWARE), ("display", DISPLAY)):
@@ -193,7 +193,7 @@ def imports(tree: ast.AST) -> Iterator[str]:
             yield (node.module or "").partition(".")[0]
 
 
-def _runs(statement: ast.stmt) -> bool:
+def starts_something(statement: ast.stmt) -> bool:
     """Return whether a top-level statement may start a node: the `__main__` guard, or a call."""
     if isinstance(statement, ast.If):
         return re.search(r"__name_", ast.unparse(statement.test)) is not None
