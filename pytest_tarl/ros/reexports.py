@@ -45,6 +45,7 @@ REEXPORTED: Final[
         "rclpy.qos": "QoSProfile qos_profile_action_status_default qos_profile_services_default",
         "rclpy.type_support": "check_for_type_support",
         "unique_identifier_msgs.msg": "UUID",
+        "rclpy.service_introspection": "ServiceIntrospectionState",
     },
     "rclpy.action.server": {
         "action_msgs.msg": "GoalInfo GoalStatus",
@@ -54,12 +55,14 @@ REEXPORTED: Final[
         "rclpy.task": "Task",
         "rclpy.type_support": "check_for_type_support",
         "unique_identifier_msgs.msg": "UUID",
+        "rclpy.service_introspection": "ServiceIntrospectionState",
     },
     "rclpy.client": {
         "rclpy.callback_groups": "CallbackGroup",
         "rclpy.clock": "Clock",
         "rclpy.context": "Context",
         "rclpy.qos": "QoSProfile",
+        "rclpy.service_introspection": "ServiceIntrospectionState",
     },
     "rclpy.clock": {
         "rclpy.context": "Context",
@@ -78,6 +81,8 @@ REEXPORTED: Final[
         "rclpy.subscription": "MessageInfo Subscription",
         "rclpy.timer": "Timer TimerInfo",
         "rclpy.utilities": "get_default_context timeout_sec_to_nsec",
+        "rclpy.exceptions": "InvalidHandle TimerCancelledError",
+        "rclpy.clock_type": "ClockType",
     },
     "rclpy.guard_condition": {
         "rclpy.callback_groups": "CallbackGroup",
@@ -107,7 +112,7 @@ REEXPORTED: Final[
         "rclpy.context": "Context",
         "rclpy.event_handler": "PublisherEventCallbacks SubscriptionEventCallbacks",
         "rclpy.exceptions": (
-            "InvalidParameterTypeException InvalidParameterValueException NotInitializedException "
+            "InvalidHandle InvalidParameterTypeException InvalidParameterValueException NotInitializedException "
             "ParameterAlreadyDeclaredException ParameterImmutableException ParameterNotDeclaredException "
             "ParameterUninitializedException"
         ),
@@ -166,16 +171,23 @@ REEXPORTED: Final[
         "rclpy.callback_groups": "CallbackGroup",
         "rclpy.clock": "Clock",
         "rclpy.qos": "QoSProfile",
+        "rclpy.service_introspection": "ServiceIntrospectionState",
+    },
+    "rclpy.signals": {
+        "rclpy.exceptions": "InvalidHandle",
     },
     "rclpy.subscription": {
         "rclpy.callback_groups": "CallbackGroup",
         "rclpy.event_handler": "SubscriptionEventCallbacks",
+        "rclpy.exceptions": "RCLError",
     },
     "rclpy.timer": {
         "rclpy.callback_groups": "CallbackGroup",
         "rclpy.clock": "Clock",
         "rclpy.context": "Context",
         "rclpy.utilities": "get_default_context",
+        "rclpy.clock_type": "ClockType",
+        "rclpy.exceptions": "InvalidHandle",
     },
     "rospy.client": {
         "roscpp.msg": "Logger",

@@ -58,8 +58,12 @@ class InvalidServiceNameException(NameValidationException):
         super().__init__("service name", name, error_msg, invalid_index)
 
 
-class InvalidHandle(Exception):  # noqa: N818
+class InvalidHandle(RuntimeError):  # noqa: N818
     """A destroyed entity is used."""
+
+
+class TimerCancelledError(RuntimeError):
+    """A timer was called after it was cancelled."""
 
 
 class NoTypeSupportImportedException(Exception):  # noqa: N818
