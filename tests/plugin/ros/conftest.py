@@ -7,8 +7,10 @@ from typing import Any
 
 import pytest
 
+from pytest_tarl.errors import NodeError
 from pytest_tarl.ros import Ros
 from pytest_tarl.ros.process import Network
+from pytest_tarl.ros.scheduler import Scheduler, Task
 
 Start = Callable[..., Ros]
 
@@ -43,6 +45,41 @@ def start(tmp_path: Path) -> Iterator[Start]:
     for ros, installed in reversed(open_episodes):
         ros.close()
         installed.__exit__(None, None, None)
+
+
+class Program:
+    """A process of tasks that notes how they end."""
+
+    label = "program"
+
+    def __init__(self, scheduler: Scheduler) -> None:
+        self.scheduler = scheduler
+        self.tasks: list[Task] = []
+        self.ending = False
+        self.errors: list[BaseException] = []
+        self.refused = 0
+
+    def failed(self, task: Task, error: BaseException) -> None:
+        self.errors.append(error)
+
+    def finished(self, task: Task) -> None:
+        self.tasks.remove(task)
+
+    def spins(self, place: Any) -> NodeError:
+        return NodeError(f"spins at {place}")
+
+    def refuse_to_wait(self) -> None:
+        self.refused += 1
+
+
+@pytest.fixture
+def clock() -> Scheduler:
+    return Scheduler()
+
+
+@pytest.fixture
+def program(clock: Scheduler) -> Program:
+    return Program(clock)
 
 
 @pytest.fixture
