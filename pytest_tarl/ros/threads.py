@@ -112,7 +112,7 @@ class ReentrantLock(Lock):
 
     def __init__(self, scheduler: Scheduler) -> None:
         super().__init__(scheduler)
-        self._owner: Task | None = None
+        self._owner: Task | None = None  # the last holder; meaningful only while the lock is held
         self._count = 0
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
@@ -133,7 +133,6 @@ class ReentrantLock(Lock):
             raise RuntimeError("cannot release un-acquired lock")
         self._count -= 1
         if self._count == 0:
-            self._owner = None
             super().release()
 
     def _is_owned(self) -> bool:  # interface of threading.Condition

@@ -295,3 +295,31 @@ times.append((client.send_goal_and_wait(FibonacciGoal(), rospy.Duration(0.5), ro
     assert [found for found, _ in times] == [False, True, False, PENDING]
     assert [time for _, time in times] == pytest.approx([1.5, 2.1, 3.1, 3.85], abs=1e-6)
     assert len(goals) == 2
+
+
+@pytest.mark.parametrize(
+    ("body", "text"),
+    [
+        ("pass", "No terminal state was set."),
+        ("raise ValueError('bad order')", "Exception in execute callback: bad order"),
+    ],
+)
+def test_a_callback_that_sets_no_end_or_fails_aborts_its_goal(start: Start, body: str, text: str) -> None:
+    ros = start(f"""
+        import actionlib, rospy
+        from actionlib_tutorials.msg import FibonacciAction
+        rospy.init_node("server")
+        def execute(goal):
+            {body}
+        server = actionlib.SimpleActionServer("sum", FibonacciAction, execute, auto_start=False)
+        server.start()
+        rospy.spin()
+    """)
+    results = heard(ros, "/sum/result")
+    message: Any = message_type("actionlib_tutorials/FibonacciActionGoal")()
+    message.goal_id.id = "one"
+    ros.bus.publish("/sum/goal", message)
+    ros.step(0.1)
+    assert [(one.status.goal_id.id, one.status.status, one.status.text) for one in results] == [
+        ("one", ABORTED, text)
+    ]

@@ -167,6 +167,11 @@ def test_a_gain_under_a_condition_is_tried_without_it_at_once() -> None:
     assert words.index("3.0=6.6") < words.index("A=2.2")
 
 
+def test_a_gain_is_not_tried_without_its_condition_if_the_search_has_only_conditions() -> None:
+    found = tried(lambda changes: 4.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL, A], guards=(WET,))
+    assert all(words.endswith("|") for words in found)
+
+
 def test_constants_in_no_data_flow_come_after_the_others_failed() -> None:
     found = tried(dead, [A], late=[LITERAL], aside=[B])
     assert found[:2] == ["A=2.2", "A=0.4"]
