@@ -104,6 +104,9 @@ class Programs:
             lambda: f"len({self.shape()})",
             lambda: f"abs({self.shape()})",
             lambda: f"{self.planet()}.mass",
+            lambda: f"len({self.layout()})",
+            lambda: f"{self.lookup()}['scan']",
+            lambda: f"{self.celsius()} + {one()}",
             lambda: f"{self.configured()}.total",
             lambda: f"({self.shape()}).size",
             lambda: f"{self.level()} + {one()}",
@@ -201,6 +204,10 @@ class Programs:
             lambda: f"repr({self.point()})",
             lambda: f"f'{{{self.level()}.name:*^12}}'",
             lambda: f"str({self.mode()})",
+            lambda: f"{self.lookup()}.get({self.word()}, {one()})",
+            lambda: f"str({self.celsius()})",
+            lambda: f"next({self.countdown()}, 'none')",
+            lambda: f"({self.layout()} or ['x'])[0]",
             lambda: f"{self.mode()}.label",
             lambda: f"json.dumps({self.table()}, sort_keys=True)",
             lambda: f"type({self.shape()}).__name__.lower()",
@@ -273,6 +280,12 @@ class Programs:
             lambda: f"textwrap.wrap({text()} + ' one two three', 8)",
             lambda: f"[str(p) for p in Path('/a/b/c').parents][:{self.small()}]",
             lambda: f"[x for x in {self.shape()}]",
+            lambda: f"{self.layout()}.long()",
+            lambda: f"list({self.countdown()})",
+            lambda: f"sorted({self.lookup()})",
+            lambda: f"[a + b for a, b in zip({self.countdown()}, {one()})]",
+            lambda: f"{self.layout()} + {one()}",
+            lambda: f"[t for t in {self.layout()}][1:]",
             lambda: "[key for _, key, _, _ in string.Formatter().parse('{a}-{b:>3}c')]",
             lambda: f"list(asdict({self.configured()}))",
             lambda: f"[operator.attrgetter('name')(q) for q in sorted([{self.record()}, {self.record()}])]",
@@ -790,6 +803,82 @@ class Programs:
             STEP=self.small(),
         )
         return self.random.choice((f"{name}({self.word()})", f"{name}({self.word()}, {self.number()})"))
+
+    def layout(self) -> str:
+        """Return an object of a class that is a list."""
+        name = self.define(
+            "Layout",
+            """
+            class NAME(list):
+                def long(self):
+                    return [t for t in self if len(t) > STEP]
+                def add(self, text):
+                    self.append(text)
+                    return self
+                def __getattr__(self, name):
+                    raise AttributeError(name)
+            """,
+            STEP=self.small(),
+        )
+        return self.random.choice((f"{name}({self.texts()})", f"{name}().add({self.text()}).add('last')"))
+
+    def lookup(self) -> str:
+        """Return an object of a class that is a dict."""
+        name = self.define(
+            "Lookup",
+            """
+            class NAME(dict):
+                asked = []
+                def __init__(self, *pairs, **given):
+                    super().__init__(pairs, **given)
+                    self.order = list(self)
+                def __missing__(self, key):
+                    NAME.asked.append(key)
+                    return f'no {key} of {len(self.order)}'
+                def __setitem__(self, key, value):
+                    super().__setitem__(key, str(value))
+            """,
+        )
+        return self.random.choice((f"{name}(scan={self.word()})", f"{name}(('a', 'b'), c={self.text()})"))
+
+    def countdown(self) -> str:
+        """Return an object of a class that is an iterator."""
+        name = self.define(
+            "Countdown",
+            """
+            class NAME:
+                made = 0
+                def __new__(cls, *args):
+                    cls.made += 1
+                    return super().__new__(cls)
+                def __init__(self, start):
+                    self.left = start
+                def __iter__(self):
+                    return self
+                def __next__(self):
+                    if self.left <= 0:
+                        raise StopIteration
+                    self.left -= 1
+                    return f'{self.left}-{NAME.made}'
+            """,
+        )
+        return f"{name}({self.small()})"
+
+    def celsius(self) -> str:
+        """Return an object of a class that is a number."""
+        name = self.define(
+            "Celsius",
+            """
+            class NAME(float):
+                unit = 'C'
+                def __str__(self):
+                    return f'{float(self):.1f} {self.unit}'
+                def warmer(self, by=STEP):
+                    return type(self)(self + by)
+            """,
+            STEP=self.small(),
+        )
+        return self.random.choice((f"{name}({self.small()})", f"{name}('2.5').warmer()"))
 
     def mode(self) -> str:
         """Return a member of an enumeration."""

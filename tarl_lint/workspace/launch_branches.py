@@ -25,10 +25,11 @@ from tarl_lint.workspace.launch_alternatives import (
 from tarl_lint.workspace.launch_paths import Branch, Frame, Loop, Names
 from tarl_lint.workspace.python.elements import Unique
 from tarl_lint.workspace.python.evaluator import Library, Unknown
+from tarl_lint.workspace.python.instances import Made
 from tarl_lint.workspace.python.interpreter import Interpreter
 from tarl_lint.workspace.python.jumps import Left, Raised, Returned
 from tarl_lint.workspace.python.match_patterns import fits
-from tarl_lint.workspace.python.objects import Class, Function, Made
+from tarl_lint.workspace.python.objects import Class, Function
 from tarl_lint.workspace.python.values import Bound, Scope, Stream
 
 _ADDING: Final = frozenset(["append", "appendleft", "extend", "insert", "add", "add_action", "add_entity"])

@@ -18,7 +18,7 @@ from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
 from tarl_lint.workspace.python.elements import bounded
 from tarl_lint.workspace.python.paths import FilePath, normal
-from tarl_lint.workspace.python.values import OpaqueError, Unknown
+from tarl_lint.workspace.python.values import OpaqueError, Stream, Unknown
 
 LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
 
@@ -86,7 +86,7 @@ def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
     return {
         **listings(inside),
         "configparser.ConfigParser": lambda *_, **__: IniFile(inside),
-        "csv.reader": _rows, "csv.DictReader": _records,
+        "csv.reader": _rows, "io.StringIO": OpenText, "csv.DictReader": _records,
         "builtins.open": opened, "io.open": opened, "codecs.open": opened,
         "pathlib.Path.read_text": text, "pathlib.Path.open": opened,
         **{f"pathlib.Path.{kind}": test(kind) for kind in ("exists", "is_file", "is_dir")},
@@ -96,21 +96,51 @@ def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
     }  # fmt: skip
 
 
-def _rows(source: Any, **given: Any) -> list[list[str]]:
-    lines = source.looped() if isinstance(source, OpenFile) else source
+class OpenText:
+    """The result of `io.StringIO`: a text that is read as a file."""
+
+    readable: ClassVar = frozenset({"read", "readlines", "getvalue", "close"})
+
+    def __init__(self, text: Any = "") -> None:
+        if not isinstance(text, str):
+            raise OpaqueError("an unknown text")
+        self._text = text
+
+    def read(self, *_: Any) -> str:
+        """Return the text."""
+        return self._text
+
+    getvalue = read
+
+    def looped(self) -> list[str]:
+        """Return the lines."""
+        return self._text.splitlines(keepends=True)
+
+    readlines = looped
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+def _rows(source: Any, **given: Any) -> Stream:
+    return Stream(iter(_read_rows(source, given)))
+
+
+def _read_rows(source: Any, given: dict[str, Any]) -> list[list[str]]:
+    lines = source.looped() if isinstance(source, OpenFile | OpenText) else source
     if not isinstance(lines, list) or not all(isinstance(one, str) for one in lines):
         raise OpaqueError("unknown lines")
     return list(csv.reader(lines, **given))
 
 
 def _records(source: Any, fieldnames: Any = None, **given: Any) -> list[dict[str, str]]:
-    rows = _rows(source, **given)
+    rows = _read_rows(source, given)
     head, rest = (fieldnames, rows) if fieldnames is not None else (rows[0], rows[1:])
     return [dict(zip(head, row, strict=False)) for row in rest if row]
 
 
 def _text(source: Any) -> str | None:
-    found = source.read() if isinstance(source, OpenFile) else source
+    found = source.read() if isinstance(source, OpenFile | OpenText) else source
     return found if isinstance(found, str) else None
 
 

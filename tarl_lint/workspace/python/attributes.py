@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import ast
 import functools
+import operator
 from collections import OrderedDict
+from collections.abc import Callable, Mapping
 from pathlib import PurePosixPath
-from typing import Any
+from typing import Any, Final
 
+from tarl_lint.workspace.python.classes import blank
 from tarl_lint.workspace.python.containers import type_of
 from tarl_lint.workspace.python.elements import listed
 from tarl_lint.workspace.python.evaluation import Evaluation, call_of, unknown
-from tarl_lint.workspace.python.methods import METHODS, READ, method
-from tarl_lint.workspace.python.objects import Above, Class, Function, Made, Method
+from tarl_lint.workspace.python.instances import Made
+from tarl_lint.workspace.python.methods import METHODS, READ, method, updated
+from tarl_lint.workspace.python.objects import Above, Class, Function, Method
 from tarl_lint.workspace.python.operators import limited
 from tarl_lint.workspace.python.paths import FilePath
-from tarl_lint.workspace.python.values import Bound, Library, Namespace, Partial
+from tarl_lint.workspace.python.values import Bound, Library, Namespace, Partial, Stream
 
 
 def attribute(run: Evaluation, base: Any, name: str, node: ast.AST) -> tuple[Any] | None:
@@ -27,8 +31,8 @@ def attribute(run: Evaluation, base: Any, name: str, node: ast.AST) -> tuple[Any
         inner = base.names[name] if name in base.names else run.imported(f"{base.module}.{name}")
         return None if inner is None else (inner,)
     if isinstance(base, Made | Class | Above):
-        found = _of_class(run, base, name, node)
-        return _of_every_object(base, name) if found is None else found
+        found = _of_class(run, base, name, node) or _of_every_object(base, name)
+        return _fallback(base, name) if found is None else found
     if isinstance(base, Function | Method):
         function = base if isinstance(base, Function) else base.function
         names = {"__name__": function.called(), "__qualname__": function.called()}
@@ -84,7 +88,7 @@ def _of_class(run: Evaluation, base: Made | Class | Above, name: str, node: ast.
     if own and not (found is not None and isinstance(found[0], Function) and found[0].kind == "property"):
         return (base.attributes[name],)  # type: ignore[union-attr] # `own` says that it is an object
     if found is None:
-        return _fallback(base, name)
+        return None
     value, owner = found
     if isinstance(value, Function):
         if value.kind == "classmethod":
@@ -128,16 +132,25 @@ def _fallback(base: Made | Class | Above, name: str) -> tuple[Any] | None:
     return None
 
 
+def _of_super(base: Above, name: str) -> tuple[Any] | None:
+    """Return a tuple with a method that Python's own base classes have."""
+    if name in ("__init__", "__init_subclass__", "__post_init__"):
+        return (Partial(functools.partial(_initialised, base.of)),)
+    if name == "__new__":
+        return (Partial(lambda kind, *args, **keywords: blank(kind, list(args), keywords)),)
+    if isinstance(base.of, Made) and base.of.held is not None:
+        return _of_held(base.of.held, name)
+    if name == "__str__" and isinstance(base.of, Made) and base.of.has("__repr__"):
+        return (Partial(lambda: base.of.run("__repr__")),)
+    if name == "__setattr__" and isinstance(base.of, Made):
+        return (Partial(lambda key, value: base.of.attributes.update({key: value})),)
+    return None
+
+
 def _of_every_object(base: Made | Class | Above, name: str) -> tuple[Any] | None:
     """Return a tuple with an attribute that classes and objects have without stating it."""
     if isinstance(base, Above):
-        if name in ("__init__", "__init_subclass__", "__post_init__"):
-            return (Partial(functools.partial(_initialised, base.of)),)
-        if name == "__str__" and isinstance(base.of, Made) and base.of.has("__repr__"):
-            return (Partial(lambda: base.of.run("__repr__")),)
-        if name == "__setattr__" and isinstance(base.of, Made):
-            return (Partial(lambda key, value: base.of.attributes.update({key: value})),)
-        return None
+        return _of_super(base, name)
     if isinstance(base, Made):
         return _of_object(base, name)
     if name in ("__name__", "__qualname__"):
@@ -153,8 +166,26 @@ def _of_every_object(base: Made | Class | Above, name: str) -> tuple[Any] | None
     return None
 
 
-def _initialised(of: Any, *args: Any, **_: Any) -> None:
-    """Do what the first `__init__` of an exception does: keep the arguments."""
+_ITEMS: Final[Mapping[str, Callable[..., Any]]] = {
+    "__getitem__": operator.getitem, "__setitem__": operator.setitem, "__delitem__": operator.delitem,
+    "__len__": len, "__contains__": operator.contains, "__iter__": lambda held: Stream(iter(list(held))),
+    "__repr__": repr, "__str__": str, "__eq__": operator.eq,
+}  # fmt: skip
+
+
+def _of_held(held: Any, name: str) -> tuple[Any] | None:
+    """Return a tuple with a method of the list, dict or other value of Python that an object is."""
+    if name in METHODS.get(type(held), ()):
+        return (Bound(held, name),)
+    return (Partial(functools.partial(_ITEMS[name], held)),) if name in _ITEMS else None
+
+
+def _initialised(of: Any, *args: Any, **keywords: Any) -> None:
+    """Do what the first `__init__` of an exception or a container does: keep the arguments."""
+    if isinstance(of, Made) and isinstance(of.held, list):
+        of.held[:] = listed(*args) if args else []
+    if isinstance(of, Made) and isinstance(of.held, dict):
+        updated(of.held, list(args), keywords)
     if isinstance(of, Made) and of.kind.error() is not None:
         of.attributes["args"] = args
 
@@ -170,6 +201,4 @@ def _of_object(base: Made, name: str) -> tuple[Any] | None:
     if base.kind.unpacked and name == "_fields":
         return (base.kind.all_fields(),)
     plain = base.plain()
-    if isinstance(plain, str | tuple) and name in METHODS[type(plain)]:
-        return (Bound(plain, name),)
-    return None
+    return None if plain is base or name not in METHODS.get(type(plain), ()) else (Bound(plain, name),)

@@ -21,8 +21,9 @@ from tarl_lint.workspace.python.containers import (
     type_of,
 )
 from tarl_lint.workspace.python.elements import Unique, listed, whole
+from tarl_lint.workspace.python.instances import Made
 from tarl_lint.workspace.python.methods import checked, ordered
-from tarl_lint.workspace.python.objects import Class, Made
+from tarl_lint.workspace.python.objects import Class
 from tarl_lint.workspace.python.operators import formatted, limited, power, written
 from tarl_lint.workspace.python.paths import FilePath
 from tarl_lint.workspace.python.values import Library, OpaqueError, Stream, Unknown
@@ -125,11 +126,16 @@ def filtered(function: Any, values: Iterable[Any], *, wanted: bool = True) -> It
             yield one
 
 
-def _iter(value: Any) -> Stream:
+def _iter(value: Any) -> Any:
+    if isinstance(value, Made) and value.has("__iter__"):
+        found = value.run("__iter__")
+        return found if isinstance(found, Made | Stream) else Stream(iter(listed(found)))
     return value if isinstance(value, Stream) else Stream(iter(listed(value)))
 
 
 def _next(stream: Any, *default: Any) -> Any:
+    if isinstance(stream, Made) and stream.has("__next__"):
+        return next(stream.elements(), *default)
     if not isinstance(stream, Stream):
         raise OpaqueError("no iterator")
     return next(stream.values, *default)

@@ -6,9 +6,11 @@ import ast
 from collections.abc import Iterable
 from typing import Any, Final
 
+from tarl_lint.workspace.python.builtin_functions import BUILTINS
 from tarl_lint.workspace.python.elements import as_data, settled
 from tarl_lint.workspace.python.evaluation import Evaluation, Execution, call_of, unknown
-from tarl_lint.workspace.python.objects import ENUMERATIONS, FLAGS, TUPLES, Class, Function, Made, Method
+from tarl_lint.workspace.python.instances import Made
+from tarl_lint.workspace.python.objects import ENUMERATIONS, FLAGS, TUPLES, Class, Function, Method
 from tarl_lint.workspace.python.values import Field, Library, OpaqueError, Partial, Scope, Unknown
 
 DATA: Final = "dataclasses.dataclass"
@@ -134,7 +136,9 @@ def instance(run: Evaluation, kind: Class, args: list[Any], keywords: dict[str, 
     """Return a new object of a class of the file, or a member of an enumeration."""
     if kind.is_enumeration():
         return _member(run, kind, args, node)
-    made, fields = Made(kind, {}), kind.all_fields()
+    made, fields = _new(kind, args, keywords), kind.all_fields()
+    if not isinstance(made, Made) or made.kind is not kind:
+        return made
     start = kind.find("__init__")
     if start is not None and isinstance(start[0], Function):
         if kind.error() is not None:
@@ -145,6 +149,28 @@ def instance(run: Evaluation, kind: Class, args: list[Any], keywords: dict[str, 
     elif kind.error() is not None:
         made.attributes["args"] = tuple(args)
     return made
+
+
+def _new(kind: Class, args: list[Any], keywords: dict[str, Any]) -> Any:
+    """Return a new object, without its attributes, or what `__new__` of the class returns."""
+    made = kind.find("__new__")
+    if made is not None and isinstance(made[0], Function):
+        return made[0].run(made[0], [kind, *args], keywords, made[1])
+    return blank(kind, args, keywords)
+
+
+def blank(kind: Class, args: list[Any], keywords: dict[str, Any]) -> Made:
+    """Return a new object; if its class is derived from a list, number or the like, with this value."""
+    container = kind.container()
+    if container is None or kind.unpacked:
+        return Made(kind, {})
+    start = kind.find("__init__")
+    own = start is not None and isinstance(start[0], Function)
+    if own and container not in (str, int, float, BUILTINS["tuple"]):
+        args, keywords = [], {}  # its `__init__` fills the container
+    elif not settled(args) and container in (str, int, float):
+        raise OpaqueError("not a constant")
+    return Made(kind, {}, container(*args, **keywords))
 
 
 def _fill(

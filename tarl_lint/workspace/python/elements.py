@@ -9,7 +9,8 @@ from collections.abc import Iterable, Iterator, MutableSet
 from pathlib import PurePosixPath
 from typing import Any, Final
 
-from tarl_lint.workspace.python.objects import Class, Function, Interpreted, Made
+from tarl_lint.workspace.python.instances import Made
+from tarl_lint.workspace.python.objects import Class, Function, Interpreted
 from tarl_lint.workspace.python.values import LARGEST, MANY, Library, OpaqueError, Several, Stream, Unknown
 
 VIEWS: Final = frozenset({
@@ -108,10 +109,13 @@ def items(value: Any) -> list[Any] | None:
     if isinstance(value, Stream):
         return None if value.endless else value.rest()
     if isinstance(value, Made):
-        plain = value.plain()
-        if isinstance(plain, tuple | str):
-            return list(plain)
-        return items(value.run("__iter__")) if value.has("__iter__") else None
+        if not value.has("__iter__"):
+            plain = value.plain()
+            return None if plain is value else items(plain)
+        found = value.run("__iter__")
+        if isinstance(found, Made) and found.has("__next__"):
+            return Stream(found.elements()).rest()
+        return items(found)
     if isinstance(value, Class) and value.is_enumeration():
         return value.members()
     if isinstance(value, Interpreted):

@@ -19,10 +19,11 @@ from tarl_lint.workspace.python.builtin_functions import BUILTINS
 from tarl_lint.workspace.python.displays import DISPLAYS, elements, key_of
 from tarl_lint.workspace.python.elements import items, settled, whole
 from tarl_lint.workspace.python.evaluation import call_of, unknown
+from tarl_lint.workspace.python.instances import Made
 from tarl_lint.workspace.python.jumps import Raised
 from tarl_lint.workspace.python.libraries import LIBRARIES, function, is_builtin
 from tarl_lint.workspace.python.methods import method
-from tarl_lint.workspace.python.objects import Class, Function, Interpreted, Made, Method
+from tarl_lint.workspace.python.objects import Class, Function, Interpreted, Method
 from tarl_lint.workspace.python.operators import COMPARE, UNARY, binary
 from tarl_lint.workspace.python.paths import FilePath
 from tarl_lint.workspace.python.targets import bind
@@ -225,7 +226,7 @@ class Evaluator:
 
     def _subscript(self, node: ast.Subscript, names: Scope) -> Any:
         base = self.value(node.value, names)
-        if isinstance(base, Made):
+        if isinstance(base, Made) and not base.has("__getitem__") and not base.has("__missing__"):
             base = base.plain()
         if type(base).__name__ == "_PathParents":
             base = [FilePath(one) for one in base]

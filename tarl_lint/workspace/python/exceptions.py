@@ -6,8 +6,9 @@ import ast
 from typing import Any
 
 from tarl_lint.workspace.python.evaluation import Evaluation, Execution, call_of, unknown
+from tarl_lint.workspace.python.instances import Made
 from tarl_lint.workspace.python.jumps import Left, Raised, Returned
-from tarl_lint.workspace.python.objects import Class, Made
+from tarl_lint.workspace.python.objects import Class
 from tarl_lint.workspace.python.values import Scope, Suppressed, Suspended, Unknown
 
 

@@ -20,9 +20,10 @@ from tarl_lint.workspace.python.exceptions import raised, run_try, run_with
 from tarl_lint.workspace.python.files import parsed
 from tarl_lint.workspace.python.functions import decorated, lambda_of, made_function
 from tarl_lint.workspace.python.importing import Modules, bind_modules, bind_names, bind_outside
+from tarl_lint.workspace.python.instances import Made
 from tarl_lint.workspace.python.jumps import Left, Raised, Returned
 from tarl_lint.workspace.python.match_patterns import fits
-from tarl_lint.workspace.python.objects import Above, Class, Function, Interpreted, Made, Method
+from tarl_lint.workspace.python.objects import Above, Class, Function, Interpreted, Method
 from tarl_lint.workspace.python.operators import in_place
 from tarl_lint.workspace.python.reflection import reflection
 from tarl_lint.workspace.python.targets import delete, read_target

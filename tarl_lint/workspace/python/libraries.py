@@ -25,9 +25,10 @@ from tarl_lint.workspace.python.containers import (
     make_queue,
 )
 from tarl_lint.workspace.python.elements import as_data, bounded, items, listed, settled
+from tarl_lint.workspace.python.instances import Made
 from tarl_lint.workspace.python.iterators import OF_ITERATORS
 from tarl_lint.workspace.python.methods import checked
-from tarl_lint.workspace.python.objects import TUPLES, Class, Made
+from tarl_lint.workspace.python.objects import TUPLES, Class
 from tarl_lint.workspace.python.operators import format_text, limited, written
 from tarl_lint.workspace.python.paths import OF_PATHS, FilePath
 from tarl_lint.workspace.python.regular_expressions import OF_EXPRESSIONS

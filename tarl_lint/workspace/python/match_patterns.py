@@ -9,7 +9,8 @@ from typing import Any, Final
 from tarl_lint.workspace.python.builtin_functions import BUILTINS
 from tarl_lint.workspace.python.elements import settled
 from tarl_lint.workspace.python.evaluator import Evaluator
-from tarl_lint.workspace.python.objects import Class, Made
+from tarl_lint.workspace.python.instances import Made
+from tarl_lint.workspace.python.objects import Class
 from tarl_lint.workspace.python.values import Library, OpaqueError, Scope, Unknown
 
 _ITSELF: Final = ("str", "int", "float", "bool", "bytes", "list", "tuple", "dict", "set", "frozenset")

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final
 
 from tarl_lint.workspace.python.elements import Unique, settled
-from tarl_lint.workspace.python.objects import Made
+from tarl_lint.workspace.python.instances import Made
 from tarl_lint.workspace.python.values import LARGEST, OpaqueError
 
 BITS: Final = 4096  # maximum size of an integer (bits)

@@ -12,7 +12,8 @@ from tarl_lint.workspace.python.classes import AUTO, as_mapping, as_values, fiel
 from tarl_lint.workspace.python.elements import listed
 from tarl_lint.workspace.python.evaluation import call_of
 from tarl_lint.workspace.python.evaluator import Evaluator
-from tarl_lint.workspace.python.objects import Class, Function, Made
+from tarl_lint.workspace.python.instances import Made
+from tarl_lint.workspace.python.objects import Class, Function
 from tarl_lint.workspace.python.targets import set_attribute
 from tarl_lint.workspace.python.values import Library, OpaqueError, Partial, Unknown
 

@@ -8,7 +8,8 @@ from typing import Any
 
 from tarl_lint.workspace.python.elements import elements_if_known, items, settled
 from tarl_lint.workspace.python.evaluation import Evaluation, call_of, unknown
-from tarl_lint.workspace.python.objects import Class, Function, Made, Method
+from tarl_lint.workspace.python.instances import Made
+from tarl_lint.workspace.python.objects import Class, Function, Method
 from tarl_lint.workspace.python.values import Scope, Stream
 
 
@@ -56,7 +57,9 @@ def _store(run: Evaluation, base: Any, index: ast.expr, value: Any, names: Scope
     key = run.value(index, names)
     if isinstance(base, Made) and base.has("__setitem__"):
         base.run("__setitem__", key, value)
-    elif (isinstance(base, dict | ChainMap) and settled(key, 100)) or (
+        return
+    base = base.held if isinstance(base, Made) else base
+    if (isinstance(base, dict | ChainMap) and settled(key, 100)) or (
         isinstance(base, list | deque) and isinstance(key, int)
     ):
         base[key] = run.kept(base, value)
