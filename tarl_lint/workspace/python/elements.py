@@ -104,7 +104,7 @@ def _identity(value: Any) -> Any:
 
 def items(value: Any) -> list[Any] | None:
     """Return what a loop over a value yields; None if it is not known. An iterator is used up."""
-    if isinstance(value, list | tuple | dict | str | Unique | deque | ChainMap):
+    if isinstance(value, list | tuple | dict | str | bytes | Unique | deque | ChainMap):
         return list(value)
     if isinstance(value, Stream):
         return None if value.endless else value.rest()

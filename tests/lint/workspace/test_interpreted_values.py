@@ -53,6 +53,7 @@ EXPRESSIONS = """
     type("a") == str, type(2.0) is int
     (lambda a, b=2: a * b)(3), (lambda *a, **k: (a, k))(1, x=2)
     [y := 3, y + 1], [last := n for n in range(3)], (n := 5) + n
+    sum(b"ab"), list(b"ab"), b"ab"[0], len(b"ab"), "é".encode(), b"ab".decode()
     len(f"{'a':>20}"), "a" "b", 1_000, 0x10, b"ab"
 """
 
