@@ -76,7 +76,7 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         again = joins.joined(ctx, [head, *backs]) if backs else head
         if again == head:
             break
-        if ctx.work.executed > MAX_STATEMENTS:
+        if ctx.work.charged > MAX_STATEMENTS:
             ctx.cut[ctx.program] = None
             ctx.store.reads.whole = False
             # nested loops multiply the passes: at this limit, stop although the state is not stable yet

@@ -11,6 +11,9 @@ from __future__ import annotations
 MAX_CALLS = 24  # maximum depth of the call stack; deeper calls are treated as library calls
 READS_PER_STATEMENT = 20  # number of object reads or added edges that count as one statement of work
 VALUES_PER_STATEMENT = 40  # number of values shared at a wait that count as one statement of work
+# number of values looked up, compared or copied in bulk that take as long as one statement (measured); they count
+# only for the limits, not for the order of the roots
+VALUES_HANDLED = 300
 MAX_FRAMES = 20_000  # maximum number of call contexts of a program
 # maximum number of statements in one run of a root; afterwards, calls are treated as library calls
 MAX_STATEMENTS = 25_000

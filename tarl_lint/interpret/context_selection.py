@@ -23,7 +23,7 @@ def make_frame(
     runs = ctx.work.activations.get(function, 0) + 1
     if len(ctx.stack) > MAX_CALLS or [f.function for f in ctx.stack].count(function) > 1:
         return None
-    if ctx.work.executed > ctx.work.limit:
+    if ctx.work.charged > ctx.work.limit:
         _cut(ctx)
         return None
     receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
@@ -40,7 +40,8 @@ def make_frame(
     key = shared_contexts.shared_key(own, ctx.store.root.key, arguments) if shares else own
     frame = ctx.frames.get(key)
     if frame is None:
-        made = ctx.work.frames_of[ctx.program] = ctx.work.frames_of.get(ctx.program, 0) + 1
+        path = ctx.store.root.program
+        made = ctx.work.frames_of[path] = ctx.work.frames_of.get(path, 0) + 1
         if made > MAX_FRAMES:
             _cut(ctx)
             return None

@@ -144,6 +144,8 @@ def import_names(ctx: Interpreter, s: ir.Import, frame: Frame) -> bool:
     for target, module, member in s.bindings:
         if member == "*":
             found = ctx.index.find(module, importer)
+            if found is not None:
+                ctx.note_import(found, importer)
             star = found.name if found is not None else module
             if star not in frame.program.stars:
                 frame.program.stars.append(star)

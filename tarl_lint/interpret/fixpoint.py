@@ -105,10 +105,11 @@ class Linker(Interpreter):
             small = [root for root in batch if self.took.get(root, 0) < LARGE_RUN]
             for root in small or batch:
                 self.pending.pop(root, None)
+                program = self.work.charged_to(root.program)
                 late = self.hurried(root.program)
                 if late and (
                     self.took.get(root, 0) > LATE_RUN_LIMIT
-                    or self.work.totals[root.program] > 2 * PROGRAM_LIMIT
+                    or self.work.totals.get(program, 0) > 2 * PROGRAM_LIMIT
                 ):
                     continue
                 self._run(root, self.roots[root.key][1])
@@ -130,6 +131,7 @@ class Linker(Interpreter):
         self.store = Store(self.shared, root, gather=self.gathered)
         self.graph.reads = self.store.reads
         self.stack, self.building = [], []
+        program = self.work.charged_to(root.program)
         self.work.begin(LATE_RUN_LIMIT if self.hurried(root.program) else MAX_STATEMENTS)
         self.graph.edges = self.work.edges_of.get(root.program, 0)
         self.graph.made = self.work.nodes_of.get(root.program, 0)
@@ -141,11 +143,11 @@ class Linker(Interpreter):
             self._failed(where.path, error)
             return
         finally:
-            self.work.totals[root.program] = self.work.totals.get(root.program, 0) + self.work.executed
+            self.work.totals[program] = self.work.totals.get(program, 0) + self.work.charged
             self.work.edges_of[root.program] = self.graph.edges
             self.work.nodes_of[root.program] = self.graph.made
             if self.graph.edges >= MAX_EDGES:
-                self.cut[root.program] = None
+                self.cut[program] = None
             self.took[root] = self.work.spent
         for key in self.store.own():
             value = self._at_end(key)

@@ -33,6 +33,7 @@ def _module(ctx: Interpreter, name: str, importer: Module) -> Value | None:
     found = ctx.index.find(name, importer)
     if found is None:
         return None
+    ctx.note_import(found, importer)
     program = ctx.by_path.get(found.path)
     return pointer(ctx.module_objects[program.name]) if program is not None else None
 

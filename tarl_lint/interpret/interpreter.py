@@ -131,15 +131,24 @@ class Interpreter:
 
     @property
     def program(self) -> str:
-        """Return the program of the current root, whose budget is charged."""
-        return self.store.root.program
+        """Return the program of the current root, whose statements are charged."""
+        return self.work.charged_to(self.store.root.program)
 
     def hurried(self, program: str) -> bool:
-        """Return whether a program has exceeded its budget."""
+        """Return whether the program of a file has exceeded its budget."""
         spent = self.work.exhausted(program)
         if spent:
-            self.cut[program] = None
+            self.cut[self.work.charged_to(program)] = None
         return spent
+
+    def note_import(self, found: Module, importer: Module) -> None:
+        """Charge the roots of an imported file to the programs that import it, unless the file is one itself."""
+        importers = self.work.importers.setdefault(found.path, {})
+        if importer.path in importers or importer is found or importer.name.startswith(f"{found.name}."):
+            return
+        if not (found.started or found.contains("__main__")):
+            importers[importer.path] = importer.is_package
+            self.work.owners.clear()
 
     def count(self, looks: int = 0) -> None:
         """Convert object reads and graph operations to statements, and add them to the work."""

@@ -78,6 +78,7 @@ def _executed(
     if reads.waits:  # reads after a wait may include values of other roots
         reads.stored |= reads.keys
     found, stored = store.found_by(reads)
+    ctx.work.handled += len(found) + len(reads.objects)
     reads.finish(found.keys(), stored.keys())
     frame.returns = [({}, value) for value in returned]  # the states are in `delta` now
     return Run(
@@ -152,4 +153,5 @@ def _same(ctx: Interpreter, last: Run, passed: Arguments, mode: Mode) -> bool:
     reads, store = last.reads, ctx.store
     if reads.waits and not _hears(store, last):
         return False
+    ctx.work.handled += len(last.found)
     return unchanged(reads, last.found, last.stored, store, ctx.graph)

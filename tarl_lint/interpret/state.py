@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from tarl_lint.interpret.budget import MAX_STATEMENTS, PROGRAM_LIMIT
+from tarl_lint.interpret.budget import MAX_STATEMENTS, PROGRAM_LIMIT, VALUES_HANDLED
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import Key
@@ -45,6 +45,8 @@ class Work:
 
     spent: int = 0  # number of statements of work in this run
     saved: int = 0  # the part of `spent` that was done in replayed calls
+    # number of values that this run looked up, compared or copied to search data, to record calls and to leave them
+    handled: int = 0
     idled: int = 0  # the part of `spent` that was done in calls into modules without ROS calls
     limit: int = MAX_STATEMENTS
     # value of `spent` at which the current call into a module without ROS calls ends; None outside of such a call
@@ -57,6 +59,26 @@ class Work:
     nodes_of: dict[str, int] = field(default_factory=dict)  # program → number of nodes that it has made
     frames_of: dict[str, int] = field(default_factory=dict)  # program → number of its call contexts
 
+    # file that is no program → the files that import it, and whether each is the `__init__.py` of a package
+    importers: dict[str, dict[str, bool]] = field(default_factory=dict)
+    owners: dict[str, str] = field(default_factory=dict)  # cache of `charged_to`
+
+    def charged_to(self, path: str) -> str:
+        """Return the program whose budget a file's roots use: the first one that imports it, perhaps indirectly.
+
+        A package's `__init__.py` that nothing imports counts as a program only if there is no other one.
+        """
+        owner = self.owners.get(path)
+        if owner is None:
+            package = {path: False}  # file reached so far → whether it is the `__init__.py` of a package
+            for current in (pending := [path]):
+                above = self.importers.get(current, {})
+                pending += [p for p in above if p not in package]
+                package = {**above, **package}
+            tops = [p for p in pending if not self.importers.get(p)]
+            owner = self.owners[path] = min(tops or [path], key=package.__getitem__)
+        return owner
+
     @property
     def total(self) -> int:
         """Return the work of all earlier runs."""
@@ -67,12 +89,18 @@ class Work:
         """Return the work of this run so far, without replayed calls."""
         return self.spent - self.saved
 
+    @property
+    def charged(self) -> int:
+        """Return the part of the budget that this run has used so far, in statements."""
+        return self.executed + self.handled // VALUES_HANDLED
+
     def begin(self, limit: int) -> None:
         """Start counting for a run of a root."""
-        self.spent = self.saved = self.idled = 0
+        self.spent = self.saved = self.idled = self.handled = 0
         self.limit, self.call_limit = limit, None
         self.activations.clear()
 
     def exhausted(self, program: str) -> bool:
-        """Return whether a program has used its budget."""
-        return self.totals.get(program, 0) > PROGRAM_LIMIT or self.edges_of.get(program, 0) >= MAX_EDGES
+        """Return whether the program of a file has used its budget."""
+        charged = self.totals.get(self.charged_to(program), 0)
+        return charged > PROGRAM_LIMIT or self.edges_of.get(program, 0) >= MAX_EDGES

@@ -15,6 +15,7 @@ from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value, in_order
 
 # maximum number of visited objects of a result that is not cached, since finding it again is as fast as checking it
 FEW = 4
+VISIT = 60  # a visit of an object takes as long as looking up this number of values
 
 
 @dataclass(slots=True, eq=False)
@@ -48,6 +49,7 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
             note(ctx, own)
         for obj in visit.empty:
             store.reads.look(obj)
+        ctx.work.handled += VISIT * len(visit.known)
         if visit.receivers is not None:
             _note_receivers(ctx)
         return nodes
@@ -69,6 +71,7 @@ def _searched(ctx: Interpreter, objects: frozenset[Obj], visit: Visit) -> Inside
     grown, tick = ctx.graph.grown, store.tick
     nodes = _all(ctx, objects, visit)
     ctx.count(len(visit.known))
+    ctx.work.handled += VISIT * len(visit.known)
     store.reads = ctx.graph.reads = outer
     met = any(obj.kind == "instance" for obj in visit.known)
     return Inside(nodes, _reads(reads, visit.read, visit.empty), visit.read, visit.empty, met, tick, grown)
@@ -92,6 +95,7 @@ def _valid(ctx: Interpreter, last: Inside) -> bool:
         return True
     if any(obj.laden for obj in last.empty):
         return False
+    ctx.work.handled += len(last.read)
     now = [contents(ctx, own.obj) for own in last.read]
     known = last.reads.objects
     if now != last.read or any(known[obj] != obj.stamp for obj in last.empty):
