@@ -116,7 +116,7 @@ def test_dropped_candidates_and_the_candidates_tried_next_are_reported(
         if first:
             return found
         first.append(found)
-        return replace(found, accepted=False, reason="nominal gets worse")
+        return replace(found, accepted=False, reason="nominal gets worse", costly=True)
 
     monkeypatch.setattr(accepting, "accept", refusing)
     tank.runpytest(*RECORD)
