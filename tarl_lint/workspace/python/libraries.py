@@ -122,9 +122,19 @@ def _loaded(text: Any, **given: Any) -> Any:
     return found
 
 
+def _words(text: Any, **given: Any) -> list[str]:
+    """Return `shlex.split`, which reads the standard input in place of a text that is None."""
+    if not isinstance(text, str):
+        raise OpaqueError("not a text")
+    return shlex.split(text, **given)
+
+
 def _literal(text: Any) -> Any:
     limited(len(text) * 10)
-    found = ast.literal_eval(text)
+    try:
+        found = ast.literal_eval(text)
+    except (SyntaxError, MemoryError) as error:
+        raise OpaqueError(str(error)) from None
     if not settled(found):
         raise OpaqueError("not a constant")
     return found
@@ -251,7 +261,7 @@ _OF_DATA: Final[Mapping[str, Any]] = {
     "string.Template": string.Template,
     "string.Formatter": Formatter, "string.capwords": lambda text, sep=None: string.capwords(text, sep),
     **{f"textwrap.{name}": _wrapped(name) for name in ("dedent", "indent", "fill", "shorten", "wrap")},
-    "json.dumps": _written, "json.loads": _loaded, "shlex.split": shlex.split, "shlex.quote": shlex.quote,
+    "json.dumps": _written, "json.loads": _loaded, "shlex.split": _words, "shlex.quote": shlex.quote,
     "shlex.join": lambda words: shlex.join(listed(words)), "ast.literal_eval": _literal, "tomllib.loads": _toml,
     "fnmatch.fnmatch": _matching("fnmatch"), "fnmatch.fnmatchcase": _matching("fnmatchcase"),
     "fnmatch.filter": _matching("filter"),

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from tarl_lint.workspace.python import regular_expressions
-from tarl_lint.workspace.python.elements import Unique, items, listed, settled
+from tarl_lint.workspace.python.elements import Unique, elements_if_known, items, listed, settled
 from tarl_lint.workspace.python.operators import format_text, limited
 from tarl_lint.workspace.python.values import Bound, OpaqueError, Several, Stream, Unknown
 
@@ -64,7 +64,6 @@ def method(bound: Bound, args: list[Any], keywords: dict[str, Any]) -> Any:
     Raises OpaqueError if the result depends on unknown values or is too large, and what the method raises.
     """
     of, name = bound.of, bound.name
-    args = [one.rest() if isinstance(one, Stream) and not one.endless else one for one in args]
     if isinstance(of, str):
         return _of_text(of, name, args, keywords)
     if isinstance(of, re.Pattern):
@@ -106,7 +105,7 @@ def _of_list(of: Any, name: str, args: list[Any], keywords: dict[str, Any]) -> A
     if name in _OF_ELEMENTS:
         checked([list(of), *args], keywords)
     elif name in _ADDING:
-        added = items(args[0]) if name in ("extend", "extendleft") else [0]
+        added = elements_if_known(args[0]) if name in ("extend", "extendleft") else [0]
         if added is None:
             text = args[0].text if isinstance(args[0], Unknown) else "unknown elements"
             given = Several(args[0].line if isinstance(args[0], Unknown) else 0, text)

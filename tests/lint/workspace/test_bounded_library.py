@@ -7,8 +7,12 @@ from typing import Any
 
 import pytest
 
+from tarl_lint.workspace.python.builtin_functions import BUILTINS
 from tarl_lint.workspace.python.evaluator import Unknown
 from tarl_lint.workspace.python.interpreter import Interpreter
+from tarl_lint.workspace.python.libraries import LIBRARIES
+from tarl_lint.workspace.python.methods import METHODS
+from tarl_lint.workspace.python.paths import FilePath
 
 LONG = "'" + "a" * 4_000 + "'"
 COSTLY = {
@@ -74,3 +78,49 @@ KNOWN = {
 def test_what_is_cheap_is_known(tmp_path, name):
     text, right = KNOWN[name]
     assert interpreted(tmp_path, text) == right
+
+
+ARGUMENTS = (
+    "", "1", "-1", "0", "2.5", "None", "True", "''", "'a('", "'{0'", "'%('", "'a b'", "[]", "[1, 'a']", "{}",
+    "{'a': 1}",
+    "()", "('a', 1)", "{1}", "b'a'", "absent", "lambda x: absent", "lambda *a: 1 // 0", "range(3)", "iter([1])",
+    "E.A", "D()", "float('nan')", "'a', 'b'", "'a', ['a']", "[1], 'a'", "str, [1, None]", "lambda *a: a, ['b', 1]",
+    "'(a', 'b'", "'a', r'\\g<9>', 'a'", "'a', lambda m: m.group(3), 'aa'", "[1, 2], 0", "'ab', 2", "{'a': []}, 'a'",
+    "[3, 'x'], 1, 2", "*[1] * 5", "'a', b=absent", "[D()], key=absent", "(" + "'(' * 300" + ")",
+)  # fmt: skip
+START = """
+import enum, dataclasses
+class E(enum.Enum):
+    A = 'a'
+@dataclasses.dataclass
+class D:
+    x: int = 1
+"""
+FUNCTIONS = sorted({*BUILTINS, *LIBRARIES, "getattr", "setattr", "vars", "property", "dataclasses.asdict",
+                    "operator.itemgetter", "operator.attrgetter", "functools.partial", "functools.wraps"})  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_no_call_of_a_function_ends_in_an_exception_of_the_linter(tmp_path, name):
+    start = f"{START}import {name.split('.')[0]}\n" if "." in name else START
+    if "." in name:
+        start += f"import {name.rpartition('.')[0]}\n"
+    calls = "\n".join(f"r.append({name}({one}))" for one in ARGUMENTS)
+    assert len(interpreted(tmp_path, f"{start}r = []\n{calls}\n")) == len(ARGUMENTS)
+
+
+VALUES = (
+    "'a{0}'", "b'a'", "(3)", "(2.5)", "[1, 'a']", "(1, 2)", "{'a': 1}", "{1, 2}", "range(4)", "collections.deque([1])",
+    "collections.Counter('aab')", "collections.OrderedDict(a=1)", "collections.ChainMap({'a': 1})",
+    "collections.defaultdict(list)", "re.compile('(a)(b)?')", "re.match('(a)(b)?', 'a')", "string.Template('$a ${')",
+    "pathlib.Path('/a/b.c')", "string.Formatter()",
+)  # fmt: skip
+NAMES = sorted({name for names in METHODS.values() for name in names} | {"parse", *FilePath.readable})
+
+
+@pytest.mark.parametrize("value", VALUES)
+def test_no_call_of_a_method_ends_in_an_exception_of_the_linter(tmp_path, value):
+    start = f"{START}import collections, re, string, pathlib\nr = []\n"
+    calls = [f"r.append({value}.{name}({one}))" for name in NAMES for one in ARGUMENTS]
+    found = interpreted(tmp_path, start + "\n".join(calls) + "\n")
+    assert len(found) == len(calls)

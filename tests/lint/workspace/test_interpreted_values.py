@@ -507,6 +507,8 @@ OPEN = {
     "super outside of a class": "r = super().x",
     "the length of a list with unknown elements": "r = len([1, *absent])",
     "the length of a list that unknown elements were added to": "l = [1]\nl += absent\nr = len(l)",
+    "the length of a list that an unknown comprehension was added to": "l = [1]\nl.extend(absent(x) for x in absent)\n"
+    "r = len(l)",
     "the length of a sum of lists": "r = len([1] + absent)",
     "an element after unknown ones": "r = [*absent, 1][0]",
     "pairs with unknown elements": "r = list(zip([*absent, 1], 'ab'))",
