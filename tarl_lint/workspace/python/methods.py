@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from tarl_lint.workspace.python import regular_expressions
-from tarl_lint.workspace.python.elements import Unique, elements_if_known, items, listed, settled
+from tarl_lint.workspace.python.elements import Unique, elements_if_known, listed, settled
 from tarl_lint.workspace.python.operators import format_text, limited
 from tarl_lint.workspace.python.values import Bound, OpaqueError, Several, Stream, Unknown
 
@@ -55,6 +55,9 @@ READ: Final[Mapping[type, frozenset[str]]] = {
     range: frozenset(["start", "stop", "step"]),
 }  # fmt: skip
 _OF_ELEMENTS: Final = frozenset(["index", "count", "remove"])  # methods that compare elements
+_OF_ONE: Final = frozenset(
+    ["add", "copy", "clear", "pop", "discard", "remove"]
+)  # methods of sets for one element
 _ADDING: Final = frozenset(["append", "appendleft", "insert", "extend", "extendleft"])
 
 
@@ -73,14 +76,15 @@ def method(bound: Bound, args: list[Any], keywords: dict[str, Any]) -> Any:
     if isinstance(of, list | deque):
         return _of_list(of, name, args, keywords)
     if isinstance(of, Counter) and name in ("update", "subtract"):
+        args = [items_or_mapping(one) for one in args]
         checked(args, keywords)
-        return getattr(of, name)(*(items_or_mapping(one) for one in args), **keywords)
+        return getattr(of, name)(*args, **keywords)
     if isinstance(of, dict | ChainMap):
         return _of_mapping(of, name, args, keywords)
     if isinstance(of, Unique):
-        limited(len(of) + sum(len(items(one) or ()) for one in args if not isinstance(one, str | bytes)))
-        if name not in ("add", "copy", "clear", "pop", "discard", "remove"):
+        if name not in _OF_ONE:
             args = [listed(one) for one in args]
+            limited(len(of) + sum(map(len, args)))
     else:
         checked(args, keywords)
     found = getattr(of, name)(*args, **keywords)

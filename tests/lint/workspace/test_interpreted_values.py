@@ -395,6 +395,12 @@ def f(a, b, c=0):
     return a, b, c
 g = partial(f, 1, c=5)
 r = [g(2), g(b=3), g(2, c=6)]
+# methods that read iterators
+from collections import Counter, deque
+c, d, l, s, m = Counter('ab'), deque([1]), [1], {1}, {}
+c.update(x for x in 'abc'); c.subtract(iter('b')); d.extend(map(int, '23')); d.extendleft(iter([0]))
+l.extend(n for n in (2, 3)); s.update(iter([4])); m.update(zip('ab', (1, 2)))
+r = [c, list(d), l, sorted(s), m, ','.join(str(n) for n in l), s.union(n for n in [9]) == {1, 4, 9}]
 # sorted lists in place
 r = [3, 1, 2]
 r.sort()
