@@ -273,6 +273,21 @@ def test_the_best_of_random_vectors_is_refined_in_smaller_and_smaller_steps() ->
     assert np.linalg.norm(short) <= 0.3 + 1e-9
 
 
+def test_allowing_for_errors_lowers_the_excess_of_losses_and_of_failure_rates() -> None:
+    sources = [("search", number) for number in range(8)]
+    failing = [
+        Sample(np.array([0.9, 0.0]), 0.1, 0.01, 8, sources),
+        Sample(np.array([0.1, 0.0]), 0.0, 0.01, 0, sources),
+    ]
+    model = Prediction(Coordinates(SQUARE, SQUARE.nominal), GIVEN, failing, Shown(0.1, 0.25), 0.01, 0.0)
+    near = np.array([[0.9, 0.0], [0.6, 0.0]])
+    means, deviations = model._loss(near)
+    assert (model.excess(near) > means - 1.1 + 0.1).all()  # failures exceed what is tolerated, losses do not
+    assert (model.excess(near, 1.0) < model.excess(near)).all()
+    assert (model.excess(near, -1.0) > model.excess(near)).all()
+    assert (deviations > 0.0).all()
+
+
 def test_an_evolution_ends_when_its_margin_does(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
 
