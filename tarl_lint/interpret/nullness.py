@@ -9,10 +9,9 @@ from tarl_lint.interpret.interpreter import NONE_ONLY, Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, item_field
-from tarl_lint.memory.values import NONE, UNKNOWN, Key, Nodes, Obj, Value, lineage
+from tarl_lint.memory.values import Key, Nodes, Obj, Value, lineage
 
 RETURNED = "<return>"  # pseudo-variable of a function's result
-FILLED = "<filled>"  # field of a library object: nodes of the statements that stored an element into it
 # kinds of expressions that may copy the value of a variable
 COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)
 
@@ -43,28 +42,7 @@ def _absence(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Nodes | None:
         known = bool(keys) and not _index_chosen(ctx, expr, frame)
     else:
         known = any(k in ctx.nullness.vacant for k in keys)
-        if not known and _filled(ctx, expr, frame):
-            return NONE
     return frozenset(n for k in keys for n in ctx.nullness.came.get(k, ())) if known else None
-
-
-def note_filled(ctx: Interpreter, base: Value, frame: Frame, pos: ir.Pos) -> None:
-    """Record that a library object is not None, because the program stores an element into it."""
-    if len(base.pts) == 1 and all(o.kind == "lib" for o in base.pts):
-        for obj in base.pts:
-            ctx.store.put((obj, FILLED), Value(frozenset([ctx.node(frame, ("filled", pos), "assign")])))
-
-
-def _filled(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> bool:
-    """Return whether an expression is a library object into which the program certainly has stored an element."""
-    held = ctx.ops.evaluate(ctx, expr, frame) if isinstance(expr, (ir.Name, ir.Attribute)) else UNKNOWN
-    if not held.pts or held.consts is not None or any(o.kind != "lib" for o in held.pts):
-        return False
-    here = ctx.branches(frame, frame.statement)
-    stored = [ctx.store.get((o, FILLED)) for o in held.pts]
-    return all(one is not None and one.deps for one in stored) and all(
-        ctx.graph.branches[node] <= here for one in stored if one is not None for node in one.deps
-    )
 
 
 def note_absence(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Value, frame: Frame) -> None:

@@ -134,7 +134,6 @@ def _assign_item(ctx: Interpreter, target: ir.Item, value: Value, frame: Frame) 
         value = ctx.carry(chosen, ctx.node(frame, ("at", target.pos), "assign"))
     if base.pts:
         updates.write_item(ctx, base, index, value)
-        nullness.note_filled(ctx, base, frame, target.pos)
     else:
         assign_fallback(ctx, target.base, value, frame)
 

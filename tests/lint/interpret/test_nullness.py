@@ -124,28 +124,3 @@ rospy.spin()
 )
 def test_the_truth_of_a_field_depends_on_data_unless_the_field_is_a_message(kind, field, flows, test):
     assert differing(POSE.format(kind=kind, field=field, flows=flows, test=test)) == {}
-
-
-@pytest.mark.parametrize(
-    ("made", "mark"),
-    [
-        ("m = library.matrix(msg.data)\n    m[0] = 1.0", "clean"),
-        ("m = library.matrix(msg.data)\n    m[msg.data] = 1.0", "clean"),
-        ("m = library.matrix(msg.data)", "control"),
-        ("m = library.matrix(msg.data)\n    if last > 1.0:\n        m[0] = 1.0", "control"),
-        ("m = library.matrix(msg.data)\n    library.clear(m)", "control"),
-    ],
-)
-def test_an_object_into_which_the_program_stores_elements_is_not_none(made, mark):
-    text = f"""\
-import library, rospy
-out = rospy.Publisher("out", Float64)
-last = rospy.get_param("last")
-def on(msg):
-    {made}
-    if m is None:
-        return
-    out.publish(1.0)  # {mark}
-rospy.Subscriber("in", Float64, on)
-"""
-    assert differing(text) == {}
