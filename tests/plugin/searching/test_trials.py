@@ -220,7 +220,7 @@ def test_a_candidate_that_loses_known_missions_is_not_confirmed_and_runs_nothing
 def test_designed_missions_run_to_compute_the_deviation_are_charged_once_per_seed() -> None:
     ran = Trials(lambda *_: Outcome(2.0, True, rewards=(2.0, 0.0)), 9)
     assert ran.deviation(ONE, [0, 1]) == 0.0
-    assert (ran.spent, ran.beside) == (0, 0)  # without designed missions, there is nothing to compare
+    assert (ran.spent, ran.beside) == (2, 0)
     ran.design = lambda seed: Outcome(2.0, True, rewards=(1.0, 1.0) if seed else (2.0, 0.0))
     assert ran.deviation(ONE, [0, 1]) == pytest.approx((0.0 + 0.25) / 2)
     assert ran.deviation(TWO, [0, 1]) == pytest.approx(0.125)
