@@ -23,7 +23,8 @@ from pytest_tarl.stressing.rays import Ray, distance, joined
 # pairs of directions are tested at this share of the distance to each boundary, where each direction alone holds
 INSIDE = 0.9
 FIRST = 0.5  # share of the budget for the first search for the nearest failing drift
-CONFIRMED = 0.95  # share of the budget that the tests of a nearer failing drift may use
+# share of the budget that the first chains of tests may use, so that enough is left for the single directions
+CONFIRMED = 0.8
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 ALONE = 3  # number of rounds of the search with nominal options before the others are searched
 REFINED = 0.08  # share of the budget for the search between the first chains of tests
@@ -155,8 +156,9 @@ class Combined:
                 for t in curve.ray.places:
                     curve.evidence[t] = self.evaluator.glance(curve.ray.point(t))
             self._approach()
-        if not any(self._confirm(chains.FIRST) for _ in range(ATTEMPTS)):
-            self._test(chains.clear(self._leading))
+        with self.evaluator.limited(CONFIRMED):
+            if not any(self._confirm(chains.FIRST) for _ in range(ATTEMPTS)):
+                self._test(chains.clear(self._leading))
         with self.evaluator.limited(CONFIRMED):
             with self.evaluator.limited(self.evaluator.spent / self.evaluator.budget + REFINED):
                 self._leading.refine()

@@ -364,7 +364,7 @@ def test_a_search_begins_with_a_glance_at_each_place_of_the_rays(
     assert both.nearest.calls[0] == ("approach", None)  # type: ignore[attr-defined]
     assert plans == [FIRST, FIRST, "clear", NEXT]
     spent = both.evaluator.spent
-    assert both.nearest.calls[1] == ("refine", spent + round(0.08 * 950))  # type: ignore[attr-defined]
+    assert both.nearest.calls[1] == ("refine", spent + round(0.08 * 800))  # type: ignore[attr-defined]
     assert both.nearest.risk == pytest.approx(0.1 * 0.3)
 
 
