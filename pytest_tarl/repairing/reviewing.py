@@ -8,7 +8,7 @@ from pytest_tarl.report import amounts
 from pytest_tarl.searching.plainness import edges
 from pytest_tarl.searching.search import Candidate, effective_value
 
-LARGE = 5.0  # factor from which on a change of a constant is unusually large
+LARGE = 8.0  # factor from which on a change of a constant is unusually large
 
 
 def remarks(mutants: Mutants, candidate: Candidate) -> list[str]:

@@ -62,13 +62,13 @@ def test_a_condition_without_a_threshold_has_no_jump() -> None:
 @pytest.mark.parametrize(
     ("mutations", "expected"),
     [
-        ([Mutation(GAIN, 10.0)], "2.0 changes by a factor of 5"),
-        ([Mutation(GAIN, 9.9)], ""),
-        ([Mutation(GAIN, 0.4)], "2.0 changes by a factor of 0.2"),
-        ([Mutation(GAIN, 0.41)], ""),
-        ([Mutation(GAIN, -10.0)], "2.0 changes by a factor of -5"),
+        ([Mutation(GAIN, 16.0)], "2.0 changes by a factor of 8"),
+        ([Mutation(GAIN, 15.9)], ""),
+        ([Mutation(GAIN, 0.25)], "2.0 changes by a factor of 0.125"),
+        ([Mutation(GAIN, 0.26)], ""),
+        ([Mutation(GAIN, -16.0)], "2.0 changes by a factor of -8"),
         ([Mutation(NAMED, 0.1)], "LIMIT changes by a factor of 0.1"),
-        ([Mutation(UNKNOWN, 6.0)], "self.kp changes by a factor of 6"),
+        ([Mutation(UNKNOWN, 9.0)], "self.kp changes by a factor of 9"),
         ([Mutation(OFFSET, 100.0)], ""),
         ([Mutation(EAGER, False)], ""),
         (
@@ -77,7 +77,7 @@ def test_a_condition_without_a_threshold_has_no_jump() -> None:
         ),
     ],
 )
-def test_a_constant_that_changes_by_a_factor_of_five_or_more_is_pointed_out(
+def test_a_constant_that_changes_by_a_factor_of_eight_or_more_is_pointed_out(
     mutations: list[Mutation], expected: str
 ) -> None:
     told = [one.partition(": ")[0] for one in large(Candidate(tuple(mutations), ALWAYS))]
