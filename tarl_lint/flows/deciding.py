@@ -26,10 +26,10 @@ def deciding(tracer: Tracer, flows: Collection[Flow]) -> tuple[Step, ...]:
     inside = {step.site for flow in flows for step in flow.steps}
     found: dict[int, Written] = {}
     for node in sorted(_behind(tracer)):
-        written = tracer.statement(node)
+        written = tracer.statements.of(node)
         if written is not None and not _sets_up(written):
             found.setdefault(id(written), written)
-    steps = (tracer.step(one, one.text.span(one), "control", None) for one in found.values())
+    steps = (tracer.lists.step(one, one.text.span(one), "control", None) for one in found.values())
     kept = (step for step in steps if step.span.path in paths and step.site not in inside)
     return tuple(sorted(kept, key=lambda step: step.span))
 
@@ -41,7 +41,7 @@ def _behind(tracer: Tracer) -> set[int]:
     news: set[int] = set().union(*(record.nodes for record in sinks))
     while news:
         found |= closure(news, [graph.data, graph.control])
-        news = tracer.made_there(found) - found
+        news = tracer.choices.made_there(found) - found
     return found
 
 

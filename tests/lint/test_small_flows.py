@@ -9,10 +9,13 @@ import pytest
 
 from tarl_lint.errors import ConfigError
 from tarl_lint.evidence import Outline
-from tarl_lint.flows import reachability
-from tarl_lint.flows.call_chains import calls, entrances, made_alongside
+from tarl_lint.flows.call_chains import calls
+from tarl_lint.flows.choices import Choices, made_alongside
+from tarl_lint.flows.parts import Part, Parts
 from tarl_lint.flows.reachability import Reach, Tracer, _reversed, closure, ending_in_publish_call
 from tarl_lint.flows.statement_text import Text
+from tarl_lint.flows.statements import Statements
+from tarl_lint.flows.taint_list import new_step
 from tarl_lint.model import Span
 from tarl_lint.options import _sentence
 from tarl_lint.settings.schema import Wrapper
@@ -40,8 +43,6 @@ def tracer(of: SimpleNamespace) -> Tracer:
     found = Tracer.__new__(Tracer)
     found.graph = of
     found.forward_data, found.forward_control = _reversed(of.data), _reversed(of.control)
-    found._alongside = made_alongside(of)
-    found._formers, found._merged, found._steps = {}, set(), {}
     return found
 
 
@@ -106,34 +107,45 @@ def test_constants_chosen_by_conditions_are_found_with_their_nodes():
         branches={3: under, 4: under, 2: (), 5: under},
         gates={6: (5, under)},
     )
-    assert tracer(of).made_there({6, 9}) == {3, 4}
-    assert tracer(of).made_there({6}) == set()  # the condition is not among the nodes
-    assert tracer(of).made_there({9}) == set()
+    assert Choices(of).made_there({6, 9}) == {3, 4}
+    assert Choices(of).made_there({6}) == set()  # the condition is not among the nodes
+    assert Choices(of).made_there({9}) == set()
     of.gates = {}
-    assert tracer(of).made_there({6, 9}) == set()
+    assert Choices(of).made_there({6, 9}) == set()
 
 
 def test_a_copy_without_conditions_is_traced_back_to_the_node_that_has_them():
     under = frozenset({(9, 1)})
     of = graph(10, data={7: [8]}, branches={5: under, 7: ()}, stands_for={8: 5})
     assert made_alongside(of) == {7: [5]}
-    assert tracer(of).made_there({7, 9}) == {5}
-    assert tracer(of).made_there({7}) == set()
+    assert Choices(of).made_there({7, 9}) == {5}
+    assert Choices(of).made_there({7}) == set()
     both = graph(10, data={7: [8, 6]}, stands_for={8: 5, 6: 4})
     assert made_alongside(both) == {7: [4, 5]}
 
 
 def test_graph_nodes_without_a_statement_are_skipped():
     of = graph(6, data={0: [1, 4], 1: [2, 3], 2: [1]}, control={0: [5]})
-    one = tracer(of)
-    assert one.before(0) == [1, 4, 5]
-    one._merged = {1, 2}
-    assert one.before(0) == [3, 4, 5]
+    forward = _reversed(of.data), _reversed(of.control)
+    of.places = [SimpleNamespace(role="assign")] * 6
+    one = Statements(of, {}, forward)
+    assert one.nodes_before(0) == [1, 4, 5]
+    assert sorted(one.nodes_after([3])) == [1]
+    of.places = [SimpleNamespace(role="merged" if node in (1, 2) else "assign") for node in range(6)]
+    one = Statements(of, {}, forward)
+    assert one.nodes_before(0) == [3, 4, 5]
+    assert sorted(one.nodes_after([3])) == [0, 1, 2]
     assert one.formers(0) == [1, 4, 5]
 
 
+class Call(SimpleNamespace):
+    """A frame: the calls that lead to it, and its function."""
+
+    __hash__, __eq__ = object.__hash__, object.__eq__
+
+
 def frame(caller=None, call=None):
-    return SimpleNamespace(caller=caller, call=call and SimpleNamespace(pos=(call, 0, call, 9)))
+    return Call(caller=caller, call=call and SimpleNamespace(pos=(call, 0, call, 9)), function=None)
 
 
 def test_the_calls_between_two_frames_are_listed_outermost_first():
@@ -154,13 +166,12 @@ def test_the_calls_between_two_frames_are_listed_outermost_first():
 def test_conditions_that_choose_a_value_are_listed_with_the_frame_of_the_value():
     frames = [frame() for _ in range(4)]
     places = [SimpleNamespace(frame=one) for one in frames]
-    under = frozenset({(3, 1), (9, 0)})
+    under = frozenset({(3, 1), (3, 0)})
     of = graph(4, gates={0: (1, under)}, places=places)
-    assert [*entrances(of, {0, 3}, {})] == [(3, frames[1], frames[3], 0)]
-    assert [*entrances(of, {3}, {})] == []
-    copied = graph(4, branches={1: under, 0: {(9, 0)}}, places=places)
-    assert [*entrances(copied, {0, 1, 3}, {0: [1]})] == [(3, frames[1], frames[3], 1)]
-    assert [*entrances(copied, {0, 3}, {0: [1]})] == []
+    assert [*Choices(of).entrances(0)] == [(3, frames[1], frames[3], 0)]
+    assert [*Choices(of).entrances(3)] == []
+    copied = graph(4, data={0: [2]}, stands_for={2: 1}, branches={1: under, 0: {(3, 0)}}, places=places)
+    assert [*Choices(copied).entrances(0)] == [(3, frames[1], frames[3], 1)]
 
 
 def written(source: str, name: str = "f"):
@@ -189,7 +200,7 @@ def test_the_role_of_a_step_is_known_or_follows_from_its_syntax(source, name, de
     if source == "return":
         one.node = one.node.body[0]
     span = Span("n.py", 1, 1, 1, 2)
-    step = Tracer._step(one, span, dependence, known)
+    step = new_step(one, span, dependence, known)
     assert (step.role, step.dependence, step.code, step.span) == (role, dependence, "code", span)
 
 
@@ -389,15 +400,29 @@ def test_equal_statements_of_a_function_are_numbered():
     assert text.site(branch).text == "if a and b:"
 
 
-def test_calls_between_a_condition_and_its_value_are_steps_in_order(monkeypatch):
-    one = tracer(graph(1))
-    near, far = object(), object()
-    found = [(1, "in", "out", 2), (1, "in", "out", 2), (3, "x", "y", 2)]
-    monkeypatch.setattr(reachability, "entrances", lambda *_: found)
-    monkeypatch.setattr(Tracer, "calls", lambda _, inner, outer: [far, near] if inner == "in" else None)
-    written, dependence = {id(near): near}, {id(near): "data"}
-    edges = one.entered({1, 2}, {1: 10, 2: 20}, written, dependence)
-    assert edges == [(10, id(far)), (id(far), id(near)), (id(near), 20)]
-    assert written == {id(near): near, id(far): far}
-    assert dependence == {id(near): "data", id(far): "control"}
-    assert one.entered({1, 2}, {2: 20}, {}, {}) == [(id(far), id(near)), (id(near), 20)]
+def test_calls_between_a_condition_and_its_value_are_steps_in_order():
+    """A helper, called through two calls, returns one of two values under a condition of the caller."""
+    outer = frame()
+    inner = frame(frame(outer, 3), 5)
+    aside = frame()
+    places = [SimpleNamespace(frame=one, role="") for one in (inner, outer, aside)]
+    of = graph(3, gates={0: (0, frozenset({(1, "then"), (2, "then")}))}, places=places)
+    known = {0: "value", 1: "condition", 2: "elsewhere"}
+    statements = SimpleNamespace(
+        graph=of,
+        of=known.get,
+        before=lambda node: (),
+        nodes_after=lambda nodes: (),
+        calls=lambda one, other: ["far", "near"] if (one, other) == (inner, outer) else None,
+    )
+    parts = Parts(statements, Choices(of))
+    found = parts.of({0, 1, 2}, Part())
+    assert [*found.entrances] == [
+        (id("condition"), id("far")),
+        (id("far"), id("near")),
+        (id("near"), id("value")),
+    ]
+    assert [*found.passed.values()] == ["far", "near"]
+    del known[1]
+    assert [*parts.of({0, 1}, Part()).entrances] == [(id("far"), id("near")), (id("near"), id("value"))]
+    assert not parts.of({0, 2}, Part()).entrances  # no calls lead to the other condition

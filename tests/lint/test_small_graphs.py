@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tarl_lint.flows.ends import Ends
+from tarl_lint.flows.precedence import Precedence
 from tarl_lint.flows.shortest_path import shortest_path
-from tarl_lint.flows.topological_order import before_loops, in_order
+from tarl_lint.flows.topological_order import in_order
 from tarl_lint.model import Span
 from tarl_lint.system import chains as module
 from tarl_lint.system.chains import chains, slashed
@@ -36,13 +37,13 @@ def spans(count: int) -> dict[int, Span]:
     ],
 )
 def test_statements_are_ordered_by_their_edges_and_then_by_their_source_position(edges, first, expected):
-    assert in_order(spans(4), edges, first) == expected
+    assert in_order(spans(4), Precedence(edges), first) == expected
 
 
 @given(st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)).filter(lambda one: one[0] < one[1])))
 def test_an_order_without_cycles_is_kept(edges):
     turned = [(6 - one, 6 - other) for one, other in edges]
-    order = in_order(spans(7), turned)
+    order = in_order(spans(7), Precedence(turned))
     assert sorted(order) == [*range(7)]
     assert all(order.index(one) < order.index(other) for one, other in turned)
 
@@ -50,10 +51,27 @@ def test_an_order_without_cycles_is_kept(edges):
 def test_statements_of_other_functions_that_a_loop_uses_come_before_the_loop():
     function = {1: "run", 2: "run", 3: "helper", 4: "helper", 5: "run", 9: "run"}
     edges = [(3, 2), (4, 3), (5, 2), (1, 9)]
-    assert sorted(before_loops(edges, [(2, 9)], function)) == [(3, 9), (4, 9)]
-    assert before_loops(edges, [], function) == []
-    assert before_loops(edges, [(3, 9)], function) == [(3, 9), (4, 9)]
-    assert sorted(before_loops([(3, 2), (2, 3)], [(2, 9)], function)) == [(3, 9)]
+    assert ahead(edges, [(2, 9)], function) == {3, 4}
+    assert ahead(edges, [], function) == set()
+    assert ahead(edges, [(3, 9)], function) == {3, 4}
+    assert ahead(edges, [(2, 9), (2, 5)], function) == {3, 4}  # two loops use the same values
+    assert ahead([(3, 2), (2, 3)], [(2, 9)], function) == {3}
+
+
+def ahead(edges, turns, function) -> set[int]:
+    """Return the statements that precede the loop's head 9 for the loop's sake."""
+    order = Precedence(edges)
+    known = order.formers(9)
+    order.add_ahead_of_loops(turns, function)
+    return order.formers(9) - known
+
+
+def test_a_copy_of_a_relation_is_independent_and_nothing_precedes_itself():
+    order = Precedence([(1, 2), (2, 2), (3, 2)])
+    copied = order.copy()
+    copied.update([(4, 2), (2, 1)])
+    assert (order.formers(2), order.formers(1)) == ({1, 3}, set())
+    assert (copied.formers(2), copied.formers(1)) == ({1, 3, 4}, {2})
 
 
 def path(formers: dict[int, list[int]], statements: dict[int, int], ends=(0,), starts=(9,)):

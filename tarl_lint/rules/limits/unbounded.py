@@ -34,7 +34,7 @@ class Magnitudes:
         pending = list(seen)
         while pending:
             node = pending.pop()
-            written = self.evidence.tracer.statement(node)
+            written = self.evidence.tracer.statements.of(node)
             if written is not None and computes(written.node):
                 found[written.text.span(written)] = None
                 continue
@@ -73,7 +73,7 @@ class Magnitudes:
             return True
         if place.statement is None:
             return False
-        written = self.evidence.tracer.statement(node)
+        written = self.evidence.tracer.statements.of(node)
         return written is not None and self.evidence.limited(written.node)
 
     def _holds_below(self, condition: int, way: str, node: int) -> bool:
@@ -101,7 +101,7 @@ class Magnitudes:
         place = self.graph.places[condition]
         if place.statement is None:
             return None
-        written = self.evidence.tracer.statement(condition)
+        written = self.evidence.tracer.statements.of(condition)
         node = written.node if written is not None else None
         return node.test if isinstance(node, (ast.If, ast.While, ast.Assert)) else None
 
@@ -113,7 +113,7 @@ class Magnitudes:
             return False
         if (asked & made) - self.origin.nodes:
             return True
-        written = self.evidence.tracer.statement(node)
+        written = self.evidence.tracer.statements.of(node)
         if written is None:
             return False
         text = written.text.text(written)

@@ -1,0 +1,113 @@
+"""Which statements precede which: a relation that can be copied and extended at little cost.
+
+Every flow has a relation of its own. The statements that precede another one are the bits of an integer: copies share
+these integers, and one operation joins two sets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(slots=True)
+class Numbers:
+    """Numbers for keys; relations that are copies of each other share them."""
+
+    of: dict[int, int] = field(default_factory=dict)
+    keys: list[int] = field(default_factory=list)
+
+    def __getitem__(self, key: int) -> int:
+        """Return the number of a key; the next free one at first use."""
+        number = self.of.setdefault(key, len(self.keys))
+        if number == len(self.keys):
+            self.keys.append(key)
+        return number
+
+    def bits(self, keys: Iterable[int]) -> int:
+        """Return the set of the keys as bits."""
+        found = 0
+        for key in keys:
+            found |= 1 << self[key]
+        return found
+
+
+class Precedence:
+    """A relation between keys. A key does not precede itself."""
+
+    def __init__(self, pairs: Iterable[tuple[int, int]] = ()) -> None:
+        self.numbers = Numbers()
+        self.before: dict[int, int] = {}  # key → bits of the keys that precede it
+        self.update(pairs)
+
+    def copy(self) -> Precedence:
+        """Return an equal relation."""
+        made = Precedence()
+        made.numbers, made.before = self.numbers, {**self.before}
+        return made
+
+    def update(self, pairs: Iterable[tuple[int, int]]) -> None:
+        """Add pairs (former, latter)."""
+        for former, latter in pairs:
+            self.add(1 << self.numbers[former], latter)
+
+    def add(self, formers: int, latter: int) -> None:
+        """Let a set of keys, given as bits, precede a key."""
+        self.before[latter] = (self.before.get(latter, 0) | formers) & ~(1 << self.numbers[latter])
+
+    def add_ahead_of_loops(self, turns: Iterable[tuple[int, int]], function: Mapping[int, object]) -> None:
+        """Order statements of other functions before the loops whose bodies use their values.
+
+        `turns` has the pairs (statement of the body, head) in which the head uses a value of an earlier iteration.
+        """
+        heads: dict[int, int] = {}
+        for carried, head in turns:
+            heads[head] = heads.get(head, 0) | 1 << self.numbers[carried]
+        if not heads:
+            return
+        together: dict[int, int] = {}  # function → its statements
+        for key, where in function.items():
+            together[id(where)] = together.get(id(where), 0) | 1 << self.numbers[key]
+        known: dict[int, int] = {}
+        ahead = {head: self._all_before(carried, known) for head, carried in heads.items()}
+        for head, formers in ahead.items():
+            self.add(formers & ~together.get(id(function.get(head)), 0), head)
+
+    def _all_before(self, keys: int, known: dict[int, int]) -> int:
+        """Return the keys, and all that precede them directly or not; as bits.
+
+        `known` maps numbers of keys to earlier results for these keys alone, and is extended.
+        """
+        found = 0
+        while left := keys & ~found:
+            number = left.bit_length() - 1
+            if number not in known:
+                known[number] = self._before_one(number, known)
+            found |= known[number]
+        return found
+
+    def _before_one(self, number: int, known: Mapping[int, int]) -> int:
+        names, before = self.numbers.keys, self.before
+        finished = sum(1 << one for one in known)
+        found = pending = 1 << number
+        while pending:
+            number = ((pending & finished) or pending).bit_length() - 1
+            bit = 1 << number
+            if pending & finished:
+                found |= known[number]
+                pending &= ~known[number]
+            else:
+                news = before.get(names[number], 0) & ~found
+                found |= news
+                pending ^= bit | news
+        return found
+
+    def formers(self, key: int) -> set[int]:
+        """Return the keys that precede a key."""
+        bits = self.before.get(key, 0)
+        return {one for number, one in enumerate(self.numbers.keys) if bits >> number & 1}
+
+    def first_of(self, key: int, left: int) -> int | None:
+        """Return a key that precedes `key` and is among `left`, a set as bits; None if there is none."""
+        waiting = self.before.get(key, 0) & left
+        return self.numbers.keys[waiting.bit_length() - 1] if waiting else None
