@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -216,3 +217,17 @@ def test_the_expression_for_a_sensor_that_may_be_missing_has_one_pair_of_parenth
     node = source.find(span(source.text, expression))
     edits = form_edits(source, node, Form(template(SHIPPED / "sum.toml")), {}, "", "self.length or 0.0")
     assert apply_edits(source, edits) == f"close = gap < {written}\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "second"),
+    [("low_pass", {"share": 0.25}, 6.5), ("derivative", {"gain": 3.0}, 14.0)],
+)
+def test_the_first_value_passes_unchanged(name: str, values: dict[str, float], second: float) -> None:
+    before = "def step(value):\n    out = 2.0 * value\n    return out\n"
+    source = document("node.py", before)
+    node = source.find(span(before, "2.0 * value"))
+    edits = form_edits(source, node, Form(template(SHIPPED / f"{name}.toml")), values, "", "")
+    scope: dict[str, Any] = {}
+    exec(apply_edits(source, edits), scope)
+    assert [scope["step"](3.0), scope["step"](4.0)] == [6.0, second]
