@@ -29,6 +29,7 @@ STEADY = 0.02  # standard deviation at the end of a mission that does not matter
 SWINGS = (2.0, 6.0)  # growth of that standard deviation at which a swing begins, and at which it is certain
 CROSSINGS = 3  # minimum number of times that a swing crosses its mean
 ASIDE = 0.5  # growth of the mean at the end from which on an offset is certain, as a share of the range
+BESIDE = 0.25  # the same for differences at the same time of a mission
 GROWTH = 0.2  # (end - start) / (end + start) of a value that certainly runs away
 FEWEST = 6  # minimum number of values in a series
 
@@ -72,7 +73,11 @@ def jumps(pairs: Sequence[Pair]) -> float:
 
 
 def offset(pairs: Sequence[Pair]) -> float:
-    """Return how far the value stays on one side of zero in the second half, while it nears zero by design."""
+    """Return how far the value stays on one side of zero in the second half, while it nears zero by design.
+
+    The value may swing by design, for example while a vehicle follows its course. The differences from the designed
+    missions at the same time then show an offset that stays.
+    """
     both = [pair.together() for pair in pairs]
     size = scale(both)
     ends = [(_late(pair.designed.values), _late(pair.drifted.values)) for pair in both]
@@ -81,7 +86,8 @@ def offset(pairs: Sequence[Pair]) -> float:
     designed, drifted = (fmean(abs(float(each[at].mean())) for each in ends) for at in (0, 1))
     left = min(designed / max(_largest(pair.designed.values) for pair in both), 1.0)
     one_sided = fmean(_one_sided(other) for _, other in ends)
-    return float(one_sided * (1.0 - left) * np.clip((drifted - designed) / (ASIDE * size), 0.0, 1.0))
+    aside = one_sided * float(np.clip((drifted - designed) / (ASIDE * size), 0.0, 1.0))
+    return (1.0 - left) * max(aside, fmean(_apart(pair, size) for pair in both))
 
 
 def swing(pairs: Sequence[Pair]) -> float:
@@ -168,6 +174,21 @@ def _soon(series: Series, height: float) -> np.ndarray:
 
 def _largest(values: Floats) -> float:
     return float(np.abs(values).max()) if values.size else 0.0
+
+
+def _apart(pair: Pair, size: float) -> float:
+    """Return how far a value stays on one side of its designed course in the second half, away from zero.
+
+    A difference is certain from `BESIDE` of the range of the values on, and from their designed root mean square. Only
+    values that swing by design count; for others, their own mean shows as much.
+    """
+    steps = min(pair.designed.values.size, pair.drifted.values.size)
+    designed, drifted = (_late(one.values[:steps]) for one in (pair.designed, pair.drifted))
+    swings = steps > 0 and float(designed.std()) > STEADY * size
+    if not swings or abs(float(drifted.mean())) <= abs(float(designed.mean())):
+        return 0.0
+    apart, least = drifted - designed, max(float(np.sqrt((designed**2).mean())), BESIDE * size)
+    return _one_sided(apart) * min(abs(float(apart.mean())) / least, 1.0)
 
 
 def _late(values: Floats) -> Floats:

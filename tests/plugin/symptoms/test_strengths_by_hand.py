@@ -289,6 +289,15 @@ def test_an_offset_is_weaker_if_the_value_changes_its_sign() -> None:
     assert found == pytest.approx(0.5 / np.sqrt(5.0))
 
 
+def test_an_offset_of_a_value_that_swings_by_design_shows_at_the_same_time_of_a_mission() -> None:
+    swing = np.tile([2.0, -2.0], 20)
+    assert strength("offset", pair(swing, swing + 2.0)) == pytest.approx(1.0)
+    assert strength("offset", pair(swing, swing + 1.0)) == pytest.approx(0.5)
+    assert strength("offset", pair(swing + 1.0, swing)) == 0.0  # towards zero
+    assert strength("offset", pair(swing, 2.0 * swing)) == 0.0
+    assert strength("offset", pair(swing + 9.0, swing + 12.0)) < 0.2  # far from zero by design
+
+
 def test_offsets_to_both_sides_do_not_cancel() -> None:
     sides = [pair(ends(4.0, 0.0), ends(4.0, end)) for end in (1.0, -1.0)]
     assert strength("offset", *sides) == pytest.approx(0.5)
