@@ -97,9 +97,8 @@ class Examiner:
             if examined.reason in WEAK:
                 weak.append(guard)
                 edges += [examined.candidate] if examined.fresh else []
-            if examined.fresh and self._missed.nearly_right(examined.candidate):
-                weak.append(guard)
-                accepted = self._followed(self.others.improved(examined.candidate, trials), trials)
+            for others in self._other_values(candidate, examined, weak, trials):
+                accepted = self._followed(others, trials)
                 if accepted is not None or self._exhausted():
                     return accepted
             if operands(examined.candidate) == operands(candidate):
@@ -123,6 +122,17 @@ class Examiner:
             if accepted is not None or self._exhausted():
                 return accepted
         return None
+
+    def _other_values(
+        self, candidate: Candidate, examined: Tried, weak: list[Guard], trials: Trials
+    ) -> Iterator[OtherValues]:
+        """Yield the other values of a candidate that come before its further guards; update `weak`."""
+        guard = examined.candidate.guard
+        if guard == candidates.ALWAYS and examined.reason in (*WEAK, *STRONG):
+            yield self.others.unguarded(candidate, trials)
+        if examined.fresh and self._missed.nearly_right(examined.candidate):
+            weak.append(guard)
+            yield self.others.improved(examined.candidate, trials)
 
     def _followed(self, others: OtherValues, trials: Trials) -> Accepted | None:
         """Examine other values of a candidate; each result determines the next value."""

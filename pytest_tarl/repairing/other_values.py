@@ -6,6 +6,7 @@ Each method is a generator that yields the next candidate to examine and receive
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Sequence
+from dataclasses import replace
 from math import sqrt
 
 from pytest_tarl.errors import RepairError
@@ -16,6 +17,7 @@ from pytest_tarl.repairing.ledger import Ledger, Tried, operands
 from pytest_tarl.repairing.missed import Lost, Missed
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.searching.accept import TOO_LITTLE
+from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
@@ -25,6 +27,7 @@ RATIOS = (1.1, 1.03)  # ratios between neighbours of a value that loses too much
 MOVES = 3  # maximum number of moves in one direction with one ratio
 BETTER = 0.1  # a neighbour must earn at least this share of the margin more
 KNOWN = 3  # number of known seeds on which a smaller change must reach the goal
+UNGUARDED = 3  # maximum number of values that are tried without the condition of a candidate
 CLOSE = 1.3  # maximum ratio of two rejected values between which good values may lie
 
 OtherValues = Generator[Candidate, Tried, None]
@@ -39,6 +42,7 @@ class Others:
         self.ledger = ledger
         self.missed = missed
         self._pushed: set[Place] = set()
+        self._unguarded: set[frozenset[Operand]] = set()
         self._bisected: set[Place] = set()
         self._inward: set[Place] = set()
         self._nearer: set[Place] = set()
@@ -63,6 +67,30 @@ class Others:
             examined = yield moved
             if not examined.fresh or examined.reason not in (*WEAK, *TOO_LITTLE):
                 return
+
+    def unguarded(self, candidate: Candidate, trials: Trials) -> OtherValues:
+        """Propose smaller changes that may hold in both worlds without the condition of a candidate.
+
+        A lower threshold may suit both worlds although the value found under the condition goes too far in the rest of
+        a mission. Bisect between the original value and the one found: if a value fails without the condition, the same
+        value under the condition shows whether it is too small. Raise BudgetSpentError.
+        """
+        if not candidate.guard.conjuncts or operands(candidate) in self._unguarded:
+            return
+        self._unguarded.add(operands(candidate))
+        between = Between(replace(in_place(candidate), guard=ALWAYS), self.mutants.mutate)
+        for _ in range(UNGUARDED):
+            middle = between.middle()
+            if middle is None:
+                return
+            if self._reaches(middle, trials):
+                examined = yield middle
+                # the tests left are for the candidate under its condition
+                if examined.fresh or not between.told(examined.reason):
+                    return
+                continue
+            enough = self._reaches(replace(middle, guard=candidate.guard), trials)
+            between.told(STRONG[0] if enough else WEAK[0])
 
     def inward(self, refused: Candidate, trials: Trials) -> OtherValues:
         """Propose a smaller change than `refused`, which lost reward in few missions of its test and may go too far.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +16,7 @@ from pytest_tarl.repairing.other_values import Others
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from tests.plugin.searching.test_gains import WET
 from tests.plugin.searching.test_search import operand
 
 PATIENCE = operand(3, "1.0", 1.0)
@@ -60,3 +62,59 @@ def test_without_a_window_or_a_lost_mission_no_value_is_proposed() -> None:
 def test_a_value_that_was_examined_is_not_proposed_again() -> None:
     (by,), _ = inward(2.4, 3.4)
     assert inward(2.4, 3.4, known=by)[0] == []
+
+
+def without_condition(
+    drifted: tuple[float, float], guarded: float, designed: float
+) -> tuple[list[float], list[tuple[float, bool]]]:
+    """Return the proposals for a change by 5 under a condition, and the (factor, condition) of what ran.
+
+    Without the condition, factors between the two bounds `drifted` reach the goal, under it those from `guarded` on;
+    factors above `designed` are refused.
+    """
+    ran = []
+
+    def run(candidate: Candidate, _: int) -> Outcome:
+        by = factor(candidate.mutations[0]) or 1.0
+        ran.append((by, bool(candidate.guard.conjuncts)))
+        held = by >= guarded if candidate.guard.conjuncts else drifted[0] <= by <= drifted[1]
+        return Outcome(10.0 if held else 0.0, held)
+
+    mutants: Any = SimpleNamespace(mutate=mutations, order=SimpleNamespace(goal=GOAL))
+    others = Others(mutants, Ledger(), Missed())
+    found, proposed = others.unguarded(Candidate(FOUND.mutations, WET), Trials(run, 50)), []
+    with suppress(StopIteration):
+        candidate = next(found)
+        while True:
+            assert candidate.guard == ALWAYS
+            proposed.append(factor(candidate.mutations[0]) or 1.0)
+            reason: Any = "nominal gets worse" if proposed[-1] > designed else "never tested"
+            candidate = found.send(Tried(candidate, reason, ()))
+    assert list(others.unguarded(Candidate(FOUND.mutations, WET), Trials(run, 50))) == []
+    return proposed, ran
+
+
+def test_a_smaller_change_may_need_no_condition() -> None:
+    half = pytest.approx(5**0.5, rel=1e-3)
+    assert without_condition((1.6, 3.0), 1.6, 9.0)[0] == [half]
+    proposed, ran = without_condition((1.2, 1.6), 1.2, 9.0)
+    assert proposed == [
+        pytest.approx(5**0.25, rel=1e-3)
+    ]  # the first value goes too far without the condition
+    assert ran[:2] == [(half, False), (half, True)]
+    assert without_condition((3.0, 3.6), 3.0, 9.0)[0] == [
+        pytest.approx(5**0.75, rel=1e-3)
+    ]  # the first value is too small
+
+
+def test_a_change_that_does_harm_in_the_designed_world_is_made_smaller_a_few_times() -> None:
+    assert without_condition((1.0, 9.0), 1.0, 1.7)[0] == pytest.approx([5**0.5, 5**0.25], rel=1e-3)
+    proposed, ran = without_condition((9.0, 8.0), 9.0, 9.0)
+    assert proposed == []
+    assert len(ran) == 6
+
+
+def test_a_change_without_a_condition_has_no_smaller_ones_of_this_kind() -> None:
+    mutants: Any = SimpleNamespace(mutate=mutations, order=SimpleNamespace(goal=GOAL))
+    trials = Trials(lambda *_: Outcome(10.0, True), 50)
+    assert list(Others(mutants, Ledger(), Missed()).unguarded(FOUND, trials)) == []
