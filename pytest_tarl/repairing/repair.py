@@ -30,9 +30,12 @@ from pytest_tarl.repairing.reviewing import remarks
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.repairing.unsearched_modules import unnamed_modules
 from pytest_tarl.searching import candidates
+from pytest_tarl.searching.attempts import Attempts
+from pytest_tarl.searching.constants_first import constants_first
 from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import BudgetSpentError, label
 from pytest_tarl.searching.strategy import Strategy
+from pytest_tarl.searching.sweep import Sweep
 
 CONSTANTS = 2 / 3  # share of the budget for the search of constants; structural changes get the rest
 RESERVE = 1 / 6  # share of the budget that is added to the search of constants if a candidate has gained much
@@ -63,6 +66,7 @@ class _Findings:
     ranking: Ranking | None = None  # None unless all sites were ranked
     structure: int = 0  # number of episodes spent on structural changes; included in `episodes`
     early: Early | None = None  # the structural changes tried within the last search
+    constants: Attempts | None = None  # the changes of constants that the last sweep tried
 
     def take(self, purse: Purse) -> None:
         """Add the episodes that a budget spent."""
@@ -135,7 +139,9 @@ def _search(
             _exhibit(strategy)
     except KeyboardInterrupt:
         found.interrupted = True
-    if first and found.accepted is not None and early.waiting:
+    if isinstance(strategy, Sweep):
+        found.constants = strategy.attempts
+    if first and found.accepted is not None and early.waiting and _structural(found.accepted):
         found.effects, found.method = early.effects(), "structure"
         found.structure = early.spent
     elif not found.effects:
@@ -161,15 +167,23 @@ def _restructure(
         signs = NO_SIGNS if purse.late else found.early.signs(trials)
     structures = Structures(mutants.order, _chief(searched), trials, found.effects or {}, signs)
     examiner.turns += 1
+    changes = structures.candidates()
+    if found.constants is not None:
+        changes = constants_first(changes, found.constants, trials, mutants.order.goal)
     try:
-        found.accepted = examiner.first(structures.candidates(), trials)
+        found.accepted = examiner.first(changes, trials)
     except KeyboardInterrupt:
         found.interrupted = True
-    if found.accepted is not None:
+    if found.accepted is not None and _structural(found.accepted):
         found.effects, found.method = structures.effects(), "structure"
     found.curves += (SearchTrace("structure", tuple(trials.totals), tuple(trials.labels)),)
     purse.settle(trials)
-    found.structure = trials.spent
+    if found.accepted is None or _structural(found.accepted):
+        found.structure = trials.spent
+
+
+def _structural(accepted: Accepted) -> bool:
+    return any(mutation.form is not None for mutation in accepted.candidate.mutations)
 
 
 def _chief(searched: Sequence[Guard]) -> tuple[Guard, ...]:

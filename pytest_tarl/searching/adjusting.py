@@ -11,8 +11,8 @@ from pytest_tarl.searching import plateau
 from pytest_tarl.searching.exact import exactest
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.gains import Gains
-from pytest_tarl.searching.plainness import Oddness, writing
-from pytest_tarl.searching.refining import ALMOST, PROMISING, between
+from pytest_tarl.searching.plainness import Oddness, kind, writing
+from pytest_tarl.searching.refining import ALMOST, PROMISING, between, bracket
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
@@ -21,6 +21,8 @@ ROUNDS = 3  # maximum number of consecutive refinements of one operand that gain
 LEAST = 0.5  # minimum gain of a unit whose exact value is searched, as a share of the wanted gain
 REFINED = 8  # maximum number of runs that refine one operand
 IDLE = 2  # maximum number of consecutive refinements without a larger gain of an operand that gains less
+# ratio of the factors on both sides of a named constant's sharp peak, from which on it is refined nevertheless
+WIDE = 1.4
 MORE = 0.05  # minimum increase of the gain, as a share of the wanted gain
 
 
@@ -90,8 +92,13 @@ class Adjusting:
             if key[0] in distinct
             and key not in search.refused
             and self.refined[key] < _most(key[0])
-            and (self._idle[key] < IDLE or search.gains.most(key) >= much)
+            and (self._idle[key] < IDLE or search.gains.most(key) >= much or self._in_a_wide_bracket(key))
         ]
+
+    def _in_a_wide_bracket(self, key: tuple[Unit, Guard]) -> bool:
+        """Return whether a named constant has a sharp peak between factors far enough apart for a better one."""
+        named = kind(key[0]) is Oddness.NAMED and not self.search.proposed
+        return named and bracket(self.search.gains.of(*key)) >= WIDE
 
     def exactly(self, guard: Guard) -> Iterator[Candidate]:
         """Move the best unit under a guard once to where its missions follow the designed ones most closely.

@@ -14,6 +14,7 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.acting import Acting
 from pytest_tarl.searching.adjusting import Adjusting
 from pytest_tarl.searching.combining import Combining
+from pytest_tarl.searching.constants_first import constants_first
 from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.preferring import Preferences
@@ -68,7 +69,7 @@ class Attempts:
         self.weaker = weaker
         self.given = given
         self.scope = scope
-        self.interlude = interlude
+        self._structures = interlude
         self.slack = SLACK * goal.wanted
         self.turn = 0
         # units that were confirmed and yielded, but that the caller refused
@@ -83,6 +84,10 @@ class Attempts:
         self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # the pair of each change's first run
         self._tried: set[Candidate] = set()
         self._settled = Settled()
+
+    def interlude(self, gain: float) -> Iterator[Candidate]:
+        """Yield structural changes, before the first one the constants that gained; `gain` is the largest so far."""
+        yield from constants_first(self._structures(gain), self, self.trials, self.goal)
 
     @property
     def pair(self) -> int:

@@ -22,6 +22,8 @@ LEADING = 3  # number of best units that are tried with larger steps before the 
 HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
+# steps for named constants that clearly lose with each of the steps before: their good values are close to the old one
+SENSITIVE = ((1.1, 0.91), (1.05, 0.95), (1.025, 0.975))
 HALF = 0.5  # gain of a change, as a share of the wanted gain, from which on others get no `FINER` steps
 
 
@@ -146,7 +148,7 @@ class FirstSteps:
     def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try smaller steps on operands for which both near factors lost: their best values must be close.
 
-        If the smaller steps lose as well and nothing else is promising, try the `FINER` steps.
+        If the smaller steps lose as well and nothing else is promising, try the `FINER`, then the `SENSITIVE` steps.
         """
         tries, gains = self.attempts, self.attempts.gains
         lost = gains.lost_both_ways(guard, among, NEAR)
@@ -156,3 +158,11 @@ class FirstSteps:
         still = [] if promising else gains.lost_both_ways(guard, lost, BETWEEN)
         for factor in FINER if still else ():
             yield from tries.sweep(factor, guard, still)
+        before, sensitive = FINER, named(still)
+        for steps in SENSITIVE if not tries.proposed else ():
+            sensitive = gains.clearly_lost(guard, sensitive, before)
+            if not sensitive or gains.anything(HALF * tries.goal.wanted):
+                return
+            for factor in steps:
+                yield from tries.sweep(factor, guard, sensitive)
+            before = steps

@@ -100,21 +100,35 @@ class ForwardSelection:
         self.settled = settled or Settled()
 
     def candidates(self, base: Joint) -> Iterator[Candidate]:
-        """Yield confirmed combinations, starting with `base`."""
+        """Yield confirmed combinations, starting with `base`.
+
+        If no unit changes anything with its better factor, the other factor is not tried: the base keeps the program
+        from doing anything that others could improve.
+        """
         gain = yield from self.gain(base)
         if base.candidate(self.mutate) in self.settled.held:
             return  # the combination to start from reaches the goal on this seed, so no further part can show a gain
         while gain is not None and len(base.parts) < MOST:
             better, most = base, gain
-            widened = list(self._with_another(base))
-            self.expect(widened)
-            for wider in widened:
-                gained = yield from self.gain(wider)
-                if gained is not None and gained > most:
-                    better, most = wider, gained
+            for turn in range(len(NEAR)):
+                widened = list(self._with_another(base, turn))
+                self.expect(widened)
+                for wider in widened:
+                    gained = yield from self.gain(wider)
+                    if gained is not None and gained > most:
+                        better, most = wider, gained
+                if all(self._inert(wider, base) for wider in widened):
+                    break
             if most <= gain + self.slack:
                 return
             base, gain = yield from self._balanced(better, most)
+
+    def _inert(self, wider: Joint, base: Joint) -> bool:
+        """Return whether a combination has the same outcome as its base on the first seed."""
+        ran = [self.trials.ran(one.candidate(self.mutate), self.goal.pairs[:1]) for one in (wider, base)]
+        return bool(ran[0]) and [(one.total, one.steps) for one in ran[0]] == [
+            (one.total, one.steps) for one in ran[1]
+        ]
 
     def unions(
         self, parts: Sequence[tuple[Unit, float]], guard: Guard, hidden: Sequence[Unit] = ()
@@ -284,15 +298,14 @@ class ForwardSelection:
         if better != factor and self.settled.holds(candidate, self.trials, self.goal, 0):
             yield candidate
 
-    def _with_another(self, base: Joint) -> Iterator[Joint]:
-        """Yield combinations with one more part, first with the better of its two near factors."""
+    def _with_another(self, base: Joint, turn: int) -> Iterator[Joint]:
+        """Yield combinations with one more part; the first turn has the better of its two near factors."""
         taken = {unit for unit, _ in base.parts}
-        for turn in range(len(NEAR)):
-            for unit in self.units:
-                gains = self.gains.get(unit, {})
-                ranked = sorted(NEAR, key=lambda factor: -gains.get(factor, 0.0))
-                if unit not in taken and unit.mutations(self.mutate, ranked[turn]):
-                    yield base.with_part(unit, ranked[turn])
+        for unit in self.units:
+            gains = self.gains.get(unit, {})
+            ranked = sorted(NEAR, key=lambda factor: -gains.get(factor, 0.0))
+            if unit not in taken and unit.mutations(self.mutate, ranked[turn]):
+                yield base.with_part(unit, ranked[turn])
 
     def _balanced(self, base: Joint, gain: float) -> Generator[Candidate, None, tuple[Joint, float]]:
         """Move the factors of the parts one by one while the gain increases; return the result and its gain."""

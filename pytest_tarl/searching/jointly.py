@@ -31,6 +31,8 @@ DIMENSIONS = 8  # maximum number of constants to move
 LEAST = 2  # minimum number of constants to move
 EPISODES = 50  # maximum number of trials
 PATIENCE = 25  # maximum number of consecutive trials without an improvement
+# the same if all of them earn the same, more than the unrepaired program: they only avoid what costs reward
+FLAT = 12
 FARTHEST = 3.0  # maximum |log(step)|; a step of e³ is a factor of 20
 CHANGED = 3  # maximum number of constants in which a trial differs from the point where it starts
 SPREADS = (0.1, 0.3, 0.8)  # standard deviations of the random changes of a log step
@@ -144,11 +146,15 @@ class Jointly:
     def candidates(self, starts: Sequence[Joint], guard: Guard) -> Iterator[Candidate]:
         """Yield confirmed combinations. Raise BudgetSpentError."""
         begun, since, best = self.trials.spent, 0, -float("inf")
+        earned: list[float] = []  # rewards of the trials on the first seed
         waiting = [(0.0,) * len(self.units), *(self._point(start) for start in starts)]
         while self.trials.spent - begun < EPISODES and since < PATIENCE:
+            if since >= FLAT and len(set(earned[-FLAT:])) == 1 and earned[-1] > self.goal.pairs[0].total:
+                return
             point = waiting.pop(0) if waiting else self._next()
             joint = Joint(tuple((u, exp(x)) for u, x in zip(self.units, point, strict=True) if x), guard)
             value = yield from self._value(self._rounded(joint), best)
+            earned += self._earned(self._rounded(joint))
             since += 1
             if value is None:
                 value = min(self._values, default=-WORST)
@@ -156,6 +162,10 @@ class Jointly:
                 best, since = value, 0 if self._values else since
             self._points.append(point)
             self._values.append(value)
+
+    def _earned(self, joint: Joint) -> list[float]:
+        candidate = joint.candidate(self.selection.mutate)
+        return [one.total for one in self.trials.ran(candidate, self.goal.pairs[:1])]
 
     def _point(self, joint: Joint) -> tuple[float, ...]:
         steps = dict(joint.parts)

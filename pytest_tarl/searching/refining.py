@@ -12,10 +12,22 @@ FINEST = 1.1  # ratio of two factors below which no factor between them is tried
 # minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
 ALMOST = 0.9
 NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
-# minimum gain of a factor at a sharp peak (see SHARP) that is refined as finely, as a share of the wanted
-# gain
+# minimum height of a sharp peak (see SHARP) above one of its neighbours that is refined as finely, and minimum gain of
+# other promising factors, as a share of the wanted gain
 PROMISING = 0.4
 SHARP = 0.5  # a peak is sharp if both neighbouring factors gain at most this share of its gain
+
+
+def bracket(by_factor: Mapping[float, float]) -> float:
+    """Return the ratio of the factors on both sides of a sharp peak (see `SHARP`), or 1 if there is none."""
+    factor = max(by_factor, key=by_factor.__getitem__)
+    ordered = sorted(one for one in by_factor if one > 0.0)
+    if factor not in ordered[1:-1] or by_factor[factor] <= 0.0:
+        return 1.0
+    place = ordered.index(factor)
+    below, above = ordered[place - 1], ordered[place + 1]
+    sharp = max(by_factor[below], by_factor[above]) <= SHARP * by_factor[factor]
+    return above / below if sharp else 1.0
 
 
 def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:
@@ -45,4 +57,6 @@ def _narrow(
     if most >= ALMOST * wanted:
         return True
     known = [gains[one] for one in neighbours if one in gains]
-    return most >= PROMISING * wanted and len(known) == 2 and max(known) <= SHARP * most
+    sharp = len(known) == 2 and max(known) <= SHARP * most
+    # a reward that falls far between two close factors tells as much as a large gain
+    return sharp and most - min(known) >= PROMISING * wanted

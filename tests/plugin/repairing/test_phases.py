@@ -149,9 +149,15 @@ def test_a_sweep_leaves_episodes_to_structural_changes(monkeypatch: pytest.Monke
 
 
 def restructured(
-    monkeypatch: pytest.MonkeyPatch, early: Any, late: bool = False, accepts: bool = True, **search: Any
+    monkeypatch: pytest.MonkeyPatch,
+    early: Any,
+    late: bool = False,
+    accepts: bool = True,
+    structural: bool = True,
+    **search: Any,
 ) -> tuple[Any, Any, Any]:
     """Run the structural search after a search of constants; return the findings, its arguments and the examiner."""
+    monkeypatch.setattr(repair, "_structural", lambda _: structural)
     made: list[Any] = []
 
     class Structure(Search):
@@ -166,7 +172,7 @@ def restructured(
     of = order()
     purse = Purse(60, late=late)
     _restructure(mutants(of), examiner, found, Watch(of), (ALWAYS,), purse)
-    assert purse.spent == found.structure
+    assert found.structure == (purse.spent if structural else 0)
     return found, made[0], examiner
 
 
@@ -186,6 +192,13 @@ def test_a_structural_search_knows_symptoms_and_outcomes_of_the_search_before(
     assert (found.accepted, found.effects, found.method) == (ONE, EFFECTS, "structure")
     assert [one.method for one in found.curves] == ["structure"]
     assert examiner.turns == 2  # it may use as many tests as the search before
+
+
+def test_a_constant_that_is_accepted_in_the_structural_search_is_no_structure(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found, _, _ = restructured(monkeypatch, None, structural=False)
+    assert (found.accepted, found.effects, found.method, found.structure) == (ONE, {"old": []}, "", 0)
 
 
 def test_a_structural_search_without_time_or_a_search_before_has_no_symptoms(

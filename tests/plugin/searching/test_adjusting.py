@@ -163,6 +163,19 @@ def test_a_gain_that_stays_the_same_between_two_values_is_not_refined_for_ever()
     assert len(search.tried) == REFINED
 
 
+def test_a_named_constant_with_a_sharp_peak_is_refined_until_its_neighbours_are_close() -> None:
+    """One of eight parts is picked with factor 2.2, all with 2.7, none with 2 and 3.3."""
+    found, search = adjusted(entered((A, 2.2, 1.5)), {2.709: 9.5})
+    for _ in range(3):
+        assert list(found.refine(0)) == []
+    assert search.tried[:6] == [1.483, 5.06, 1.806, 3.336, 1.993, 2.709]
+    literal = Unit((operand(3, "0.5", 0.5),))
+    found, search = adjusted(entered((literal, 2.2, 1.5)), {2.709: 9.5})
+    for _ in range(3):
+        assert list(found.refine(0)) == []
+    assert len(search.tried) == 2 * IDLE
+
+
 def test_of_uses_that_act_alike_only_the_first_is_refined() -> None:
     whole = Unit((constant(3, "AHEAD", 0.65),))
     use = Unit((replace(constant(8, "AHEAD", 0.65), definition=whole.operands[0].definition),))

@@ -18,7 +18,7 @@ from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Set
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.jointly import (
     EPISODES,
-    PATIENCE,
+    FLAT,
     Jointly,
     Surrogate,
     _best_apart,
@@ -74,7 +74,7 @@ def test_parts_of_a_combination_are_replaced_and_dropped() -> None:
 
 def test_adding_a_constant_to_a_combination_starts_with_its_better_small_factor() -> None:
     chosen = selection(lambda _: 0.0, A={2.2: 1.0}, B={2.2: 1.0, 0.4: 2.0})
-    added = [one.parts[-1] for one in chosen._with_another(joint((A, 2.2)))]
+    added = [one.parts[-1] for turn in (0, 1) for one in chosen._with_another(joint((A, 2.2)), turn)]
     assert added == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
 
 
@@ -198,7 +198,7 @@ def test_a_joint_search_begins_with_the_original_and_the_given_points() -> None:
     finished(search.candidates([start], ALWAYS))
     assert search._points[:2] == [(0.0, 0.0), (0.0, log(2.2))]
     assert search._values[:2] == pytest.approx([0.0, 3.0 / 9.0])
-    assert len(search._points) == 2 + PATIENCE  # nothing better came
+    assert len(search._points) == 2 + FLAT  # all others earn the same
 
 
 def test_a_joint_search_finds_a_pair_and_ends_after_its_episodes() -> None:

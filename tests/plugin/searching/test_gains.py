@@ -415,3 +415,10 @@ def test_a_guard_holds_in_the_bins_that_it_covers_up_to_rounding(
 ) -> None:
     guard = Guard((Conjunct(sensor, low, high),))
     assert [index for index in range(8) if holds(guard, (index,), [sensor])] == expected
+
+
+def test_a_unit_clearly_loses_if_each_factor_lost_more_than_the_slack() -> None:
+    found = gains()
+    assert found.clearly_lost(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
+    assert found.clearly_lost(ALWAYS, [A, B, C], (0.4,)) == [A, B]
+    assert found.clearly_lost(ALWAYS, [B], (2.2, 5.0)) == []  # not tried

@@ -8,7 +8,7 @@ import pytest
 
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.gains import Gains
-from pytest_tarl.searching.refining import between
+from pytest_tarl.searching.refining import between, bracket
 from pytest_tarl.searching.units import Unit
 from tests.plugin.searching.test_search import operand
 
@@ -26,6 +26,7 @@ from tests.plugin.searching.test_search import operand
         ({1.1: 4.0, 1.16: 5.0, 1.22: 3.0, 1.0: 0.0}, []),  # a flat peak needs no further values
         ({1.0: 0.0, 1.1: 2.0, 1.05: 0.0, 1.16: 0.0}, []),  # a small gain may be chance
         ({1.0: 0.0, 1.1: 9.5, 1.05: 9.0, 1.16: 9.0}, [1.075, 1.13]),  # nearly there
+        ({1.0: 0.0, 1.05: 2.0, 1.1: -3.0}, [1.025, 1.075]),  # a small gain beside a large loss
         ({1.0: 0.0, 1.14: 5.0, 1.13: 0.0, 1.15: 0.0}, []),  # 2 % are the limit
         ({1.0: 0.0, -1.0: 5.0, 2.2: 1.0}, [-0.435, -2.3]),  # the sign stays
     ],
@@ -50,3 +51,17 @@ def test_uses_of_one_constant_that_act_alike_are_tried_once() -> None:
     gains.enter((used, ALWAYS), 1.5, 0.3)
     gains.enter((passed, ALWAYS), 1.5, 0.2)
     assert gains.distinct([passed, used, other]) == [passed, used, other]
+
+
+@pytest.mark.parametrize(
+    ("gains", "expected"),
+    [
+        ({1.0: 0.0, 2.0: 3.0, 3.0: 1.0}, 3.0),
+        ({1.0: 0.0, 2.0: 3.0, 3.0: 2.0}, 1.0),  # the gain hardly falls
+        ({1.0: 0.0, 2.0: 3.0}, 1.0),  # a larger factor may be better
+        ({0.5: -1.0, 1.0: 0.0, 2.0: -1.0}, 1.0),  # nothing gains
+        ({1.0: 0.0, -1.0: 3.0, 2.0: 1.0}, 1.0),  # another sign
+    ],
+)
+def test_a_sharp_peak_lies_between_two_factors(gains: dict[float, float], expected: float) -> None:
+    assert bracket(gains) == expected

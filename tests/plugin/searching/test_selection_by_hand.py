@@ -88,7 +88,7 @@ def test_a_gain_is_the_mean_over_the_seeds_that_ran_and_unknown_if_nothing_can_r
 def test_each_of_the_two_near_factors_is_added_better_one_first() -> None:
     gains = {B: {2.2: -1.0, 0.4: 2.0}, C: {2.2: 1.0}}
     search, _ = selection(lambda by, seed: 0.0, gains=gains)
-    found = [one.parts[1] for one in search._with_another(joint((A, 2.2)))]
+    found = [one.parts[1] for turn in (0, 1) for one in search._with_another(joint((A, 2.2)), turn)]
     assert found == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
 
 
@@ -611,3 +611,13 @@ def test_outcomes_of_another_phase_and_of_an_equal_candidate_are_known() -> None
     other.know(trials)
     assert [other(one, 3).total, other(two, 3).total, other(two, 4).total] == [3.0, 3.0, -1.0]
     assert other.spent == 1
+
+
+def test_the_other_factors_are_left_out_if_no_unit_changes_anything_with_its_better_factor() -> None:
+    gains = {A: {2.2: 5.0}, B: {2.2: 1.0}, C: {0.4: 1.0}}
+    search, seen = selection(lambda by, seed: 5.0, gains=gains)
+    assert list(search.candidates(joint((A, 2.2)))) == []
+    assert first(seen) == ["A2.2", "A2.2 B2.2", "A2.2 C0.4"]
+    search, seen = selection(lambda by, seed: 5.0 - (by.get("B") == 2.2), gains=gains)
+    assert list(search.candidates(joint((A, 2.2)))) == []
+    assert first(seen)[3:] == ["A2.2 B0.4", "A2.2 C2.2"]

@@ -1,0 +1,78 @@
+"""Constants that gained are refined before a structural change is yielded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any
+
+from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.constants_first import CONSTANTS, EPISODES, constants_first
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.units import Unit
+from tests.plugin.searching.test_gains import A, B, C
+from tests.plugin.searching.test_search import operand
+
+GOAL = Goal(tuple(Pair(seed, 0.0) for seed in range(8)), near=9.0, enough=9.5, online=0.0)
+LITERAL = Unit((operand(9, "0.5", 0.5),))
+STRUCTURES = [Candidate((), ALWAYS), Candidate((), ALWAYS)]
+
+
+def found(
+    gained: Mapping[Unit, Mapping[float, float]], good: tuple[float, float], easy: int = -1
+) -> tuple[list[str], list[tuple[str, int]]]:
+    """Return what is yielded and what ran if A earns 10 between two factors, everywhere or only on the easy seed."""
+    ran = []
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        (mutation,) = candidate.mutations
+        by = float(mutation.value)
+        ran.append((f"{mutation.operand.code} {by:g}", seed))
+        held = mutation.operand.code == "A" and good[0] <= by <= good[1] and easy in (-1, seed)
+        return Outcome(10.0 if held else 1.5 if abs(by - 2.2) < 0.1 else 0.0, held)
+
+    gains = Gains(1.0)
+    for unit, by_factor in gained.items():
+        for factor, gain in by_factor.items():
+            gains.enter((unit, ALWAYS), factor, gain)
+    search: Any = SimpleNamespace(
+        mutate=mutations, gains=gains, slack=1.0, refused=set(), ran_on=lambda *_: 3
+    )
+    trials = Trials(run, 100)
+    yielded = [
+        "structure"
+        if not one.mutations
+        else f"{one.mutations[0].operand.code} {float(one.mutations[0].value):g}"
+        for one in constants_first(iter(STRUCTURES), search, trials, GOAL)
+    ]
+    return yielded, ran
+
+
+NARROW = {1.0: 0.0, 2.2: 1.5, 5.0: 0.0}
+
+
+def test_a_constant_that_gained_a_little_is_refined_on_the_seed_on_which_it_gained() -> None:
+    yielded, ran = found({A: NARROW}, (2.5, 2.9))
+    assert yielded == ["A 2.701", "structure", "structure"]
+    refined = [words for words, seed in ran if seed == 3]
+    assert refined == ["A 2.2", "A 5", "A 1.483", "A 3.317", "A 1.806", "A 2.701"]
+    assert {seed for words, seed in ran if words == "A 2.701"} > {3}  # confirmed on further seeds
+
+
+def test_without_a_good_value_only_a_few_episodes_are_spent() -> None:
+    yielded, ran = found({A: NARROW, B: NARROW, C: NARROW}, (7.0, 8.0))
+    assert yielded == ["structure", "structure"]
+    assert len({words[0] for words, _ in ran}) == CONSTANTS
+    assert len(ran) <= CONSTANTS * (EPISODES + 1)
+
+
+def test_a_value_that_is_good_on_one_seed_only_is_not_yielded() -> None:
+    assert found({A: NARROW}, (2.5, 2.9), easy=3)[0] == ["structure", "structure"]
+
+
+def test_literals_and_constants_without_a_gain_are_left_out() -> None:
+    yielded, ran = found({LITERAL: NARROW, A: {2.2: 0.5}}, (1.0, 9.0))
+    assert (yielded, ran) == (["structure", "structure"], [])
