@@ -78,6 +78,7 @@ def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
     ctx.look(value.pts)
     return (
         owner.whole.info is BY_CLASS
+        and bool(value.pts)  # an unset field is a part of its message, not a constant
         and not value.deps
         and all(o.parent is owner and not o.fields for o in value.pts)
         and heap.content(ctx, owner) is BOTTOM
