@@ -8,7 +8,7 @@ from tarl_lint.interpret import dunder_methods, expressions, operators
 from tarl_lint.interpret.budget import MAX_STATEMENTS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import joins
+from tarl_lint.memory import heap, joins
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
@@ -20,6 +20,8 @@ MAX_EXACT_TURNS = 8  # value of MAX_TURNS in a run for one launched node
 SHORT = 3
 # maximum number of passes over a loop's body; only a safety limit, since the value domain is finite
 MAX_PASSES = 12
+ENTERING = ("__enter__", "__aenter__")
+LEAVING = ("__exit__", "__aexit__")
 
 
 def decide(ctx: Interpreter, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | None:
@@ -61,6 +63,7 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
     depth = len(ctx.store.layers)
     head = _first_head(ctx, s, frame)
     for _ in range(MAX_PASSES):
+        waited = ctx.store.waited
         ctx.store.push(head)
         table: dict[str, list[Delta]] = {"break": [], "continue": []}
         frame.jumps.append((depth, table))
@@ -74,8 +77,8 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         frame.jumps.pop()
         ctx.store.cut(depth)
         again = joins.joined(ctx, [head, *backs]) if backs else head
-        if again == head:
-            break
+        if again == head and waited == ctx.store.waited:
+            break  # after the first wait, one more pass reads what other entry points have stored
         if ctx.work.charged > MAX_STATEMENTS:
             ctx.cut[ctx.program] = None
             ctx.store.reads.whole = False
@@ -152,7 +155,7 @@ def _loop_head(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame) -> tup
     frame.statement = s
     if ctx.watch is not None:
         ctx.watch(frame, s)
-    if frame.root_waits and s.target is None:
+    if frame.root_waits and (s.target is None or unpacking.blocks(ctx, source)):
         ctx.ops.wait(ctx, frame)
     if s.target is None:
         way = decide(ctx, s.source, s, frame)
@@ -190,12 +193,30 @@ def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
         value = expressions.evaluate(ctx, context, frame)
         managers.append(value)
         frame.statement = s
-        entered = dunder_methods.special(ctx, value, "__enter__", (), frame, s.pos)
-        value = value if entered is None else entered
+        entered = _special_of_manager(ctx, value, ENTERING, (), frame, s)
+        value = _entered_generator(ctx, value) if entered is None else entered
         if target is not None:
             ctx.ops.bind_target(ctx, target, value, frame, f"with{number}", context)
     goes_on = ctx.ops.block(ctx, s.body, frame)
     frame.statement = s
-    for manager in reversed(managers if goes_on else ()):
-        dunder_methods.special(ctx, manager, "__exit__", [UNKNOWN] * 3, frame, s.pos)
+    for manager in reversed(managers):  # also if a `return` leaves the body
+        _special_of_manager(ctx, manager, LEAVING, [UNKNOWN] * 3, frame, s)
     return goes_on
+
+
+def _entered_generator(ctx: Interpreter, manager: Value) -> Value:
+    """Return what a generator decorated with `contextmanager` yields; other managers return themselves."""
+    if manager.pts and all(o.kind == "sequence" and o.name == heap.GENERATOR for o in manager.pts):
+        return heap.elements(ctx, manager)
+    return manager
+
+
+def _special_of_manager(
+    ctx: Interpreter, manager: Value, names: Sequence[str], given: Sequence[Value], frame: Frame, s: ir.With
+) -> Value | None:
+    """Call a method of a context manager, which may be an asynchronous one; None if its class has none."""
+    for name in names:
+        said = dunder_methods.special(ctx, manager, name, given, frame, s.pos)
+        if said is not None:
+            return said
+    return None

@@ -9,6 +9,7 @@ docs/analysis.md.
 from __future__ import annotations
 
 MAX_CALLS = 24  # maximum depth of the call stack; deeper calls are treated as library calls
+MAX_DELEGATIONS = 6  # maximum number of calls of one method, each for another object, on the call stack
 READS_PER_STATEMENT = 20  # number of object reads or added edges that count as one statement of work
 VALUES_PER_STATEMENT = 40  # number of values shared at a wait that count as one statement of work
 # number of values looked up, compared or copied in bulk that take as long as one statement (measured); they count

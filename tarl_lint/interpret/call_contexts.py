@@ -99,6 +99,7 @@ def _invoke(
         run.noted = True
     if frame.function.generator:
         collected = recency.allocate(ctx, "sequence", caller, ("generator", call.slot))
+        collected.name = heap.GENERATOR
         updates.add_element(ctx, pointer(collected), frame.yielded)
         return pointer(collected)
     return result

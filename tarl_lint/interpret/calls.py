@@ -198,7 +198,7 @@ def call_object(
     if kind == "ext":
         return ctx.ops.call_library(ctx, target.name, arguments, frame, call)
     if kind == "partial" and isinstance(target.info, tuple):
-        function, plain, named = target.info
+        function, plain, named = target.info[:3]
         return call_value(ctx, function, ([*plain, *arguments[0]], {**named, **arguments[1]}), frame, call)
     if kind == "method" and isinstance(target.info, tuple):
         owner, name = target.info

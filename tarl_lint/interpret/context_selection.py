@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Hashable
 
 from tarl_lint.interpret import shared_contexts
-from tarl_lint.interpret.budget import MAX_CALLS, MAX_FRAMES, SEPARATE_CALLS, SEPARATE_STATEMENTS
+from tarl_lint.interpret.budget import (
+    MAX_CALLS,
+    MAX_DELEGATIONS,
+    MAX_FRAMES,
+    SEPARATE_CALLS,
+    SEPARATE_STATEMENTS,
+)
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
@@ -21,12 +27,12 @@ def make_frame(
         return None
     function = closure.info[0]
     runs = ctx.work.activations.get(function, 0) + 1
-    if len(ctx.stack) > MAX_CALLS or [f.function for f in ctx.stack].count(function) > 1:
+    receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
+    if len(ctx.stack) > MAX_CALLS or _recurs(ctx, function, closure, receiver):
         return None
     if ctx.work.charged > ctx.work.limit:
         _cut(ctx)
         return None
-    receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
     statement = caller.statement.id if caller.statement is not None else -1
     own = (caller.id, statement, call.slot, closure.key, receiver, *caller.turn)
     if (
@@ -53,6 +59,18 @@ def make_frame(
             else ctx.branches(caller, caller.statement) | frozenset(ctx.guards)
         )
     return None if shares and frame in ctx.stack else frame
+
+
+def _recurs(ctx: Interpreter, function: ir.Function, closure: Obj, receiver: frozenset[Obj] | None) -> bool:
+    """Return whether a call is too deep a recursion.
+
+    A function that runs for another object, such as for a part of a composite, or that is another closure of the same
+    code does not call itself.
+    """
+    running = [f.key for f in ctx.stack if f.function is function]
+    if len(running) <= 1 or len(running) > MAX_DELEGATIONS:
+        return len(running) > 1
+    return sum(isinstance(key, tuple) and key[3:5] == (closure.key, receiver) for key in running) > 1
 
 
 def _new_frame(

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tarl_lint import catalog
-from tarl_lint.interpret import calls, expressions
+from tarl_lint.interpret import calls, descriptors, expressions
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import control_dependence
 from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import ClassInfo, Obj, Value, lineage, pointer
+from tarl_lint.memory.values import ClassInfo, Obj, Value, function_of, join, lineage, pointer
 from tarl_lint.models.ros import subscriptions
 from tarl_lint.models.smach import LATER
 from tarl_lint.read.module_names import KNOWN
@@ -29,8 +29,28 @@ def define(ctx: Interpreter, s: ir.Define, frame: Frame) -> bool:
             ctx.nullness.setters.add(s.target.name)
             ctx.store.put((expressions.holder(s.target, frame), f"{s.target.name}.setter"), value)
             return True
-    ctx.ops.assign(ctx, s.target, decorated(ctx, value, s.function.decorators, s, frame), frame)
+    if frame.owner_class() is not None:
+        descriptors.note(ctx, s.function.name)
+    made = decorated(ctx, value, s.function.decorators, s, frame)
+    ctx.ops.assign(ctx, s.target, made, frame)
+    for decorator in s.function.decorators:
+        _add_implementation(ctx, decorator, made, frame)
     return True
+
+
+def _add_implementation(ctx: Interpreter, decorator: ir.Expr, made: Value, frame: Frame) -> None:
+    """Add the implementation that `@function.register` gives a function with `singledispatch`; any of them may run."""
+    maker = decorator.function if isinstance(decorator, ir.Call) else decorator
+    if not isinstance(maker, ir.Attribute) or maker.name != "register":
+        return
+    general = expressions.evaluate(ctx, maker.base, frame)
+    functions = [f for o in general.pts if (f := function_of(o)) is not None]
+    if any(_last_name(d).startswith("singledispatch") for f in functions for d in f.decorators):
+        ctx.ops.assign(ctx, maker.base, join(general, made), frame)
+
+
+def _last_name(expr: ir.Expr) -> str:
+    return expr.name if isinstance(expr, (ir.Name, ir.Attribute)) else ""
 
 
 def decorated(
@@ -113,6 +133,7 @@ def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
     body.depth_of_layers = frame.depth_of_layers
     ctx.ops.block(ctx, statement.body, body)
     frame.statement = statement
+    descriptors.name_all(ctx, cls, frame, statement.pos)
     _subclassed(ctx, cls, statement, frame)
     made = decorated(ctx, pointer(cls), statement.decorators, statement, frame)
     ctx.ops.assign(ctx, statement.target, made if made.pts else pointer(cls), frame)

@@ -8,7 +8,7 @@ from tarl_lint import catalog
 from tarl_lint.interpret import calls
 from tarl_lint.interpret.call_contexts import ROOT_CALL
 from tarl_lint.interpret.interpreter import Interpreter
-from tarl_lint.interpret.node_starts import STARTING, definitions, registers, starts, starts_node
+from tarl_lint.interpret.node_starts import STARTING, definitions, registers, starts_node
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency, userdata
 from tarl_lint.memory.shared import Root
@@ -118,7 +118,7 @@ def start_hooks(ctx: Interpreter) -> None:
 def _framework_methods(ctx: Interpreter, obj: Obj, owner: Obj, info: ClassInfo) -> None:
     cls = obj.info.info if isinstance(obj.info, Obj) else None
     external = _external(cls) if isinstance(cls, ClassInfo) else set()
-    unknown = external - catalog.NODE_BASES or _called_by_others(ctx, obj, info)
+    unknown = external - catalog.NODE_BASES or _called_by_others(ctx, obj)
     for statement in definitions(info.statement.body) if info.statement is not None else ():
         if not isinstance(statement, ir.Define):
             continue
@@ -133,9 +133,9 @@ def _framework_methods(ctx: Interpreter, obj: Obj, owner: Obj, info: ClassInfo) 
                 _start_method(ctx, closure, obj, owner, [userdata.userdata(ctx, obj)] if state else [])
 
 
-def _called_by_others(ctx: Interpreter, obj: Obj, info: ClassInfo) -> bool:
-    """Return whether outside code calls an object's methods: its class is a plugin, or registers no callback."""
-    return obj.info in ctx.plugins or (obj.info in ctx.guests and not _registers_itself(info))
+def _called_by_others(ctx: Interpreter, obj: Obj) -> bool:
+    """Return whether outside code calls an object's methods, since no file makes objects of its class."""
+    return obj.info in ctx.plugins or obj.info in ctx.guests
 
 
 def _start_method(ctx: Interpreter, closure: Obj, obj: Obj, owner: Obj, given: list[Value]) -> None:
@@ -143,14 +143,6 @@ def _start_method(ctx: Interpreter, closure: Obj, obj: Obj, owner: Obj, given: l
     method.info = (closure, obj, owner)
     program = closure.info[2].path if isinstance(closure.info, tuple) else ""
     subscriptions.call_when(ctx, "framework", method, given, "callback", program=program)
-
-
-def _registers_itself(info: ClassInfo) -> bool:
-    """Return whether `__init__` registers the callbacks; otherwise, outside code calls a method to register them."""
-    body = definitions(info.statement.body) if info.statement is not None else ()
-    return any(
-        isinstance(s, ir.Define) and s.function.name == "__init__" and starts(s.function) for s in body
-    )
 
 
 def _external(info: ClassInfo) -> set[str]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from tarl_lint.catalog import fact
-from tarl_lint.interpret import dunder_methods, literals, operators
+from tarl_lint.interpret import descriptors, dunder_methods, literals, operators
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency
@@ -17,12 +17,14 @@ from tarl_lint.memory.values import (
     BOTTOM,
     NONE,
     UNKNOWN,
+    ClassInfo,
     Obj,
     Value,
     const,
     function_of,
     join,
     join_all,
+    lineage,
     pointer,
 )
 from tarl_lint.models import environment, sizes
@@ -100,6 +102,8 @@ def _attribute(ctx: Interpreter, expr: ir.Attribute, frame: Frame) -> Value:
             if len(value.pts) == 1:
                 return ctx.ops.call_object(ctx, obj, ([], {}), frame, call, base.deps)
             return ctx.ops.call_value(ctx, value, ([], {}), frame, call, base.deps)
+    if (told := descriptors.read(ctx, base, value, expr.name, frame, expr.pos)) is not None:
+        return told
     if value.consts == BOTTOM.consts and not value.pts:
         said = dunder_methods.special(ctx, base, "__getattr__", [const(expr.name)], frame, expr.pos)
         return value if said is None else said
@@ -153,7 +157,8 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
     result = Value(extra, consts=frozenset())
     for obj in base.objects:
         if obj.kind == "class":
-            result = join(result, heap.arrive(ctx, member(ctx, obj, index), base.deps))
+            found = member(ctx, obj, index) if enumerates(obj) else pointer(obj)
+            result = join(result, heap.arrive(ctx, found, base.deps))
         elif not index.pts and (keys := index.keys()):
             for key in keys:
                 result = join(result, heap.arrive(ctx, element(ctx, obj, key), base.deps))
@@ -163,6 +168,13 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
                 found = ctx.ops.missing(ctx, obj, ANY)
             result = join(result, heap.arrive(ctx, found, base.deps))
     return Value(result.deps | extra, result.pts, result.consts)
+
+
+def enumerates(cls: Obj) -> bool:
+    """Return whether `Class[x]` may be a member of an enumeration; of other classes, it is the class itself."""
+    infos = [owner.info for owner in lineage(cls)]
+    names = {e.rpartition(".")[2] for i in infos if isinstance(i, ClassInfo) for e in i.external}
+    return any(name.endswith(("Enum", "Flag")) for name in names)
 
 
 def member(ctx: Interpreter, cls: Obj, name: Value) -> Value:

@@ -18,7 +18,8 @@ class NullnessFacts:
         default_factory=set
     )  # variables and fields that are None before the first message
     optional: set[Key] = field(default_factory=set)  # variables and fields that may be None because of data
-    setters: set[str] = field(default_factory=set)  # names of properties with a setter
+    # names of properties with a setter, and names of the methods of descriptors that classes define
+    setters: set[str] = field(default_factory=set)
     doubtful: set[ir.Call] = field(default_factory=set)  # calls whose result may be None because of data
     came: dict[Key, set[int]] = field(
         default_factory=dict

@@ -9,6 +9,7 @@ from tarl_lint.interpret import (
     branches,
     calls,
     definitions,
+    descriptors,
     dunder_methods,
     exceptions,
     expressions,
@@ -139,8 +140,8 @@ def _assign_item(ctx: Interpreter, target: ir.Item, value: Value, frame: Frame) 
 
 
 def set_property(ctx: Interpreter, base: Value, target: ir.Attribute, value: Value, frame: Frame) -> bool:
-    """Call the setter if the attribute is a property."""
-    done = False
+    """Call the setter if the attribute is a property, or the `__set__` of a descriptor."""
+    done = descriptors.write(ctx, base, target.name, value, frame, target.pos)
     ctx.store.reads.ask(ctx.nullness.setters.__contains__, target.name)
     if target.name not in ctx.nullness.setters:
         return done

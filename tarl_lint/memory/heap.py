@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ast import literal_eval
+
 from tarl_lint.catalog import ENDPOINT_METHODS, MEASURES, METHODS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
@@ -10,6 +12,7 @@ from tarl_lint.memory.userdata import VIEW
 from tarl_lint.memory.values import (
     BOTTOM,
     BY_CLASS,
+    MAX_TEXTS,
     NONE,
     UNKNOWN,
     ClassInfo,
@@ -26,6 +29,7 @@ KEYS = "<keys>"  # field of a mapping: dependencies of its keys
 LENGTH = "<length>"  # field of a container: dependencies of its length
 HELD = "<callables>"  # field of a library object: callables that were passed to it
 SENT = "<sent>"  # field of a port, file or socket: data written to it
+GENERATOR = "generator"  # name of a sequence that represents a generator
 METHODS_OF = {
     "publisher": frozenset(["publish"]),
     "sequence": frozenset(
@@ -156,10 +160,13 @@ def replaced_attributes(ctx: Interpreter, obj: Obj) -> frozenset[Obj]:
 
 def bind(ctx: Interpreter, value: Value, receiver: Obj, owner: Obj) -> Value:
     """Return a value with its functions bound to a receiver."""
-    if not any(o.kind == "closure" for o in value.pts):
+    if not any(o.kind in ("closure", "partial") for o in value.pts):
         return value
     bound = []
     for target in value.objects:
+        if target.kind == "partial":
+            bound.append(_bound_partial(ctx, target, receiver, owner))
+            continue
         way = _binding(target)
         if way == "staticmethod":
             bound.append(target)
@@ -167,6 +174,16 @@ def bind(ctx: Interpreter, value: Value, receiver: Obj, owner: Obj) -> Value:
         to = receiver.info if way == "classmethod" and isinstance(receiver.info, Obj) else receiver
         bound.append(method(ctx, target, to, owner))
     return Value(value.deps, frozenset(bound), value.consts)
+
+
+def _bound_partial(ctx: Interpreter, target: Obj, receiver: Obj, owner: Obj) -> Obj:
+    """Return a `partialmethod` bound to a receiver; a plain `partial` in a class is not bound."""
+    if not isinstance(target.info, tuple) or not target.info[3:]:
+        return target
+    function, plain, named, _ = target.info
+    bound = recency.intern(ctx, "partial", ("bound", target.key, receiver), target.name)
+    bound.describe((bind(ctx, function, receiver, owner), plain, named))
+    return bound
 
 
 def bind_class(ctx: Interpreter, value: Value, cls: Obj) -> Value:
@@ -278,7 +295,20 @@ def elements(ctx: Interpreter, value: Value) -> Value:
 def keys(ctx: Interpreter, mapping: Obj, carriers: Nodes) -> Value:
     """Return the keys of a mapping; constant keys depend on no data."""
     stored = ctx.store.get((mapping, KEYS))
-    return UNKNOWN if stored is None else join(arrive(ctx, stored, carriers), UNKNOWN)
+    if stored is not None:
+        return join(arrive(ctx, stored, carriers), UNKNOWN)
+    return _texts(ctx, mapping) if content(ctx, mapping) is BOTTOM else UNKNOWN
+
+
+def _texts(ctx: Interpreter, mapping: Obj) -> Value:
+    """Return the keys of a mapping if all of them are known texts, such as the topics in a table."""
+    ctx.store.look(mapping)
+    names = [n for n in list(mapping.fields) if n.startswith("[")]
+    ctx.graph.asked += len(names)
+    held = [n for n in names if ctx.store.get((mapping, n)) is not None]
+    if not 0 < len(held) <= MAX_TEXTS or not all(n.startswith(("['", '["')) for n in held):
+        return UNKNOWN
+    return Value(consts=frozenset(literal_eval(n[1:-1]) for n in held))
 
 
 def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:

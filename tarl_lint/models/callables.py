@@ -12,10 +12,10 @@ from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, joins
+from tarl_lint.memory import heap, joins, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import HELD
-from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, in_order, join
+from tarl_lint.memory.values import BOTTOM, NONE, ClassInfo, Nodes, Obj, Value, in_order, join
 from tarl_lint.models import containers
 from tarl_lint.models.smach import LATER
 from tarl_lint.trees import walk
@@ -24,6 +24,7 @@ from tarl_lint.trees import walk
 MAX_INSIDE: Final = 3
 # number of slots for the callables of one call; they differ from the slots of the calls in the code
 KEPT_APART: Final = 500
+SERVER: Final = "server"  # attribute of a handler in which libraries store what made it
 
 
 def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
@@ -41,6 +42,21 @@ def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Cal
             if target.kind in LATER:
                 opaque = _opaque(ctx, arguments, BOTTOM)
                 ctx.ops.call_later(ctx, target, _wanted(ctx, target, opaque)[0] if opaque.deps else ())
+
+
+def make_instances(
+    ctx: Interpreter, arguments: Arguments, server: Value, frame: Frame, call: ir.Call
+) -> None:
+    """Let an object of a library make instances of the analysed classes passed to it, as servers make handlers.
+
+    The library calls their methods. The base classes of handlers store the object in the attribute `server`.
+    """
+    for value in (*arguments[0], *arguments[1].values()):
+        for cls in value.objects:
+            if cls.kind == "class" and isinstance(cls.info, ClassInfo) and cls.info.opaque:
+                inner = replace(call, arguments=(), keywords=(), slot=-1000 * (abs(call.slot) + 1))
+                made = calls.call_object(ctx, cls, ([], {}), frame, inner)
+                updates.write_field(ctx, made, SERVER, server)
 
 
 def answering(ctx: Interpreter, arguments: Arguments) -> list[Obj]:

@@ -350,6 +350,15 @@ def new_queue(ctx: Interpreter, it: Invocation) -> Value:
     return pointer(recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot)))
 
 
+def new_pipe(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the two ends of a pipe between processes. One object represents both: what is sent comes out again."""
+    end = new_queue(ctx, it)
+    obj = recency.allocate(ctx, "sequence", it.frame, ("ends", it.call.slot))
+    for number in range(2):
+        ctx.store.put((obj, item_field(number)), end)
+    return pointer(obj)
+
+
 def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
     """Return one of the arguments' elements, possibly chosen by data."""
     plain = it.arguments[0]

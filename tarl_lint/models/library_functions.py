@@ -132,6 +132,7 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
     made = new_object(ctx, arguments, deps, frame, call, fields=_has_fields(qualified))
     callables.hold(ctx, made.pts, held)
     if name[:1].isupper():
+        callables.make_instances(ctx, arguments, made, frame, call)
         senders.note(ctx, qualified, made, arguments, frame, call)
     _name_class(ctx, qualified, made, arguments)
     return made
@@ -199,6 +200,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(CONTAINERS, containers.new_container),
     **dict.fromkeys(QUEUES, containers.new_queue),
     "eval": reflection.evaluated,
+    "multiprocessing.Pipe": containers.new_pipe,
     "dict": records.new_mapping,
     "OrderedDict": records.new_mapping,
     "defaultdict": records.new_mapping,
@@ -212,6 +214,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(("dataclasses.astuple", "attr.astuple", "attrs.astuple"), records.as_sequence),
     **dict.fromkeys(("attr.evolve", "attrs.evolve"), records.replaced_record),
     "object.__new__": objects.blank_object,
+    "object.__setattr__": reflection.set_attribute,
     **dict.fromkeys(("weakref.ref", "weakref.WeakMethod"), objects.weak_reference),
     **dict.fromkeys(("weakref.proxy", "vars", "typing.cast"), objects.same),
     "type": objects.type_of,
@@ -241,6 +244,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "getattr": reflection.get_attribute,
     **dict.fromkeys(("operator.attrgetter", "operator.itemgetter"), reflection.getter),
     **dict.fromkeys(("operator.attrgetter.<made>", "operator.itemgetter.<made>"), reflection.get_named),
+    "functools.partialmethod": reflection.partial_method,
     "setattr": reflection.set_attribute,
     "super": objects.parent,
 }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tarl_lint import catalog
 from tarl_lint.interpret import call_contexts
 from tarl_lint.interpret.interpreter import Interpreter
@@ -28,6 +30,7 @@ from tarl_lint.models import (
     fixed_numbers,
     objects,
     qt_signals,
+    reflection,
     strings,
 )
 from tarl_lint.models.containers import is_device
@@ -37,6 +40,7 @@ from tarl_lint.models.ros import senders
 from tarl_lint.models.smach import LATER
 from tarl_lint.models.strings import TEXT_METHODS
 
+OF_BASE = frozenset(["__new__", "__init__", "__setattr__"])  # methods of base classes that are not analysed
 SIGNALLING = frozenset(["connect", "emit"])
 
 
@@ -74,7 +78,7 @@ def _call_method(
     kind = target.kind if target is not None else ""
     if target is not None and kind == "lib" and f"{target.name}.{name}" in ctx.config.named:
         return ctx.ops.call_library(ctx, f"{target.name}.{name}", arguments, frame, call)
-    if target is not None and kind in ("super", "class") and name in ("__new__", "__init__"):
+    if target is not None and kind in ("super", "class") and name in OF_BASE:
         return _built_by_base(ctx, target, Invocation(name, base, arguments, frame, call))
     if target is not None and name == "publish" and (sender := senders.sender(ctx, target)) is not None:
         return ctx.ops.send(ctx, Invocation(name, base, arguments, frame, call), sender)
@@ -187,11 +191,18 @@ def _given(
 
 
 def _built_by_base(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
-    """Call `__new__` or `__init__` of a base class that is not analysed."""
+    """Call `__new__`, `__init__` or `__setattr__` of a base class that is not analysed."""
     if it.name == "__new__":
         return objects.blank_object(ctx, it)
+    if it.name == "__setattr__" and isinstance(target.info, tuple):
+        plain, named = it.arguments
+        given = [Value(it.base.deps, frozenset([target.info[1]])), *plain]
+        return reflection.set_attribute(ctx, replace(it, arguments=(given, named)))
     if isinstance(target.info, tuple):
         senders.inherit(ctx, target.info[1], it.arguments, it.frame, it.call)
+        callables.make_instances(
+            ctx, it.arguments, Value(it.base.deps, frozenset([target.info[1]])), it.frame, it.call
+        )
     return _unknown_method(ctx, it.base, it.name, it.arguments, it.frame, it.call)
 
 

@@ -52,6 +52,16 @@ def getter(ctx: Interpreter, it: Invocation) -> Value:
     return pointer(obj)
 
 
+def partial_method(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a `functools.partialmethod`: a partial that a look-up through an instance binds to the instance."""
+    plain, named = it.arguments
+    if not plain:
+        return UNKNOWN
+    obj = recency.intern(ctx, "partial", (it.frame.id, it.statement, it.call.slot, *it.frame.turn), it.name)
+    obj.describe((plain[0], plain[1:], named, "method"))
+    return pointer(obj)
+
+
 def get_named(ctx: Interpreter, it: Invocation) -> Value:
     """Return the result of a function made by `attrgetter` or `itemgetter`; a tuple for several names."""
     *keys, given = it.arguments[0] or [UNKNOWN]

@@ -15,6 +15,7 @@ from tarl_lint.models import library_functions, sizes
 
 ITERATED = -2  # slot of the calls of `__iter__` and `__next__` made by a loop
 NEXT = -3
+NEXT_METHODS = ("__next__", "__anext__")
 
 
 ITERATING = frozenset(
@@ -82,7 +83,9 @@ def iterated(ctx: Interpreter, source: Value, expr: ir.Expr, frame: Frame) -> Va
     for obj, method in sorted(ours.items(), key=lambda item: str(item[0].key)):
         made = calls.call_value(ctx, method, ([], {}), frame, ir.Call(expr, (), (), expr.pos, ITERATED))
         for iterator in sorted(made.pts, key=lambda o: str(o.key)):
-            following = _method(ctx, iterator, "__next__") if iterator.kind == "instance" else BOTTOM
+            following = BOTTOM
+            for name in NEXT_METHODS if iterator.kind == "instance" else ():
+                following = join(following, _method(ctx, iterator, name))
             if following is BOTTOM:
                 result = join(result, heap.elements(ctx, Value(made.deps, frozenset([iterator]))))
             else:
@@ -93,8 +96,13 @@ def iterated(ctx: Interpreter, source: Value, expr: ir.Expr, frame: Frame) -> Va
     return result
 
 
+def blocks(ctx: Interpreter, source: Value) -> bool:
+    """Return whether iteration may wait for the next element, since an analysed object yields it."""
+    return any(o.kind == "instance" and _iterator(ctx, o) is not BOTTOM for o in source.pts)
+
+
 def _iterator(ctx: Interpreter, obj: Obj) -> Value:
-    return _method(ctx, obj, "__iter__")
+    return join(_method(ctx, obj, "__iter__"), _method(ctx, obj, "__aiter__"))
 
 
 def _method(ctx: Interpreter, obj: Obj, name: str) -> Value:

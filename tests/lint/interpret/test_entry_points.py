@@ -71,7 +71,9 @@ rospy.Subscriber("in", Float64, on)
                     out.publish(msg.data)  # data
                 def on_activate(self, state):
                     out.publish(last)  # data
-                def unused(self):
+                def command(self):
+                    out.publish(last)  # data
+                def _unused(self):
                     out.publish(last)  # clean
             """,
             id="a node that nothing makes",

@@ -268,6 +268,8 @@ def test_iteration_yields_elements_of_a_sequence_and_keys_of_a_mapping(ctx):
     ctx.store.put((mapping, "['k']"), TWO)
     assert heap.elements(ctx, pointer(listed)).deps == {1}
     assert heap.elements(ctx, pointer(mapping)).deps == frozenset()
+    assert heap.keys(ctx, mapping, frozenset()).texts() == ("k",)
+    ctx.store.put((mapping, "[1]"), TWO)
     assert heap.keys(ctx, mapping, frozenset()) is UNKNOWN
     ctx.store.put((mapping, KEYS), ONE)
     assert heap.elements(ctx, pointer(mapping)).deps == {1}

@@ -382,6 +382,31 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(kept.far)  # clean
         out.publish(other.unset)  # data
     """,
+    ("object.__setattr__",): """
+        class Plain: near, far = 0.0, 0.0
+        kept = Plain()
+        NAME(kept, "near", msg.data)
+        out.publish(kept.near)  # data
+        out.publish(kept.far)  # clean
+    """,
+    ("functools.partialmethod",): """
+        class Plain:
+            def put(self, place, value): setattr(self, place, value)
+            near, far = 0.0, 0.0
+            put_near = NAME(put, "near")
+        kept = Plain()
+        kept.put_near(msg.data)
+        out.publish(kept.near)  # data
+        out.publish(kept.far)  # clean
+    """,
+    ("multiprocessing.Pipe",): """
+        near, far = NAME()
+        other, _ = NAME()
+        near.send(msg.data)
+        other.send(0.0)
+        out.publish(far.recv())  # data
+        out.publish(other.recv())  # clean
+    """,
     ("super",): """
         class Base:
             def near(self): return msg.data

@@ -1,0 +1,74 @@
+"""Descriptors: objects in a class whose `__get__` and `__set__` replace the access to an attribute."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tarl_lint.interpret import dunder_methods
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import BOTTOM, Obj, Value, const, join, lineage, pointer
+
+METHODS: Final = frozenset(["__get__", "__set__", "__set_name__", "__setattr__"])
+
+
+def note(ctx: Interpreter, name: str) -> None:
+    """Note that a class defines a method; only then are its attributes searched for descriptors."""
+    if name in METHODS:
+        ctx.nullness.setters.add(name)
+
+
+def read(ctx: Interpreter, base: Value, value: Value, name: str, frame: Frame, pos: ir.Pos) -> Value | None:
+    """Return an attribute's value, from the descriptors of the classes; None if no class has a descriptor for it.
+
+    `value` is the attribute without descriptors.
+    """
+    found = None
+    for obj in base.objects if _used(ctx, "__get__") else ():
+        if ctx.store.get((obj, name)) is None:
+            for descriptor in _descriptors(ctx, obj, name):
+                given = [pointer(obj), pointer(obj.info)] if isinstance(obj.info, Obj) else []
+                said = dunder_methods.special(ctx, pointer(descriptor), "__get__", given, frame, pos)
+                if said is not None:
+                    value = Value(value.deps, value.pts - {descriptor}, value.consts)
+                    found = join(found or BOTTOM, said)
+    return None if found is None else join(found, value) if value.pts else found
+
+
+def write(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, pos: ir.Pos) -> bool:
+    """Pass a stored value to `__setattr__` or to the descriptors of the classes; return whether there are any."""
+    done = False
+    if _used(ctx, "__setattr__"):
+        given = [const(name), value]
+        done = dunder_methods.special(ctx, base, "__setattr__", given, frame, pos) is not None
+    for obj in base.objects if _used(ctx, "__set__") else ():
+        for descriptor in _descriptors(ctx, obj, name):
+            given = [pointer(obj), value]
+            done |= dunder_methods.special(ctx, pointer(descriptor), "__set__", given, frame, pos) is not None
+    return done
+
+
+def name_all(ctx: Interpreter, cls: Obj, frame: Frame, pos: ir.Pos) -> None:
+    """Call `__set_name__` of the descriptors in a new class."""
+    ctx.store.reads.look(cls)
+    for name in list(cls.fields) if _used(ctx, "__set_name__") else ():
+        held = ctx.store.get((cls, name))
+        for descriptor in held.objects if held is not None else ():
+            if descriptor.kind == "instance":
+                given = [pointer(cls), const(name)]
+                dunder_methods.special(ctx, pointer(descriptor), "__set_name__", given, frame, pos)
+
+
+def _used(ctx: Interpreter, name: str) -> bool:
+    ctx.store.reads.ask(ctx.nullness.setters.__contains__, name)
+    return name in ctx.nullness.setters
+
+
+def _descriptors(ctx: Interpreter, obj: Obj, name: str) -> list[Obj]:
+    """Return the objects that an instance's class holds under a name."""
+    for owner in lineage(obj.info) if obj.kind == "instance" and isinstance(obj.info, Obj) else ():
+        held = ctx.store.get((owner, name))
+        if held is not None:
+            return [o for o in held.objects if o.kind == "instance"]
+    return []
