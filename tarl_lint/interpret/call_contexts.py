@@ -9,7 +9,7 @@ from tarl_lint.interpret.budget import IRRELEVANT_CALL_LIMIT, IRRELEVANT_CALLS_L
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, instances, joins, recency, updates
+from tarl_lint.memory import generations, heap, instances, joins, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
@@ -277,8 +277,13 @@ def instantiate(ctx: Interpreter, cls: Obj, arguments: Arguments, frame: Frame, 
 def blank_instance(ctx: Interpreter, cls: Obj, frame: Frame, call: ir.Call) -> Obj:
     """Return a new instance without fields, like `object.__new__`."""
     statement = frame.statement.id if frame.statement is not None else -1
+    site = generations.site_of(cls, frame, call)
+    former = generations.last_of_line(ctx, site, frame)
+    if former is not None:
+        return former
     obj = recency.intern(ctx, "instance", (frame.id, statement, call.slot, cls.key, *frame.turn), cls.name)
     obj.info = cls
+    generations.note(ctx, obj, site, frame)
     recency.renew(ctx, obj, frame)
     if ctx.looked_up:
         instances.note(ctx, obj, cls)

@@ -84,6 +84,8 @@ class Interpreter:
         self.sources: dict[Hashable, SourceRecord] = {}  # by path and position, for a launch also by context
         self.sinks: dict[Hashable, SinkRecord] = {}
         self.called: set[tuple[str, int]] = set()  # called functions: module, line
+        # for each instance made by methods: allocation sites and objects, from the first maker to the instance itself
+        self.chains: dict[Obj, tuple[tuple[Hashable, Obj], ...]] = {}
         self.made: set[Hashable] = set()  # keys of instantiated classes
         self.guests: set[object] = set()  # classes that only code outside of the analysed files instantiates
         self.plugins: set[object] = set()  # classes that a package declares as plugins

@@ -50,7 +50,7 @@ def renew(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
             _age(ctx, obj, frame)
     elif obj.kind in AGING and ctx.store.get((obj, BORN)) is not None:
         if obj in ctx.given:
-            _one_of_many(ctx, obj)
+            one_of_many(ctx, obj)
             return
         _age(ctx, obj, frame)
     if single(ctx, obj):
@@ -71,8 +71,8 @@ def single(ctx: Interpreter, obj: Obj) -> bool:
     return True
 
 
-def _one_of_many(ctx: Interpreter, obj: Obj) -> None:
-    """Let an object stand for all objects of its allocation site, since callbacks refer to it."""
+def one_of_many(ctx: Interpreter, obj: Obj) -> None:
+    """Let an object stand for several objects, such as all of its allocation site if callbacks refer to it."""
     if not obj.many:
         obj.many = True
         ctx.shared.several.add(obj)
@@ -95,6 +95,8 @@ def _age(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
         older = ctx.objects[obj.kind, (obj.key, "older")] = Obj(obj.kind, (obj.key, "older"))
         older.many = True
         older.name = obj.name
+        if obj in ctx.chains:
+            ctx.chains[older] = (*ctx.chains[obj], ctx.chains[obj][-1])  # counts twice: it represents several
     older.describe(obj.info)
     copy_fields(ctx, obj, older)
     ctx.graph.asked += len(obj.holders)

@@ -1,0 +1,57 @@
+"""Chains of instances, each made by a method of the one before, as in `position = position + step`.
+
+A method has a context for each receiver, and each context makes objects of its own. Without a limit, a callback that
+replaces an object by one that the object's method makes would make new abstract objects for ever.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from typing import Final
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import recency
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import Obj, in_order
+
+MAX_ALIKE: Final = (
+    3  # maximum number of objects of one site in a chain; the last one represents all further ones
+)
+
+# an object's allocation site and the object, from the oldest maker to the object itself
+Chain = tuple[tuple[Hashable, Obj], ...]
+
+
+def last_of_line(ctx: Interpreter, site: Hashable, frame: Frame) -> Obj | None:
+    """Return the object that represents what a site makes now, if the chain of makers is too long; else None."""
+    alike = [obj for known, obj in _makers(ctx, frame) if known == site]
+    if len(alike) < MAX_ALIKE:
+        return None
+    recency.one_of_many(ctx, alike[-1])
+    return alike[-1]
+
+
+def note(ctx: Interpreter, obj: Obj, site: Hashable, frame: Frame) -> None:
+    """Record which objects' methods made an instance."""
+    if obj not in ctx.chains:
+        ctx.chains[obj] = (*_makers(ctx, frame), (site, obj))
+
+
+def site_of(cls: Obj, frame: Frame, call: ir.Call) -> Hashable:
+    """Return the place in the code at which instances are made, without its call context."""
+    return frame.function, frame.statement, call.slot, cls.key
+
+
+def _makers(ctx: Interpreter, frame: Frame) -> Chain:
+    """Return the longest chain of the receivers of the methods that are running."""
+    longest: Chain = ()
+    inner: Frame | None = frame
+    while inner is not None:
+        receiver = inner.key[4] if isinstance(inner.key, tuple) and len(inner.key) > 4 else None
+        for obj in in_order(receiver) if isinstance(receiver, frozenset) else ():
+            chain: Chain = ctx.chains.get(obj, ())
+            if len(chain) > len(longest):
+                longest = chain
+        inner = inner.caller
+    return longest
