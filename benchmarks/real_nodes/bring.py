@@ -3,13 +3,14 @@
     python benchmarks/real_nodes/bring.py TARGET --source PLACE
 
 PLACE is where the repositories are: a folder of clones or checkouts named owner/name or owner+name (a checkout may
-lack its `.git`), or the beginning of a URL to clone from, such as https://github.com. Each file must be the blob that
-`nodes.json` names, whatever its source. TARGET/NAME then holds the world's test and, at its path in the repository,
-the node:
+lack its `.git`), or the beginning of a URL to clone from, such as https://github.com. Packages of PyPI are wheels in
+this folder, or come from pip. Each file must be the blob that `nodes.json` names, whatever its source. TARGET/NAME then
+holds the world's test and, at its path in the repository, the node:
 
     cd TARGET/NAME && pytest --tarl-record && pytest --tarl-online --tarl-repair
 
-With `--by-hand`, the nodes contain a repair that a person found, which shows that a repair exists.
+With `--by-hand`, the nodes contain a repair that a person found, which shows that a repair exists. A node with a repair
+for each drift is then written once for each, to TARGET/NAME-DRIFT.
 """
 
 from __future__ import annotations
@@ -21,22 +22,41 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import zipfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 
 
+Edits = Sequence[Sequence[str]]
+PYPI = "pypi"
+
+
 @dataclass(frozen=True)
 class Node:
-    """A file of a repository at a commit; `blob` is the name that git gives to its text."""
+    """A file of a repository at a commit; `blob` is the name that git gives to its text.
+
+    A node of the repository "pypi" is a wheel, and its `commit` is the requirement for pip. `by_hand` holds pairs of a
+    text in the file and the replacement that restores the reward, or for each drift triples of a path, a text in it
+    and the replacement.
+    """
 
     name: str
     repo: str
     commit: str
     path: str
     blob: str
-    by_hand: list[list[str]]  # pairs of a text in the file and the replacement that restores the reward
+    by_hand: Edits | dict[str, Edits]
+    more: Sequence[Sequence[str]] = ()  # pairs of a path and a blob: other files that the node needs
+
+    @property
+    def repairs(self) -> dict[str, Edits]:
+        """Return the edits of each repair, as triples, by the folder that shows them."""
+        if isinstance(self.by_hand, dict):
+            return {f"{self.name}-{drift.replace(' ', '-')}": edits for drift, edits in self.by_hand.items()}
+        return {self.name: [[self.path, old, new] for old, new in self.by_hand]}
 
 
 def nodes() -> list[Node]:
@@ -49,30 +69,52 @@ def blob(text: bytes) -> str:
     return hashlib.sha1(b"blob %d\0" % len(text) + text, usedforsecurity=False).hexdigest()
 
 
-def text_of(node: Node, source: str, scratch: Path) -> bytes:
-    """Return the node's text. Raise SystemExit if the file is missing or differs."""
+def text_of(node: Node, path: str, name: str, source: str, scratch: Path) -> bytes:
+    """Return the text of a node's file, whose blob has this name. Raise SystemExit if it is missing or differs."""
     place = Path(source)
     found = [place / node.repo, place / node.repo.replace("/", "+")] if place.is_dir() else []
-    plain = next((folder / node.path for folder in found if (folder / node.path).is_file()), None)
-    if plain is not None and blob(plain.read_bytes()) == node.blob:
+    plain = next((folder / path for folder in [*found, place] if (folder / path).is_file()), None)
+    if plain is not None and blob(plain.read_bytes()) == name:
         return plain.read_bytes()
+    if node.repo == PYPI:
+        return downloaded(node, name, scratch)
     clone = next((str(folder) for folder in found if folder.is_dir()), "") or cloned(node, source, scratch)
-    show = ["git", "-C", clone, "cat-file", "blob", node.blob]
+    show = ["git", "-C", clone, "cat-file", "blob", name]
     done = subprocess.run(show, capture_output=True, check=False)
-    if done.returncode or blob(done.stdout) != node.blob:
-        raise SystemExit(
-            f"{clone}: no {node.path} of {node.repo} at commit {node.commit}. Give another --source."
-        )
+    if done.returncode or blob(done.stdout) != name:
+        raise SystemExit(f"{clone}: no {path} of {node.repo} at commit {node.commit}. Give another --source.")
     return done.stdout
 
 
-def repaired(node: Node, text: bytes) -> bytes:
-    """Return the text with the repair that was found by hand."""
-    for old, new in node.by_hand:
+def downloaded(node: Node, name: str, scratch: Path) -> bytes:
+    """Return a wheel of PyPI."""
+    command = [sys.executable, "-m", "pip", "download", "-q", "--no-deps", "-d", str(scratch), node.commit]
+    wheel = scratch / node.path
+    if subprocess.run(command, check=False).returncode or blob(wheel.read_bytes()) != name:
+        raise SystemExit(f"{node.commit}: pip did not download {node.path} with the blob {name}.")
+    return wheel.read_bytes()
+
+
+def written(node: Node, source: str, scratch: Path, folder: Path) -> None:
+    """Write the node's files and its world into a folder."""
+    shutil.copytree(HERE / "worlds" / node.name, folder, dirs_exist_ok=True)
+    for path, name in [(node.path, node.blob), *node.more]:
+        text = text_of(node, path, name, source, scratch)
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_bytes(text)
+    if node.repo == PYPI:
+        with zipfile.ZipFile(folder / node.path) as wheel:
+            wheel.extractall(folder)
+        (folder / node.path).unlink()
+
+
+def repaired(folder: Path, edits: Edits) -> None:
+    """Repair a node's files as a person did."""
+    for path, old, new in edits:
+        text = (folder / path).read_bytes()
         if text.count(old.encode()) != 1:
-            raise SystemExit(f"{node.path}: {old!r} must occur once, not {text.count(old.encode())} times.")
-        text = text.replace(old.encode(), new.encode())
-    return text
+            raise SystemExit(f"{path}: {old!r} must occur once, not {text.count(old.encode())} times.")
+        (folder / path).write_bytes(text.replace(old.encode(), new.encode()))
 
 
 def cloned(node: Node, source: str, scratch: Path) -> str:
@@ -95,15 +137,17 @@ def main() -> None:
     parser.add_argument(
         "--by-hand", action="store_true", help="write the nodes with the repair that a person found"
     )
+    parser.add_argument("--only", action="append", metavar="NAME", help="only this node; repeatable")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         for node in nodes():
-            text = text_of(node, arguments.source, Path(scratch))
-            folder = arguments.target / node.name
-            shutil.copytree(HERE / "worlds" / node.name, folder, dirs_exist_ok=True)
-            (folder / node.path).parent.mkdir(parents=True, exist_ok=True)
-            (folder / node.path).write_bytes(repaired(node, text) if arguments.by_hand else text)
-            print(f"{folder / node.path}: {node.repo} at {node.commit[:12]}", file=sys.stderr)
+            if arguments.only and node.name not in arguments.only:
+                continue
+            for name, edits in node.repairs.items() if arguments.by_hand else [(node.name, [])]:
+                folder = arguments.target / name
+                written(node, arguments.source, Path(scratch), folder)
+                repaired(folder, edits)
+                print(f"{folder / node.path}: {node.repo} at {node.commit[:12]}", file=sys.stderr)
 
 
 if __name__ == "__main__":
