@@ -182,7 +182,7 @@ def detectable(totals: Floats) -> list[str]:
 def _refused(settling: Settling, recorded: Recorded) -> str:
     """Return why the recording must not be written; empty if it may be."""
     if settling.failing:
-        return _unfinished(settling.failing, recorded.failures)
+        return _unfinished(settling.failing, recorded.failures, recorded.sample.episodes)
     unjudged = never_judged(recorded.sample.judgements)
     return _unjudged(unjudged[0], recorded.sample) if unjudged else ""
 
@@ -282,12 +282,12 @@ def _plain(value: object) -> object:
     return {k: v.tolist() for k, v in value.items()} if isinstance(value, dict) else value
 
 
-def _unfinished(failing: str, failures: Sequence[str]) -> str:
+def _unfinished(failing: str, failures: Sequence[str], episodes: int) -> str:
     first = f" The first failure: {failures[0].rstrip('.')}." if failures else ""
+    lower = ", or lower min_success on the marker" if len(failures) < episodes else ""
     return (
         f"{failing}, so the software does not yet work as designed, and no recording was written.{first} Fix the "
-        "node, or "
-        "lower min_success on the marker."
+        f"node or the test{lower}."
     )
 
 

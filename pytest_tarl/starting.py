@@ -47,7 +47,7 @@ class Starter:
             raise SettingsError(f"tarl.start: {script!r}: no such file in {self._folder}.")
         values = parameters_of(parameters, self._folder, "tarl.start")
         ros = self._ros()
-        ros.use_definitions_around(path.parent)
+        ros.use_definitions_around(path.parent, self._folder)
         ros.give(values)
         if launch is not False:
             from pytest_tarl.ros.launched import given
@@ -74,7 +74,7 @@ class Starter:
         plan = launch_plan(launch_path(file, self._folder), arguments)
         chosen = plan.chosen(only, replaced)
         ros = self._ros()
-        ros.use_definitions_around(plan.file.parent)
+        ros.use_definitions_around(plan.file.parent, self._folder)
         ros.give(values)
         if ros.scheduler.entering is None:
             ros.scheduler.entering = self._imports.separate().enter

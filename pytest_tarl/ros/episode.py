@@ -115,9 +115,12 @@ class Ros(Network):
         """Add a note for the user on how the nodes were started."""
         self._launch_notes.append(sentence)
 
-    def use_definitions_around(self, folder: Path) -> None:
-        """Load the message, service and action definitions of the workspace that contains `folder`."""
-        workspace.search(folder)
+    def use_definitions_around(self, folder: Path, test: Path) -> None:
+        """Load the message, service and action definitions of the workspace that contains `folder`.
+
+        Without a workspace, load those in the folder of the test or beside it.
+        """
+        workspace.search(folder, test)
 
     def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
         """Run a node's main program until it first waits. Raise NodeError if it raises an exception."""

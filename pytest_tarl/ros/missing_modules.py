@@ -42,10 +42,23 @@ _COMPILED: Final = frozenset(["ompl", "openravepy", "pcl", "trac_ik_python"])
 def module_advice(error: ModuleNotFoundError, line: str = "") -> str:
     """Return one sentence that says how to make a failed import work; `line` is the line of code that imports."""
     root, _, inner = (error.name or "").partition(".")
+    if inner in PARTS:
+        return interface_advice(
+            f"{root}.{inner}"
+        )  # the package has Python modules, but no definitions were found
     if inner or not root:
         return ""  # the package is there, so the name is misspelled
     interface = re.search(rf"\b{re.escape(root)}\.({'|'.join(PARTS)})\b", line)
     return _in_workspace(root) or (_definitions(root, interface[1]) if interface else _elsewhere(root))
+
+
+def interface_advice(module: str) -> str:
+    """Return a sentence if a module, such as `robot.srv`, would hold types that no package defines; else ""."""
+    root, _, part = module.partition(".")
+    known = packages().get(root)
+    if part not in PARTS or (known is not None and any(one.suffix == f".{part}" for one in known.interfaces)):
+        return ""
+    return _definitions(root, part)
 
 
 def _definitions(root: str, part: str) -> str:

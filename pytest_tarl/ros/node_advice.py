@@ -12,7 +12,7 @@ from typing import Final, TypeGuard
 
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.launch_sources import Given, arguments_from, parameter_from
-from pytest_tarl.ros.missing_modules import PYTHON_2, module_advice
+from pytest_tarl.ros.missing_modules import PYTHON_2, interface_advice, module_advice
 from pytest_tarl.ros.standins import STANDINS
 
 _PYTHON_2_SYNTAX = re.compile(
@@ -42,12 +42,10 @@ def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str
     """
     if isinstance(error, SyntaxError):
         return PYTHON_2 if _PYTHON_2_SYNTAX.search(str(error)) or isinstance(error, TabError) else ""
-    if isinstance(error, ModuleNotFoundError):
-        return module_advice(error, _line_of(error))
-    if isinstance(error, ImportError) and error.name is not None and error.name in STANDINS:
-        return _of_name(error.name)
     if isinstance(error, NameError | AttributeError | ImportError) and _PYTHON_2_NAMES.search(str(error)):
         return PYTHON_2
+    if isinstance(error, ImportError):
+        return _of_import(error)
     lacking = _LACKING.search(str(error)) if isinstance(error, AttributeError) else None
     if lacking is not None and lacking[1] in STANDINS:
         return _of_name(lacking[1])
@@ -67,6 +65,17 @@ def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str
             "environment of the tests."
         )
     return ""
+
+
+def _of_import(error: ImportError) -> str:
+    """Return advice for a failed import."""
+    if isinstance(error, ModuleNotFoundError):
+        return module_advice(error, _line_of(error))
+    if error.name is None:
+        return ""
+    if error.name in STANDINS:
+        return _of_name(error.name)
+    return "" if error.path else interface_advice(error.name)  # without a path: a folder without Python files
 
 
 def _of_name(module: str) -> str:

@@ -178,7 +178,10 @@ def test_too_many_failures_come_before_formulas_that_were_never_judged() -> None
     assert "all 7 episodes" in refused("", nan)
     told = refused("2 of 5 failed", nan, "too late.", "too far.")
     assert told.startswith("2 of 5 failed, so the software does not yet work")
-    assert "The first failure: too late. Fix the node" in told
+    assert told.endswith(
+        "The first failure: too late. Fix the node or the test, or lower min_success on the marker."
+    )
+    assert refused("7 of 7 failed", nan, *["too late"] * 7).endswith(" Fix the node or the test.")
     assert "first failure" not in refused("2 of 5 failed", 1.0)
 
 

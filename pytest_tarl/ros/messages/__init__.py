@@ -50,9 +50,9 @@ def message_type(name: str) -> type[Any]:
 
 @cache
 def _search_around(package: str, file: str | None) -> None:
-    """Search the repository of `file` for a package whose definitions are not known yet."""
+    """Search the repository of `file`, or else its folder, for a package whose definitions are not known yet."""
     if file and not any(type_names(kind, package, part) for kind, part in _BUILDERS):
-        workspace.search(Path(file).parent)
+        workspace.search(Path(file).parent, Path(file).parent)
 
 
 @cache

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 from tarl_lint.workspace.folders import is_ignored, workspace_root
-from tarl_lint.workspace.model import Package, Workspace
+from tarl_lint.workspace.model import INTERFACES, Package, Workspace
 from tarl_lint.workspace.read import read
 
 _SEARCHED: list[Path] = []  # grows with the folders of started nodes, as sys.path does
@@ -17,9 +17,12 @@ _CACHES: list[Callable[[], None]] = []  # functions that clear caches of workspa
 _KEPT: set[Path] = set()  # folders of nodes in packages with COLCON_IGNORE or CATKIN_IGNORE
 
 
-def search(folder: Path) -> None:
-    """Add the packages around `folder`: those of its repository, or the enclosing ROS workspace."""
-    root = workspace_root(folder.resolve())
+def search(folder: Path, test: Path | None = None) -> None:
+    """Add the packages around `folder`: those of its repository, or the enclosing ROS workspace.
+
+    Without either, add those in the folder of the test or beside it, if that contains definitions and `folder`.
+    """
+    root = workspace_root(folder.resolve()) or _around_test(folder.resolve(), test)
     if root is None:
         return
     if not any(root.is_relative_to(known) for known in _SEARCHED):
@@ -28,6 +31,19 @@ def search(folder: Path) -> None:
     if folder.resolve() not in _KEPT and is_ignored(folder.resolve(), root):
         _KEPT.add(folder.resolve())
         forget()
+
+
+def _around_test(folder: Path, test: Path | None) -> Path | None:
+    """Return the folder of a test, or else the folder above, that contains `folder`, if it has definitions."""
+    around = () if test is None else (test.resolve(), test.resolve().parent)
+    nearest = next((one for one in around if folder.is_relative_to(one)), None)
+    return nearest if nearest is not None and _has_definitions(nearest) else None
+
+
+def _has_definitions(folder: Path) -> bool:
+    """Return whether a folder contains definitions of messages, services or actions in packages below it."""
+    patterns = (f"{above}/{kind}/*.{kind}" for above in ("*", "*/*") for kind in INTERFACES)
+    return any(next(folder.glob(pattern), None) for pattern in patterns)
 
 
 def on_forget(clear: Callable[[], None]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -125,6 +126,26 @@ def test_a_node_may_continue_without_a_module_that_is_not_implemented(start: Sta
                 found.append(error.name)
     """)
     assert ros.namespace["found"] == ["image_transport", "roslaunch", "rospy.impl"]
+
+
+@pytest.mark.parametrize(
+    "inner", ["srv", "__init__.py"], ids=["folder of definitions", "package with Python modules"]
+)
+def test_advice_tells_where_definitions_are_missing_if_a_folder_has_the_name_of_the_package(
+    inner: str, start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    workspace.forget()
+    package = tmp_path / "boat_base"
+    package.mkdir()
+    (package / inner).touch() if inner.endswith(".py") else (package / inner).mkdir()
+    monkeypatch.syspath_prepend(tmp_path)
+    told = r"around the node defines boat_base\.srv: .* or only its \.srv files in a folder boat_base/srv"
+    with pytest.raises(NodeError, match=told):
+        start("import rospy\nfrom boat_base.srv import Shoot\n")
+    for name in [name for name in sys.modules if name.partition(".")[0] == "boat_base"]:
+        del sys.modules[name]
+    workspace.forget()
 
 
 def test_advice_names_the_file_that_hides_a_package(start: Start, tmp_path: Path) -> None:

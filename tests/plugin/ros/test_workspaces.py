@@ -106,6 +106,34 @@ def test_a_test_can_use_message_types_of_its_repository_before_it_starts_a_node(
     workspace.forget()
 
 
+@pytest.mark.parametrize("test", [".", "tests"])
+def test_definitions_in_or_beside_the_folder_of_the_test_need_no_repository(
+    test: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    workspace.forget()
+    write(
+        tmp_path,
+        {"boat/srv/Shoot.srv": "bool now\n---", "boat/nodes/boat.py": "", f"{test}/test_boat.py": ""},
+    )
+    ros = Ros()
+    ros.use_definitions_around(tmp_path / "boat" / "nodes", tmp_path / test)
+    assert workspace.workspace_types("srv") == {"boat/Shoot": "bool now\n---"}
+    ros.use_definitions_around(tmp_path.parent.parent, tmp_path / test)  # a node elsewhere
+    assert [tmp_path] == workspace._SEARCHED
+    ros.close()
+    workspace.forget()
+
+
+def test_a_folder_without_definitions_is_not_searched(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    write(tmp_path, {"boat/srv/README.md": "", "boat/nodes/boat.py": ""})
+    workspace.search(tmp_path / "boat" / "nodes", tmp_path)
+    assert workspace._SEARCHED == []
+
+
 def test_configurations_are_generated_with_their_defaults(packages: Path, start: Start) -> None:
     ros = start("""
         import rospy

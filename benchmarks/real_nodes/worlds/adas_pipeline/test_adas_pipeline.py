@@ -11,6 +11,18 @@ Float32 = message_type("std_msgs/msg/Float32")
 Bool = message_type("std_msgs/msg/Bool")
 
 NODE = "drive.py"
+FILES = [
+    NODE,
+    "adas/cli.py",
+    "adas/control/controller.py",
+    "adas/control/safety.py",
+    "adas/core/config.py",
+    "adas/planning/behavior_planner.py",
+    "adas/ros2/bridge.py",
+    "adas/ros2/converters.py",
+    "adas/runtime/pipeline.py",
+    "adas/tracking/tracker.py",
+]
 DT = 0.1
 TIME = 20.0
 HEIGHT, WIDTH = 64, 32  # of the image, px
@@ -64,7 +76,7 @@ class Road:
 
 
 @pytest.mark.tarl(
-    nodes=[NODE],
+    nodes=FILES,
     sensors=[
         Sensor("speed", topic="/vehicle/speed", field="data", low=0, high=15, bins=6, unit="m/s"),
         Sensor("trailer", topic="/trailer", field="data"),

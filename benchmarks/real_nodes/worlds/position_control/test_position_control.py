@@ -10,7 +10,9 @@ from pytest_tarl.ros import message_type
 Odometry = message_type("nav_msgs/msg/Odometry")
 Bool = message_type("std_msgs/msg/Bool")
 
-NODE = "turtlebot3_example/turtlebot3_example/turtlebot3_position_control/main.py"
+PACKAGE = "turtlebot3_example/turtlebot3_example/turtlebot3_position_control"
+NODE = f"{PACKAGE}/main.py"
+FILES = [NODE, f"{PACKAGE}/turtlebot3_position_control.py", f"{PACKAGE}/turtlebot3_path.py"]
 DT = 0.05
 TIME_BOUND = 45.0
 STILL = 2.0  # a robot that stands for so long after its drive has finished, s
@@ -82,7 +84,7 @@ class Floor:
 
 
 @pytest.mark.tarl(
-    nodes=[NODE],
+    nodes=FILES,
     sensors=[
         Sensor("carpet", topic="/carpet", field="data"),
         Sensor("heading", topic="/odom", field="pose.pose.orientation.z", low=-0.6, high=0.6, bins=6),
