@@ -89,8 +89,9 @@ def _accepted(field: Field, check: Callable[[Any], None], value: Any) -> Any:
     assert isinstance(value, Sequence | set) and not isinstance(value, str), (  # noqa: PT018
         f"The '{field.name}' field must be a sequence of {field.base}, not {type(value).__name__}"
     )
-    for element in value:
-        check(element)
+    if field.base != "uint8" or not isinstance(value, bytes | bytearray):  # whose elements need no check
+        for element in value:
+            check(element)
     _sized(field, value)
     if not packed:
         return value

@@ -24,7 +24,7 @@ FILES = [
     "adas/tracking/tracker.py",
 ]
 DT = 0.1
-TIME = 20.0
+TIME = 15.0
 HEIGHT, WIDTH = 64, 32  # of the image, px
 CAR = 1.5  # height of the car ahead, m
 NEAR = 3.0  # closer than this is a failure, m
@@ -39,7 +39,7 @@ class Road:
         self.grip = grip
         self.ahead = rng.uniform(16.0, 22.0)
         self.speed = self.lead = rng.uniform(8.0, 10.0)
-        self.wanted, self.until = self.lead, 4.0
+        self.wanted, self.until = self.lead, 2.0
         self.time = 0.0
         self.failure = ""
 
@@ -59,7 +59,7 @@ class Road:
     def advance(self, throttle, brake):
         """Drive for one step."""
         if self.time > self.until:
-            self.wanted, self.until = self.rng.uniform(5.0, 12.0), self.time + 5.0
+            self.wanted, self.until = self.rng.uniform(4.5, 12.0), self.time + 4.0
         self.lead += max(-3.0 * DT, min(1.5 * DT, self.wanted - self.lead))
         push = (4.0 * throttle.data - 8.0 * brake.data) if throttle and brake else 0.0
         self.speed = max(0.0, self.speed + DT * (self.grip * push - 0.01 * self.speed))

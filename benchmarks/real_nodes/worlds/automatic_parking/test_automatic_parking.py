@@ -12,7 +12,7 @@ LaserScan = message_type("sensor_msgs/LaserScan")
 Odometry = message_type("nav_msgs/Odometry")
 
 NODE = "turtlebot3_automatic_parking/nodes/automatic_parking"
-DT = 0.1
+DT = 0.2  # the scanner's period, s
 TIME_BOUND = 90.0
 STILL = 8.0  # a robot that stands for so long has finished, s
 REAR = 0.1  # from the scanner to the rear, m
