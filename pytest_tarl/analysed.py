@@ -11,6 +11,7 @@ from pytest_tarl.designation import Designation
 from pytest_tarl.errors import AnalysisError
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.item_episode import Instruments
+from pytest_tarl.modules_in_flows import imported
 from tarl_lint.api import Analysis, analyse
 from tarl_lint.errors import ConfigError
 
@@ -49,9 +50,22 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
     if not analysis.flows:
         raise AnalysisError(
             f"No flow from a subscription to a publish call was found in {', '.join(designation.nodes)}"
-            ", so there is nothing to instrument: run tarl-lint on these files, and name all files of the node."
+            f", so there is nothing to instrument: {_what_to_name(paths, folder, root)}"
         )
     return analysis
+
+
+def _what_to_name(paths: Sequence[Path], folder: Path, root: Path) -> str:
+    """Return the advice for nodes without a flow: name the files that they import, if there is a flow through them."""
+    more = imported(paths, root)
+    with _working_in(root):
+        analysis = _analysis([*paths, *more], root) if more else None
+    if analysis is None or not analysis.flows:
+        return "run tarl-lint on these files, and name all files of the node."
+    passed = {(root / step.span.path).resolve() for step in analysis.sites}
+    named = [os.path.relpath(each, folder) for each in (*paths, *more) if each in passed]
+    files = ", ".join(f'"{Path(each).as_posix()}"' for each in named)
+    return f"it passes through files that are imported, so name these: nodes=[{files}]."
 
 
 def _analysis(paths: Sequence[Path], root: Path) -> Analysis:

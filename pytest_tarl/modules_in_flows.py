@@ -1,10 +1,10 @@
-"""Find the project modules whose names the statements of flows use, such as one that defines constants."""
+"""Find the project modules that files import, and those whose names the statements of flows use."""
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -33,26 +33,50 @@ def uses(analysis: Analysis, root: Path) -> Iterator[Use]:
                 yield Use(file, shown, step.span.line)
 
 
-def _imports(tree: ast.Module, at: Path, root: Path) -> Iterator[tuple[str, Path]]:
-    """Yield each name that a module imports from files of the project, and the file."""
+def imported(files: Sequence[Path], root: Path) -> tuple[Path, ...]:
+    """Return the project's files that these files import, directly or not, in the order in which they are found.
+
+    Files that are not valid Python, and what they would import, are left out.
+    """
+    found = dict.fromkeys(files)
+    waiting = list(files)
+    while waiting:
+        file = waiting.pop(0)
+        try:
+            tree = ast.parse(file.read_bytes())
+        except (SyntaxError, ValueError, OSError):
+            continue
+        more = [each for _, each in _imports(tree, file, root.resolve(), packages=True) if each not in found]
+        found.update(dict.fromkeys(more))
+        waiting += dict.fromkeys(more)
+    return tuple(each for each in found if each not in files)
+
+
+def _imports(tree: ast.Module, at: Path, root: Path, *, packages: bool = False) -> Iterator[tuple[str, Path]]:
+    """Yield each name that a module imports from files of the project, and the file.
+
+    With `packages`, also yield the `__init__.py` of a package.
+    """
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for each in node.names:
                 name = each.asname or each.name.partition(".")[0]
-                yield from ((name, file) for file in _files(each.name, 0, at, root))
+                yield from ((name, file) for file in _files(each.name, 0, at, root, packages))
         elif isinstance(node, ast.ImportFrom):
             for each in node.names:
                 inner = f"{node.module}.{each.name}" if node.module else each.name
                 files = [
-                    *_files(inner, node.level, at, root),
-                    *_files(node.module or "", node.level, at, root),
+                    *_files(inner, node.level, at, root, packages),
+                    *_files(node.module or "", node.level, at, root, packages),
                 ]
                 yield from ((each.asname or each.name, file) for file in files[:1])
 
 
-def _files(module: str, level: int, at: Path, root: Path) -> list[Path]:
+def _files(module: str, level: int, at: Path, root: Path, packages: bool) -> list[Path]:
     """Return the files of a module, next to the importing file or in a parent folder up to the root."""
     starts = [at.parents[level - 1]] if level else [each for each in at.parents if each.is_relative_to(root)]
     parts = module.split(".")
     wanted = [start.joinpath(*parts).with_suffix(".py") for start in starts if module]
+    if packages:
+        wanted += [start.joinpath(*filter(None, parts), "__init__.py") for start in starts if module or level]
     return [file for file in wanted if file.is_file() and file.is_relative_to(root)][:1]

@@ -43,3 +43,37 @@ def test_a_missing_file_comes_first(tmp_path: Path) -> None:
     assert refused(tmp_path, "params.yaml").startswith(
         "The marker names the node 'params.yaml': no such file in "
     )
+
+
+NODE = """
+import rospy
+from std_msgs.msg import Float64
+from .maths import scaled
+def heard(message):
+    pub.publish(Float64(scaled(message.data)))
+pub = rospy.Publisher("out", Float64, queue_size=1)
+def run():
+    rospy.Subscriber("in", Float64, heard)
+"""
+
+
+def test_a_program_that_only_starts_a_node_is_told_which_files_to_name(tmp_path: Path) -> None:
+    package = tmp_path / "src" / "robot"
+    (package / "maths").mkdir(parents=True)
+    texts = {
+        "__init__": "",
+        "node": NODE,
+        "maths/__init__": "from .unused import X\ndef scaled(value):\n    return 2.0 * value\n",
+        "maths/unused": "from . import scaled\nX = (\n",
+        "main": "import rospy\nfrom robot import node\nrospy.init_node('n')\nnode.run()\nrospy.spin()\n",
+    }
+    for name, text in texts.items():
+        (package / f"{name}.py").write_text(text)
+    (tmp_path / "tests").mkdir()
+    designation: Any = SimpleNamespace(nodes=("../src/robot/main.py",))
+    with pytest.raises(AnalysisError) as caught:
+        analysed(designation, tmp_path / "tests", tmp_path)
+    files = '"../src/robot/node.py", "../src/robot/maths/__init__.py"'
+    assert str(caught.value).endswith(f"files that are imported, so name these: nodes=[{files}].")
+    named: Any = SimpleNamespace(nodes=("node.py", "maths/__init__.py"))
+    assert analysed(named, package, tmp_path).flows
