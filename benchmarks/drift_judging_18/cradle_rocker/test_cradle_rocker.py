@@ -49,7 +49,7 @@ class Cradle:
         if self.now > SETTLED:
             error = abs(self.swing - 8.0)
             self.off += error > 1.5
-            self.gained = 0.02 * max(-1.0, 1.0 - (error / 1.5) ** 2)
+            self.gained = 0.02 * max(-1.0, 1.0 - (error / 2.5) ** 2)
 
 
 @pytest.mark.tarl(
