@@ -199,12 +199,14 @@ class Ros(Network):
         scheduler = self.scheduler
         WATCHDOG.arm(self.watchdog_limit)
         try:
-            job(*args)
-            scheduler.settle()
+            try:
+                job(*args)
+                scheduler.settle()
+            finally:
+                spun = WATCHDOG.disarm()
         except Spinning:
-            scheduler.failure = scheduler.failure or scheduler.spinning()
-        finally:
-            spun = WATCHDOG.disarm()
+            spun = True
+            WATCHDOG.disarm()  # has an effect only if the exception interrupted the first call
         if spun and scheduler.failure is None:
             scheduler.failure = scheduler.spinning()
         if scheduler.failure is not None:

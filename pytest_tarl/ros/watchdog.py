@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 from pytest_tarl.held_interpreter import allow
 
@@ -15,6 +16,7 @@ _PATIENCE = 12  # multiple of the limit for waits outside of ROS, which use no C
 _HOLD = 12  # multiple of the limit for a node that holds the interpreter lock
 _INTERVAL = 0.1  # time between two checks (s)
 _IDLE_EXIT = 50  # number of checks after which an unused watching thread ends
+_MOST_JUMPS = 1000  # bound of a loop in which the interpreter raises a sent exception; one jump is enough
 _DEBUGGERS = ("pdb", "bdb", "pydevd", "debugpy")
 _CLOCK_OF: Callable[[int], int] | None = getattr(
     time, "pthread_getcpuclockid", None
@@ -64,15 +66,18 @@ class Watchdog:
         self._moves += 1
 
     def disarm(self) -> bool:
-        """Stop watching and return whether it fired; cancel an exception that has not been raised yet."""
+        """Stop watching and return whether it fired; cancel an exception that has not been raised yet.
+
+        Call it in the thread that is watched.
+        """
         self._armed = False
         if self._allowed:
             self._allow(0.0)
-        if not self.fired:
-            return False
-        with self._lock:
-            _raise_in(self._target, None)
+        with self._lock:  # the watching thread may be about to fire
+            if not self.fired:
+                return False
             self.fired = False
+            _cancel_in(self._target)
         return True
 
     def hanging(self, limit: float) -> str:
@@ -143,11 +148,23 @@ def _debugged(thread: int) -> bool:
     return False
 
 
-def _raise_in(thread: int, exception: type[BaseException] | None) -> None:
+def _cancel_in(thread: int) -> None:
+    """Cancel an exception that was sent to the running thread and may not have been raised yet.
+
+    Before Python 3.13, sending no exception would leave the interpreter's flag set that one is pending. With Python
+    3.11 and a trace function, such as that of coverage, the next call of a function would then never begin. Only
+    raising an exception resets the flag.
+    """
+    with suppress(Spinning):
+        _raise_in(thread, Spinning)
+        for _ in range(_MOST_JUMPS):
+            pass
+
+
+def _raise_in(thread: int, exception: type[BaseException]) -> None:
     import ctypes  # imported late because it is slow
 
-    argument = ctypes.py_object(exception) if exception is not None else None
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), argument)
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(exception))
 
 
 WATCHDOG = Watchdog()  # one watching thread per process

@@ -1,5 +1,7 @@
 """The watchdog stops a node that computes endlessly or hangs outside of ROS, but no node delayed by a busy machine."""
 
+import subprocess
+import sys
 import time
 
 import pytest
@@ -69,3 +71,41 @@ def test_thread_without_its_own_clock_is_measured_by_the_process(
 ) -> None:
     monkeypatch.setattr(watchdog, "_CLOCK_OF", None)
     test_endless_computation_is_stopped()
+
+
+def test_functions_can_be_traced_after_a_node_was_stopped() -> None:
+    program = """
+import faulthandler, sys
+from pytest_tarl.ros.watchdog import Spinning, Watchdog
+faulthandler.dump_traceback_later(120, exit=True)  # the call below hangs if the interpreter still expects an exception
+dog = Watchdog()
+dog.arm(0.1)
+try:
+    while True:
+        pass
+except Spinning:
+    print(dog.disarm())
+seen = []
+sys.settrace(lambda frame, event, argument: seen.append(frame.f_code.co_name))
+def called(): pass
+called()
+sys.settrace(None)
+print(seen)
+"""
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert run.stdout.split("\n") == ["True", "['called']", ""], run.stderr
+
+
+def test_disarming_after_it_fired_raises_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # the exception is not raised before the watchdog is disarmed
+    monkeypatch.setattr(watchdog, "_raise_in", lambda thread, exception: None)
+    dog = Watchdog()
+    dog.arm(0.1)
+    start = time.thread_time()
+    while not dog.fired:
+        assert time.thread_time() - start < 60
+    monkeypatch.undo()
+    assert dog.disarm()
+    assert not dog.disarm()  # fired once
