@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+from collections.abc import Iterator
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
 import pytest_tarl
 import tarl_lint
+from pytest_tarl.ros.messages import workspace
 from tests.plugin.tank import NODE, TEST
+
+REPOSITORY = Path(__file__).resolve().parents[2]
 
 for package in (tarl_lint, pytest_tarl):
     for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
@@ -19,6 +24,18 @@ for package in (tarl_lint, pytest_tarl):
                 importlib.import_module(module.name)
         elif not module.name.endswith("__main__"):
             importlib.import_module(module.name)
+
+
+@pytest.fixture(autouse=True)
+def _forget_workspaces_of_the_test() -> Iterator[None]:
+    """Forget the workspaces of a test: the first package of a name wins, and others have packages of the same names."""
+    yield
+    kept = [root for root in workspace._SEARCHED if root.is_relative_to(REPOSITORY)]
+    hidden = {folder for folder in workspace._KEPT if folder.is_relative_to(REPOSITORY)}
+    if (kept, hidden) != (workspace._SEARCHED, workspace._KEPT):
+        workspace._SEARCHED[:] = kept
+        workspace._KEPT &= hidden
+        workspace.forget()
 
 
 @pytest.fixture

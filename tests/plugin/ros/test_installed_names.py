@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pytest_tarl.ros import cv_bridge_boost, message_type, packages
-from pytest_tarl.ros.messages import find_class, snapshot, workspace
+from pytest_tarl.ros.messages import find_class, snapshot
 from pytest_tarl.ros.messages.known import known_types
 from pytest_tarl.ros.messages.workspace import search
 from tests.plugin.ros.conftest import Start, heard
@@ -143,9 +143,7 @@ def test_names_of_small_libraries_can_be_imported(start: Start) -> None:
     assert ros.namespace["same"] == ("geometry_msgs/PoseStamped", True, True)
 
 
-def test_rospkg_and_roslib_find_files_of_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workspace, "_SEARCHED", [])  # other tests may have read a workspace around this one
-    workspace.forget()
+def test_rospkg_and_roslib_find_files_of_packages(tmp_path: Path) -> None:
     folder = tmp_path / "driver"
     (folder / "scripts" / "inner").mkdir(parents=True)
     (tmp_path / ".git").mkdir()
