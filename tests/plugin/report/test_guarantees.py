@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import hypothesis.strategies as st
 from hypothesis import given
 
-from pytest_tarl.model import Bound, Guarantee
-from pytest_tarl.report.guarantees import SCOPE, brief, figure, percent, sentences
+from pytest_tarl.model import Bound, Comparison, Guarantee
+from pytest_tarl.report.guarantees import SCOPE, brief, figure, percent, sentences, worlds
 
 STATED = Guarantee(
     episodes=200,
@@ -66,3 +67,11 @@ def test_percentages_in_guarantees_are_rounded_down(share: float) -> None:
 
 def test_an_infinite_bound_is_not_printed() -> None:
     assert figure(float("-inf")) == "nothing"
+
+
+def test_worlds_with_bounds_are_named_in_the_order_of_the_report(varied: Callable[..., Comparison]) -> None:
+    few = replace(STATED, episodes=10)
+    stated = {"nominal_repaired": few, "offline": STATED}
+    assert list(worlds(varied(stated=stated))) == [("designed", STATED), ("designed, repaired", few)]
+    assert [name for name, _ in worlds(varied(stated={"repaired": STATED}))] == ["repaired"]
+    assert list(worlds(varied(stated={}))) == []

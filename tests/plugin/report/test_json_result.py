@@ -9,7 +9,20 @@ import numpy as np
 import pytest
 
 from pytest_tarl.errors import TarlError
-from pytest_tarl.model import Attempt, Culprit, OperandEffect, Repair, Verdict
+from pytest_tarl.model import (
+    Attempt,
+    Bound,
+    Culprit,
+    FormulaRow,
+    FormulaWorld,
+    Guarantee,
+    OperandEffect,
+    Partial,
+    Region,
+    Repair,
+    Sizes,
+    Verdict,
+)
 from pytest_tarl.report.json_result import document, rectangles, schema, write
 from pytest_tarl.sensors import Sensor
 
@@ -164,3 +177,101 @@ def test_an_unwritable_path_is_reported_in_one_sentence(shuttle, tmp_path):
     blocked.write_text("not a directory")
     with pytest.raises(TarlError, match=r"The result .*result\.json cannot be written \("):
         write(shuttle, blocked / "result.json", EPISODES)
+
+
+def test_bounds_of_a_world_are_written_with_their_method_and_quantile(varied, tmp_path):
+    stated = Guarantee(
+        episodes=200,
+        passed=197,
+        success=Bound(0.95, 1.0, 0.9, "Clopper-Pearson", True, 200),
+        average=4.25,
+        mean=Bound(3.5, math.inf, 0.8, "Student", False, 200),
+        share=0.1,
+        quantile=2.75,
+        needed=29,
+        varied=True,
+    )
+    found = written(varied(stated={"offline": stated, "elsewhere": stated}), tmp_path)
+    jsonschema.validate(found, schema())
+    assert found["bounds"] == {
+        "offline": {
+            "episodes": 200,
+            "varied": True,
+            "success": {
+                "low": 0.95,
+                "high": 1.0,
+                "confidence": 0.9,
+                "method": "Clopper-Pearson",
+                "exact": True,
+            },
+            "mean": {"low": 3.5, "high": None, "confidence": 0.8, "method": "Student", "exact": False},
+            "quantile": {"share": 0.1, "low": 2.75, "episodes": 29},
+        },
+        "repaired": None,
+        "nominal_repaired": None,
+    }
+
+
+def test_each_formula_has_its_robustness_in_the_worlds_that_were_judged(varied, tmp_path):
+    worlds = {
+        "online": FormulaWorld(-0.5, -1.25, 40, 7, 3.5),
+        "offline": FormulaWorld(0.75, 0.25, 120, 0, None),
+    }
+    found = written(varied(formulas=(FormulaRow("always(x < 1)", worlds),)), tmp_path)
+    jsonschema.validate(found, schema())
+    assert found["formulas"] == [
+        {
+            "formula": "always(x < 1)",
+            "worlds": {
+                "offline": {
+                    "robustness": 0.75, "least": 0.25, "episodes": 120, "violated": 0, "first_violation": None
+                },
+                "online": {
+                    "robustness": -0.5, "least": -1.25, "episodes": 40, "violated": 7, "first_violation": 3.5
+                },
+                "repaired": None,
+                "nominal_repaired": None,
+            },
+        }
+    ]  # fmt: skip
+
+
+def test_the_reward_in_each_interval_of_a_range_is_written(varied, tmp_path):
+    sizes = {"mud": Sizes("mud", 0.0, 3.0, {"online": (0.5, 0.5, 2.5), "repaired": (2.5,)})}
+    totals = {"offline": (9.0,), "online": (4.0, 2.0, 1.0), "repaired": (8.0,)}
+    found = written(varied(sizes=sizes, totals=totals), tmp_path)
+    jsonschema.validate(found, schema())
+    assert found["sizes"] == [
+        {"part": "mud", "low": 0.0, "high": 1.0, "online": 3.0, "repaired": None},
+        {"part": "mud", "low": 1.0, "high": 2.0, "online": None, "repaired": None},
+        {"part": "mud", "low": 2.0, "high": 3.0, "online": 1.0, "repaired": 8.0},
+    ]
+
+
+def test_a_partial_repair_is_written_with_its_bounds_but_without_its_diff(varied, tmp_path):
+    partial = Partial("5 → 9 everywhere", 4.5, 3.25, 16.9, -0.5, -1.5, 0.9, "a diff", "a.partial.patch")
+    found = written(varied(repair=Repair(False, "", (), partial=partial)), tmp_path)
+    jsonschema.validate(found, schema())
+    assert found["repair"]["partial"] == {
+        "what": "5 → 9 everywhere",
+        "patch": "a.partial.patch",
+        "gain": 4.5,
+        "low": 3.25,
+        "designed": -0.5,
+        "designed_low": -1.5,
+    }
+
+
+def test_success_and_the_reason_of_a_verdict_are_written(varied, tmp_path):
+    verdict = Verdict(
+        "degraded", 0.2, 0.3, 1.5, 0.4, 0.5, p_failures=0.01, success=(0.975, 0.5), because=("success",)
+    )
+    found = written(varied(verdict=verdict), tmp_path)["verdict"]
+    assert (found["p_failures"], found["because"]) == (0.01, ["success"])
+    assert found["success"] == {"offline": 0.975, "online": 0.5}
+
+
+def test_situations_that_are_no_longer_visited_are_rectangles(shuttle, varied, tmp_path):
+    left = varied(region=Region(shuttle.region.cells, left=((3, 0), (4, 0))))
+    found = written(left, tmp_path)["no_longer_visited"]
+    assert found == [{"x": [1.25, 2.083333333], "terrain": [0, 0]}]

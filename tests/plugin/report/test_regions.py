@@ -129,3 +129,35 @@ def test_ranges_with_negative_bounds_use_a_word_instead_of_a_dash():
 def test_narrow_bins_get_enough_digits():
     fine = Sensor("offset", low=0, high=0.1, bins=20)
     assert words([(3,)], (fine,), [(i,) for i in range(20)]) == "offset 0.015-0.020"
+
+
+def test_a_region_around_the_end_of_an_angle_is_one_range():
+    heading = Sensor("heading", low=-180, high=180, bins=8, unit="deg", angle=True)
+    everything = [(i,) for i in range(8)]
+    assert words([(0,), (1,), (7,)], (heading,), everything) == "heading above 135 or below -90 deg"
+    assert words([(0,), (1,)], (heading,), everything) == "heading -180 to -90 deg"
+    straight = Sensor("heading", low=-180, high=180, bins=8, unit="deg")
+    assert words([(0,), (7,)], (straight,), everything) == "heading -180 to -135 or 135-180 deg"
+
+
+def test_a_bin_is_named_with_and_without_its_sensor():
+    vocabulary = Vocabulary((X, TERRAIN), [(0, 0), (3, 1)])
+    assert (vocabulary.bin(0, 3), vocabulary.value(0, 3)) == ("x 3-4 m", "3-4 m")
+    assert (vocabulary.bin(1, 1), vocabulary.value(1, 0)) == ("terrain true", "false")
+
+
+def test_the_only_value_of_a_category_is_named():
+    assert words([(2, 1)], (X, TERRAIN), [(2, 1), (5, 1)]) == "x 2-3 m, terrain true"
+    assert words([(2, 0)], (X, TERRAIN), [(2, 0), (5, 1)]) == "x 2-3 m, terrain false"
+
+
+def test_ranges_below_and_above_the_sensor_are_open():
+    assert words([(-1, 1)], seen=[(-1, 1), (0, 0), (10, 0)]) == "x below 0 m, terrain true"
+    assert words([(10, 0)], seen=[(-1, 1), (0, 0), (10, 0)]) == "x above 10 m, terrain false"
+
+
+def test_boxes_are_few_whatever_the_order_of_the_sensors():
+    row, column = [(0, 0), (1, 0), (2, 0)], [(1, 1), (1, 2)]
+    assert boxes(row + column) == (((0, 2), (0, 0)), ((1, 1), (1, 2)))
+    assert boxes([(b, a) for a, b in row + column]) == (((0, 0), (0, 2)), ((1, 2), (1, 1)))
+    assert boxes([(0, 0), (1, 0), (1, 1)]) == (((0, 0), (0, 0)), ((1, 1), (0, 1)))

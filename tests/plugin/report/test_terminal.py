@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pytest_tarl.model import Repair, SitePlace
+from pytest_tarl.model import Bound, Culprit, Guarantee, Partial, Repair, SitePlace
 from pytest_tarl.report.terminal import lines
 
 ROOT = Path("/home/dev/robot")
@@ -151,3 +151,51 @@ def test_every_command_of_the_next_steps_stays_on_one_line(varied):
     name = "a/very/long/path/of/tests/" * 5 + "test_traveller.py::test_delivers"
     lines = told(varied(permanent=True, test=name, target=name), 80).splitlines()
     assert f"           pytest {name} --tarl-record --tarl-drift mud" in lines
+
+
+def culprit_lines(varied, width: int, code: str) -> list[str]:
+    """Return the lines about one culprit, `1. p.py:5`, that is ranked by its slice."""
+    culprit = Culprit(SitePlace("p:x", "p.py", 5, code, "data", "assign"), 0.0, "slices")
+    shown = told(varied(culprits=(culprit,)), width).splitlines()
+    first = next(number for number, line in enumerate(shown) if line.startswith("  lines"))
+    last = next(number for number, line in enumerate(shown) if line.startswith("  slices"))
+    return [line[11:] for line in shown[first:last]]
+
+
+def test_code_uses_the_whole_line_and_is_shortened_if_it_is_one_character_longer(varied):
+    # 100 columns: 11 for the label, 9 for `1. p.py:5`, 2 spaces, the code, 2 spaces, 14 for `(by its slice)`
+    assert culprit_lines(varied, 100, "x" * 62) == [f"1. p.py:5  {'x' * 62}  (by its slice)"]
+    assert culprit_lines(varied, 100, "x" * 63) == [f"1. p.py:5  {'x' * 61}…  (by its slice)"]
+
+
+def test_code_moves_to_a_line_of_its_own_if_fewer_than_24_characters_fit(varied):
+    assert culprit_lines(varied, 62, "x" * 50) == [f"1. p.py:5  {'x' * 23}…  (by its slice)"]
+    assert culprit_lines(varied, 61, "x" * 23) == [f"1. p.py:5  {'x' * 23}  (by its slice)"]
+    # 61 columns without the label and `1. `
+    assert culprit_lines(varied, 61, "x" * 50) == ["1. p.py:5  (by its slice)", f"   {'x' * 46}…"]
+    assert culprit_lines(varied, 61, "x" * 47) == ["1. p.py:5  (by its slice)", f"   {'x' * 47}"]
+
+
+def test_bounds_have_a_line_for_each_world(varied):
+    sure = Bound(0.9, 1.0, 0.95, "exact", True, 50)
+    stated = Guarantee(50, 50, sure, 4.0, Bound(3.5, 4.5, 0.95, "exact", True, 50), 0.1, 2.0, 29, True)
+    shown = told(varied(stated={"offline": stated, "repaired": stated}), 200).splitlines()
+    assert [line for line in shown if "success at least" in line] == [
+        f"  {label:<9}{world}: success at least 90 %, mean reward at least 3.5 (95 % confidence each, 50 episodes)"
+        for label, world in (("bounds", "designed"), ("", "repaired"))
+    ]
+
+
+def test_a_partial_repair_is_listed_with_the_command_that_applies_it(varied):
+    partial = Partial("5 → 9 everywhere", 4.5, 3.25, 16.9, -0.5, -1.5, 0.9, "", "a.partial.patch")
+    text = told(varied(repair=Repair(False, "", (), reason="gain too small", partial=partial)), 400)
+    assert (
+        "partial: 5 → 9 everywhere: the drift costs 16.90 per episode, and the change regains 4.50 of it (at least "
+        "3.25, with about 90 % confidence); in the designed world, an episode with the change earns 0.50 less (at "
+        "most 1.50 less); tarl apply --partial a.partial.patch"
+    ) in text
+
+
+def test_rewards_of_worlds_without_episodes_are_left_out(varied):
+    shown = told(varied(totals={"online": (1.0, 2.0), "repaired": ()}))
+    assert "  reward   deployed 1.50\n" in shown
