@@ -291,6 +291,84 @@ def test_git_merges_a_repair_into_a_file_that_changed_since(robot: Path) -> None
     assert "2.4 * GAIN" in (robot / "node.py").read_text()
 
 
+def test_a_repair_of_a_permanent_drift_says_to_record_it_and_to_commit_both(
+    robot: Path, capsys: Printed
+) -> None:
+    record = "pytest test_it.py::test_it --tarl-record --tarl-drift mud"
+    patch = repair(robot, {"node.py": guarded(NODE)}, facts=(f"record: {record}",))
+    assert main(["apply", str(patch)]) == 0
+    assert capsys.readouterr().out.splitlines()[1:4] == [
+        f"then:  {record}",
+        "then:  commit node.py and .tarl/utility together: the drift is now part of the design",
+        f"again: {AGAIN}",
+    ]
+
+
+def test_commands_for_another_folder_begin_with_a_change_to_it(
+    robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed
+) -> None:
+    patch = repair(robot, {"node.py": guarded(NODE)}, facts=("record: pytest --tarl-record",))
+    monkeypatch.chdir(robot.parent)
+    assert main(["apply", str(patch)]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "applied to robot/node.py: 5 → 12 at node.py:9",
+        "then:  cd robot && pytest --tarl-record",
+        "then:  commit robot/node.py and .tarl/utility together: the drift is now part of the design",
+        f"again: cd robot && {AGAIN}",
+        f"undo:  tarl revert robot/.tarl/patches/{patch.name}",
+    ]
+
+
+def test_a_partial_repair_is_applied_only_on_request(robot: Path, capsys: Printed) -> None:
+    patch = repair(robot, {"node.py": guarded(NODE)}, facts=("partial: regains 4.5 of 16.9",))
+    assert main(["apply", str(patch)]) == 1
+    assert capsys.readouterr().err == (
+        f"tarl: {patch.name} is a partial repair, which was not accepted: regains 4.5 of 16.9. To apply it anyway, "
+        "use --partial.\n"
+    )
+    assert main(["suggest", str(patch)]) == 1
+    assert (robot / "node.py").read_text() == NODE
+    assert main(["apply", "--partial", str(patch)]) == 0
+    assert (robot / "node.py").read_text() == guarded(NODE)
+
+
+def test_a_patch_whose_result_does_not_compile_is_refused(robot: Path, capsys: Printed) -> None:
+    patch = repair(robot, {"node.py": NODE.replace("GAIN * x", "GAIN *")})
+    assert main(["apply", str(patch)]) == 1
+    assert "node.py does not compile with the patch applied (" in capsys.readouterr().err
+    assert (robot / "node.py").read_text() == NODE
+
+
+@pytest.mark.parametrize("name", ["gains.yaml", "gains.yml", "robot.launch", "robot.xml"])
+def test_a_patch_of_a_settings_file_need_not_compile_as_python(robot: Path, name: str) -> None:
+    (robot / name).write_text("gain: 5 m\n")
+    git("add", name, cwd=robot)
+    git("commit", "-qm", name, cwd=robot)
+    assert main(["apply", str(repair(robot, {name: "gain: 12 m\n"}))]) == 0
+    assert (robot / name).read_text() == "gain: 12 m\n"
+
+
+def test_a_file_that_cannot_be_read_is_reported(robot: Path, capsys: Printed) -> None:
+    patch = repair(robot, {"node.py": guarded(NODE)})
+    (robot / "node.py").unlink()
+    assert main(["apply", str(patch)]) == 2
+    assert "node.py" in capsys.readouterr().err
+
+
+def test_two_changed_files_are_reverted_one_by_one(robot: Path, capsys: Printed) -> None:
+    patch = repair(robot, {"node.py": guarded(NODE)})
+    second = repair(robot, {"node.py": NODE.replace("low = 1", "low = 3")}, "ice")
+    assert main(["apply", str(patch), str(second)]) == 0
+    both = guarded(NODE).replace("low = 1", "low = 3")
+    assert (robot / "node.py").read_text() == both
+    assert main(["revert", str(patch)]) == 0
+    assert "later edits of other lines are kept" in capsys.readouterr().out
+    assert (robot / "node.py").read_text() == NODE.replace("low = 1", "low = 3")
+    assert main(["revert", str(second)]) == 0
+    assert "the original text is restored" in capsys.readouterr().out
+    assert (robot / "node.py").read_text() == NODE
+
+
 @pytest.fixture(scope="session")
 def schema() -> dict[str, Any]:
     """The schema of the standard, from a package that ships it."""

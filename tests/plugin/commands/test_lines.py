@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 from pytest_tarl.commands import diff, show, summary
 from pytest_tarl.commands.diff import FixtureDiff, Moved
 from pytest_tarl.learning.tables import Edges, ListSample, Visits
-from pytest_tarl.model import SitePlace, TaintList
+from pytest_tarl.model import Bound, Guarantee, SitePlace, TaintList
 from pytest_tarl.sensors import Sensor
 
 X = Sensor("x", topic="/odom", field="pose.x", low=0, high=4, bins=4, unit="m")
@@ -110,6 +111,10 @@ def test_diff_prints_episodes_reward_cells_and_changed_sites_of_two_recordings()
          "v: observed, node variable self.v, 0 to 1 in 2 bins, 1 seen"),
         (Sensor("light", topic="/l", field="data", categories=("day", "night")), (1, 0, 1),
          "light: /l data, seen day, night"),
+        (Sensor("wet", topic="/w", field="data", edges=(0.5,), unit="l"), (0, 1, 1),
+         "wet: /w data, below and above 0.5 l, 2 seen"),
+        (Sensor("dry", topic="/d", field="data", edges=(2.0,)), (0, 0), "dry: /d data, below and above 2, 1 seen"),
+        (Sensor("w", low=0, high=1, bins=2, expr="w"), (), "w: observed, node variable w, 0 to 1 in 2 bins, 0 seen"),
     ],
 )  # fmt: skip
 def test_a_sensor_is_described_with_its_origin_and_its_bins(
@@ -192,3 +197,81 @@ def test_a_chart_has_the_statements_with_the_largest_losses_in_order_of_file_and
     )
     assert told[4] == f"  bar [{', '.join(['10'] * 8)}]"
     assert told[5] == "  line [1, 3, 5, 7, 2, 4, 6, 8]"
+
+
+def shown(**changes: Any) -> Any:
+    """Return a recording of two episodes of 3 and 4 steps with the two statements of `listed`."""
+    taint_list, recorded = listed()
+    sample = SimpleNamespace(
+        episodes=2,
+        steps=np.array([3, 4]),
+        passed=np.array([True, False]),
+        total=np.array([1.5, -2.5]),
+        part_names=("speed", "care"),
+        chain=SimpleNamespace(parts=np.array([[1.0, -2.0], [0.5, 0.25], [2.5, -0.75]])),
+        judgements=None,
+        cells=((0,), (3,), (1,)),
+        lists=[recorded],
+    )
+    every = {"test": "t.py::test", "seed": 7, "design": (), "stated": None, "sensors": (X,)}
+    return SimpleNamespace(**{**every, "sample": sample, "lists": [taint_list], **changes})
+
+
+def test_a_recording_is_summarised_by_episodes_size_reward_and_cells() -> None:
+    assert [*show.lines(shown(), 12_345, [1500])][:9] == [
+        "t.py::test, seed 7",
+        "  episodes   2, 7 steps, success 50 %",
+        "  size       12.3 kB, of which 1.5 kB for 1 taint list",
+        "  reward     -0.5 per episode, from -2.5 to 1.5",
+        "             speed 2",
+        "             care -1.25",
+        "  cells      3",
+        "             x: /odom pose.x, 0 to 4 m in 4 bins, 3 seen",
+        "  /in → /out: 4 events, mean |f| 1.625, 1.5 kB",
+    ]
+
+
+def test_a_recording_of_a_permanent_drift_names_it() -> None:
+    lines = [*show.lines(shown(design=("mud", "ice")), 1000, [500])]
+    assert lines[1] == "  design     with the drift mud and ice, permanent"
+
+
+def test_the_bounds_of_a_recording_have_a_label_on_the_first_line_only() -> None:
+    sure = Bound(0.9, 1.0, 0.95, "exact", True, 2)
+    stated = Guarantee(2, 2, sure, 1.0, sure, 0.1, None, 0, True)
+    bounds = [*show.lines(shown(stated=stated), 1000, [500])][4:7]
+    assert bounds[0].startswith("  bounds     2 of 2 missions succeeded")
+    assert bounds[1].startswith("             mean reward 1 per mission")
+    assert bounds[2] == "             each bound holds separately"
+
+
+def test_many_statements_are_listed_only_on_request() -> None:
+    taint_list, recorded = listed()
+    many = TaintList("/in", "/out", taint_list.sites * 7)  # 14 statements in each of two lists
+    recorded = dataclasses.replace(recorded, width=14, flow=np.ones((2, 14)))
+    given = shown(lists=[many, many])
+    given.sample.lists = [recorded, recorded]
+    told = [*show.lines(given, 9000, [1500, 2500])]
+    assert told[2] == "  size       9.0 kB, of which 4.0 kB for 2 taint lists"
+    assert told[-3].endswith(", 1.5 kB, 14 statements in a.py, b.py")
+    assert told[-1] == "  tarl show --sites lists the 28 statements of the 2 taint lists."
+    every = [*show.lines(given, 9000, [1500, 2500], every=True)]
+    assert len(every) == len(told) - 3 + 2 * 15
+    few = TaintList("/in", "/out", taint_list.sites * 6)  # 24 statements are few enough
+    given = shown(lists=[few, few])
+    given.sample.lists = [dataclasses.replace(recorded, width=12, flow=np.ones((2, 12)))] * 2
+    assert len([*show.lines(given, 9000, [1500, 2500])]) == 8 + 2 * 13
+
+
+def test_a_loss_of_success_alone_is_told_with_both_shares() -> None:
+    verdict = {
+        "result": "degraded",
+        "because": ["success"],
+        "success": {"offline": 0.975, "online": 0.5},
+        "p_failures": 0.0123,
+        "loss": 1.0,
+        "p_loss": 0.5,
+    }
+    assert "| success 50 % instead of 97.5 % (p = 0.012) |" in summary._row(result(verdict=verdict))
+    both = verdict | {"because": ["reward", "success"]}
+    assert "| 1 (p = 0.5) |" in summary._row(result(verdict=both))
