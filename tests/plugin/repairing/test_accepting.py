@@ -191,6 +191,59 @@ def test_a_guard_is_narrower_if_it_has_all_conditions_of_another_one_and_more() 
     assert not _narrower(one, ALWAYS)
 
 
+WET, DARK = (Conjunct(Sensor(name, topic=f"/{name}", field="data"), 1, 1) for name in ("wet", "dark"))
+GUARDS = (ALWAYS, Guard((WET,)), Guard((DARK,)), Guard((WET, DARK)))
+
+
+class Guarded(Field):
+    """One candidate, whose kind depends on its guard."""
+
+    def __init__(self, kinds: dict[Guard, str]) -> None:
+        super().__init__(["any"])
+        self.kinds = kinds
+
+    def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        if candidate == ORIGINAL:
+            return Outcome(DESIGNED, passed=True)
+        return Outcome(LOT[self.kinds[candidate.guard]](seed, drift is not None), passed=True)
+
+
+def examined(kinds: dict[Guard, str], monkeypatch: pytest.MonkeyPatch) -> tuple[list[Guard], Guard | None]:
+    """Return the guards that were examined, in order, and the guard of the accepted candidate."""
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    field: Any = Guarded(kinds)
+    examiner = Examiner(field, tuple(kinds))
+    trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+    accepted = examiner.first(iter(field.candidates), trials)
+    return [one.candidate.guard for one in examiner.tried], accepted.candidate.guard if accepted else None
+
+
+def test_a_guard_is_tried_if_the_change_harms_the_designed_world_without_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    always, wet, dark, _ = GUARDS
+    kinds = {always: "bad as designed", wet: "bad as designed", dark: "good"}
+    assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
+
+
+@pytest.mark.parametrize("kind", ["bad at once", "lucky on known seeds", "worse later than the original"])
+def test_no_guard_is_tried_if_the_change_gains_too_little_everywhere(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    always, wet, _, _ = GUARDS
+    assert examined({always: kind, wet: "good"}, monkeypatch) == ([always], None)
+
+
+def test_a_narrower_guard_is_skipped_if_the_reward_is_too_low_under_the_wider_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    always, wet, dark, both = GUARDS
+    kinds = {always: "bad as designed", wet: "bad at once", both: "good", dark: "good"}
+    assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
+
+
 class Window(Field):
     """One operand: below one factor it gains too little, above another it breaks the designed world."""
 

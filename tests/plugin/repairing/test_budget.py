@@ -52,6 +52,58 @@ def test_the_phases_of_a_repair_never_exceed_the_budget(
         assert ran + charged == purse.spent <= budget
 
 
+def test_each_phase_has_its_share_of_the_time_that_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    now, told = [100.0], []
+    monkeypatch.setattr("pytest_tarl.repairing.budget.monotonic", lambda: now[0])
+    order = SimpleNamespace(drift="mud", progress=lambda *one: told.append(one))
+    mutants: Any = SimpleNamespace(
+        order=order, run=lambda *_: Outcome(0.0, passed=True), foresee=lambda *_: None
+    )
+    watch: Any = SimpleNamespace(progress=lambda method: f"by {method}", saw=lambda *_: None)
+    purse = Purse(1000, seconds=40.0)
+    now[0] = 108.0  # 32 s are left, a quarter of them is 8 s
+    trials = purse.phase(mutants, "sweep", watch, 0.25)
+    candidate = Candidate((Mutation(GAIN, 3.0),), Guard())
+    now[0] = 115.5
+    trials(candidate, 1)
+    now[0] = 116.0
+    trials(candidate, 2)
+    assert told == [(15, 16, "by sweep"), (16, 16, "by sweep")]
+    assert not purse.late
+    now[0] = 116.5
+    with pytest.raises(BudgetSpentError):
+        trials(candidate, 3)
+    assert purse.late
+    trials(candidate, 2)  # a known outcome needs no time
+
+
+def test_a_phase_without_a_limit_of_time_shows_its_episodes() -> None:
+    told: list[Any] = []
+    order = SimpleNamespace(drift="mud", progress=lambda *one: told.append(one))
+    ran: list[Any] = []
+
+    def run(candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        ran.append((candidate.mutations != (), seed, drift))
+        return Outcome(0.0, passed=True)
+
+    mutants: Any = SimpleNamespace(order=order, run=run, foresee=lambda *_: None)
+    watch: Any = SimpleNamespace(progress=lambda method: method, saw=lambda *one: told.append(one[1]))
+    purse = Purse(100)
+    purse.spent = 40
+    trials = purse.phase(mutants, "sweep", watch, 0.5)
+    candidate = Candidate((Mutation(GAIN, 3.0),), Guard())
+    trials(candidate, 8)
+    trials(candidate, 9)
+    assert told == [(0, 30, "sweep"), 8, (1, 30, "sweep"), 9]
+    assert trials.design is not None
+    assert trials.unchanged is not None
+    trials.design(5)
+    trials.unchanged(6)
+    assert ran == [(True, 8, "mud"), (True, 9, "mud"), (False, 5, None), (False, 6, "mud")]
+    purse.settle(trials)
+    assert purse.spent == 42
+
+
 @pytest.mark.parametrize(("gained", "episodes"), [(7.0, 13), (5.0, 10)])
 def test_part_of_the_budget_is_reserved_for_promising_constants(gained: float, episodes: int) -> None:
     pairs = tuple(Pair(seed, 0.0) for seed in range(40))

@@ -126,3 +126,32 @@ def test_small_and_huge_changes_suggest_nothing(tmp_path: Path) -> None:
 def test_there_are_few_suggestions(tmp_path: Path) -> None:
     every = dict.fromkeys((FLEXOR, EXTENSOR, LEVEL, PUSH), (1.0, 1.5))
     assert len(suggested(tmp_path, every)) == MOST
+
+
+def test_a_value_that_vanishes_or_was_zero_has_no_factor_but_a_difference(tmp_path: Path) -> None:
+    assert suggested(tmp_path, {PUSH: (2.0, 0.0)}) == []
+    assert suggested(tmp_path, {PUSH: (0.0, 2.0)}) == []
+    found = suggested(tmp_path, {LEVEL: (20.0, 0.0)})
+    assert found == [{"TARGET": 0.6}, {"TRIM": 6.0}]  # 50 - 20 and 4 + 20
+    assert suggested(tmp_path, {LEVEL: (0.0, 0.0)}) == []
+
+
+def test_changes_of_five_percent_suggest_a_step_and_smaller_ones_do_not(tmp_path: Path) -> None:
+    assert suggested(tmp_path, {PUSH: (1.0, 1.06)}) == [{"GAIN": 0.943}, {"GAIN": 1.06}]
+    assert suggested(tmp_path, {PUSH: (1.0, 1.04)}) == []
+    assert {"GAIN": 19.0} in suggested(tmp_path, {PUSH: (1.0, 19.0)})
+    assert suggested(tmp_path, {PUSH: (1.0, 21.0)}) == []
+
+
+def test_pairs_agree_up_to_a_quarter_of_the_change(tmp_path: Path) -> None:
+    # logarithms of the factors: 1 and 1.28 have a mean of 1.14, and 0.28 is less than a quarter of it
+    e = 2.718281828
+    assert suggested(tmp_path, {PUSH: (1.0, e)}, {PUSH: (1.0, e**1.28)})
+    assert suggested(tmp_path, {PUSH: (1.0, e)}, {PUSH: (1.0, e**1.3)}) == []
+
+
+def test_constants_beside_values_with_different_factors_change_alone(tmp_path: Path) -> None:
+    found = suggested(tmp_path, {FLEXOR: (1.0, 0.5), EXTENSOR: (1.0, 0.55)})
+    assert [hint for hint in found if len(hint) > 1] == []
+    assert {"FLEXOR_ON": 0.5} in found
+    assert {"EXTENSOR_ON": 0.55} in found

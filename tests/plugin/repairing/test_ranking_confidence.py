@@ -5,13 +5,15 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+import pytest
+
 from pytest_tarl.model import OperandEffect
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.repairing.accepting import Accepted
 from pytest_tarl.repairing.ranking_confidence import ranking_confidence
 from pytest_tarl.searching.accept import Acceptance, Outcome
 from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.ranking import Ranking
+from pytest_tarl.searching.ranking import Certainty, Ranking
 from pytest_tarl.searching.search import Candidate, Trials
 from tests.plugin.searching.test_search import BIAS, GAIN, GOAL, LIMIT, OPERANDS, run
 
@@ -77,3 +79,43 @@ def test_a_ranking_states_that_it_is_incomplete_or_that_no_repair_was_found() ->
 
 def test_without_simulation_there_is_no_sentence() -> None:
     assert ranking_confidence(ORDER, {}, None, None) == ""
+
+
+def certain(**changes: Any) -> str:
+    """Return the sentence for a ranking with this certainty of its first line."""
+    found = Certainty(**{"gaining": 2, "level": 0, "ahead": 0, "by": (-0.5, 1.25), "seeds": 9, **changes})
+    ranking: Any = SimpleNamespace(
+        whole=True, certainty=lambda site: found if site == str(GAIN.site) else None
+    )
+    return ranking_confidence(ORDER, EFFECTS, accepted(GAIN), ranking)
+
+
+HELD = "the repair of the first line passed on 12 fresh seeds"
+TOLD = f"{HELD}; 2 of 2 lines with constants gain reward when changed alone"
+SPAN = "-0.50 to +1.25 per episode, about 95 %, 9 common seeds"
+
+
+@pytest.mark.parametrize(
+    ("changes", "end"),
+    [
+        ({}, f"; the first line gains more than the next ({SPAN})"),
+        ({"by": None}, ""),
+        ({"level": 1}, f"; one other cannot be distinguished from the first line (the next: {SPAN})"),
+        ({"level": 3}, f"; 3 others cannot be distinguished from the first line (the next: {SPAN})"),
+        ({"ahead": 1}, f"; one line gains more than the first line in the drifted world ({SPAN})"),
+        ({"ahead": 2, "level": 1}, f"; 2 lines gain more than the first line in the drifted world ({SPAN})"),
+    ],
+)
+def test_the_certainty_of_the_first_line_has_its_own_words(changes: dict[str, Any], end: str) -> None:
+    assert certain(**changes) == TOLD + end
+
+
+def test_without_a_repair_the_line_with_the_largest_effect_is_the_first() -> None:
+    asked = []
+    ranking: Any = SimpleNamespace(whole=False, certainty=asked.append)
+    told = ranking_confidence(ORDER, EFFECTS, None, ranking)
+    assert asked == [str(GAIN.site)]
+    assert told == (
+        "no accepted repair confirms the first line; 2 lines were simulated alone, with every factor; the budget ended "
+        "before all were ranked"
+    )

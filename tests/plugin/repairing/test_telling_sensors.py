@@ -5,12 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from pytest_tarl import Sensor
 from pytest_tarl.model import OperandEffect
 from pytest_tarl.repairing import structural, typical_sizes
-from pytest_tarl.repairing.telling_sensors import telling, usual
+from pytest_tarl.repairing.telling_sensors import telling, usual, varies
 from pytest_tarl.repairing.template_places import spots
 from tarl_lint.api import analyse
 from tests.plugin.repairing.test_smoothing import TOOL, order
@@ -56,6 +57,50 @@ def test_the_typical_size_of_a_sensor_is_measured_in_the_drifted_world(
 ) -> None:
     sensor = Sensor("tool", topic="/tool", field="data", low=low, high=high, bins=10)
     assert usual(order(0, 5, sensor), sensor) == pytest.approx(mean)
+
+
+def visits(designed: list[float], drifted: list[float]) -> Any:
+    """Return an order whose worlds spend these numbers of steps in the bins of the sensor, from the first bin on."""
+    asked = order(0, 0)
+    for world, counts in ((asked.fixture.sample, designed), (asked.online.recorded.sample, drifted)):
+        world.cells = [(bin_,) for bin_ in range(len(counts))]
+        world.chain.cell, world.chain.count = np.arange(len(counts)), np.array(counts)
+    return asked
+
+
+@pytest.mark.parametrize(
+    ("designed", "drifted", "expected"),
+    [
+        ([5.0], [5.0, 5.0], True),  # one bin and two: twice as many
+        ([5.0] * 5, [4.0] * 8, True),  # 1.6 times as many
+        ([5.0] * 5, [4.0] * 7, False),  # 1.4 times as many
+        ([5.0], [5.0], False),
+        ([5.0], [99.0, 1.0], False),  # exp(0.056) bins
+        ([5.0], [80.0, 20.0], True),  # exp(0.5004) = 1.65 bins
+        ([5.0], [], False),
+        ([], [5.0, 5.0], False),
+    ],
+)
+def test_a_sensor_varies_if_the_drifted_world_uses_at_least_one_and_a_half_times_its_bins(
+    designed: list[float], drifted: list[float], expected: bool
+) -> None:
+    assert varies(visits(designed, drifted), TOOL) is expected
+
+
+@pytest.mark.parametrize(
+    ("designed", "drifted", "tells"),
+    [
+        ([3.0, 1.0], [0.0, 1.0], True),  # a quarter of the designed steps is in the bin of the drifted world
+        ([2.9, 1.0], [0.0, 1.0], False),
+        ([1.0, 1.0], [1.0, 3.0], False),
+        ([1.0], [], False),
+        ([], [1.0], False),
+    ],
+)
+def test_a_sensor_tells_if_at_most_a_quarter_of_the_steps_is_in_common_bins(
+    designed: list[float], drifted: list[float], tells: bool
+) -> None:
+    assert bool(telling(visits(designed, drifted))) is tells
 
 
 def test_the_typical_size_of_a_sensor_is_also_known_for_the_designed_world() -> None:
