@@ -74,7 +74,7 @@ def lathe(
     cutting = 8.0e8 * hardness * 1e-3 * depth * float(rng.normal(1.0, 0.03))  # N/m
     rough = rng.normal(0.0, 4.0, 2000).tolist()
     period = max(2, round(60.0 / turns / step))
-    feed, place, speed = 1.0e-4, 0.0, 0.0  # m per revolution, m, m/s
+    feed, place, speed = 1.0e-4, 0.0, 0.0  # pitch (m per revolution), m, m/s
     past, waves, kept = [0.0] * period, [], 0.0
     for lap in range(16):
         laid, low, high = [], 1.0, -1.0
@@ -148,7 +148,7 @@ def mower(
     keep = exp(-step / 12.0)
     for now in range(steps):
         error = keep * error + multipath * sqrt(1 - keep * keep) * shocks[now]
-        sliding = 0.012 * bank * (0.3 + wet)  # m/s, towards the pond
+        sliding = 0.012 * bank * (0.3 + wet)  # speed towards the pond (m/s)
         guess += step * 0.8 * heading
         guess += 0.12 * (side + error + white[now] - guess)
         turn = clipped(-1.2 * guess - 1.8 * heading, 0.8) * (1.0 - 0.4 * wet)

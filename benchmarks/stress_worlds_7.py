@@ -33,7 +33,7 @@ def unloader(
     """
     leaks, weights = rng.lognormal(0.0, 0.45, 12).tolist(), rng.lognormal(0.0, 0.25, 12).tolist()
     seats, jerks = rng.exponential(1.0, (12, 3)).tolist(), rng.lognormal(0.0, 0.15, 12).tolist()
-    aside = rng.rayleigh(0.05, 12).tolist()  # m from the centre of mass
+    aside = rng.rayleigh(0.05, 12).tolist()  # distance from the centre of mass (m)
     full = 82.0 * (1.0 - exp(-supply / 2.0))  # kPa
     capacity = 0.5 + 0.25 * supply  # l/s
     fallen, time = 0, 0.0
@@ -104,7 +104,7 @@ def neutraliser(
     step, steps = 5.0, 420
     shocks, reads = rng.normal(0.0, 1.0, steps).tolist(), rng.normal(0.0, 0.03, steps).tolist()
     usual, buffer = 2.0 * acid * float(rng.normal(1.0, 0.03)), 0.3 * float(rng.normal(1.0, 0.05))
-    inflow, excess, basin, load = flow / 3600.0, 0.0, 0.0, 0.0  # m³/s, mol/m³ of acid in tank and basin
+    inflow, excess, basin, load = flow / 3600.0, 0.0, 0.0, 0.0  # m³/s; acid in tank and basin (mol/m³)
     seen, dosed, total, good, wrong, soda = 7.2, 0.5, 0.5, 0, 0.0, 0.0
     for now in range(steps):
         load += -0.02 * load + 0.035 * shocks[now]

@@ -32,7 +32,7 @@ INTERRUPTED: Final = 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run `tarl-lint` and return its exit code. Without arguments, run as a process of its own."""
+    """Run `tarl-lint` and return its exit code. Without `arguments`, use those of the command line."""
     if arguments is not None:
         return _guarded(arguments)
     gc.disable()

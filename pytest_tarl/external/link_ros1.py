@@ -104,7 +104,7 @@ class LinkROS1:
             publishing, subscribing, _ = self._master.getSystemState()
             kinds = dict(self._master.getTopicTypes())
         except OSError:
-            return  # the master ends with the simulator
+            return  # the simulator has ended, and with it the ROS master
         published = [topic for topic, nodes in publishing if _others(nodes) and topic not in OWN]
         for topic in published:
             self._listen(topic, kinds.get(topic, "*"))

@@ -164,7 +164,7 @@ def _multiplied(
 
 
 def _started(processes: Processes, rows: Ints, products: _Products, first: int, evidence: Floats) -> None:
-    """Update the largest terms of the stakes and the missions before which they started.
+    """Update the largest term of each stake, and the mission before which that term started.
 
     `evidence`, shape (missions, rows), is log2 of the evidence after each mission.
     """

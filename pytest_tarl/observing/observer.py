@@ -184,7 +184,7 @@ class Observer:
 
     def _flush(self) -> None:
         cut = self.stream.cut(self._outlet.full)
-        steps = len(cut.rewards)  # number of steps in the cut; outside of a mission, the steps are dropped
+        steps = len(cut.rewards)  # number of steps to remove; outside a mission, they are dropped
         values = steps * len(self.sensors)
         readings, self._readings = self._readings[:values], self._readings[values:]
         times, self._times = self._times[:steps], self._times[steps:]

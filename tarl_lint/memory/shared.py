@@ -54,7 +54,7 @@ class Shared:
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
     # object → roots that have relied on it being one concrete object, in order
     certain: dict[Obj, dict[Root, None]] = field(default_factory=dict)
-    several: set[Obj] = field(default_factory=set)  # objects that have ceased to be one concrete object
+    several: set[Obj] = field(default_factory=set)  # objects that now stand for several concrete ones
     dirty: set[Root] = field(default_factory=set)
     # key → the tuple that stands for it in the records of calls, which would otherwise keep a tuple for each read
     one: dict[Key, Key] = field(default_factory=dict)

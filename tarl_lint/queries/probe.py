@@ -62,8 +62,8 @@ class Prober:
         self.seen: dict[SiteId, Seen] = {}
         self.deciding = {step.site: step for step in deciding(Tracer(machine), flows)}
         self.starts |= {(s.span.path, s.span.line, s.span.column): site for site, s in self.deciding.items()}
-        self.timing: dict[SiteId, Step] = {}  # statements outside of the flows that wait or set a rate
-        # statements outside of the flows that fill an object with constants, and the sites that use the object
+        self.timing: dict[SiteId, Step] = {}  # statements that wait or set a rate and are in no flow
+        # statements that fill an object with constants and are in no flow, and the sites that use the object
         self.configuring: dict[SiteId, tuple[Step, tuple[SiteId, ...]]] = {}
         # the same for statements that pass constants to objects of the program's own classes
         self.making: dict[SiteId, tuple[Step, tuple[SiteId, ...]]] = {}

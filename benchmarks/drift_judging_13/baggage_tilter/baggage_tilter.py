@@ -6,11 +6,11 @@ import math
 import rospy
 from std_msgs.msg import Bool, Float32, Int32, String
 
-CHUTES = {1: 3.4, 2: 6.4}  # m from the induction to the edge of the chute
-SPEED = 1.5  # m/s of the chain
+CHUTES = {1: 3.4, 2: 6.4}  # distances from the induction to the edge of each chute (m)
+SPEED = 1.5  # speed of the chain (m/s)
 TILT = math.radians(32)
 LEVEL = 0.0
-HOLD = 1.0  # s that the tray stays tilted
+HOLD = 1.0  # time for which the tray stays tilted (s)
 LEAD = 0.20  # time before the edge of the chute (s)
 JAM_TIME = 20.0  # s without motion
 

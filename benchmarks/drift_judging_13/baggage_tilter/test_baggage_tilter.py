@@ -12,12 +12,12 @@ Float32 = message_type("std_msgs/Float32")
 Int32 = message_type("std_msgs/Int32")
 
 DT = 0.1
-FINE = 10  # steps of the sliding bag in a step of the world
+FINE = 10  # number of steps of the sliding bag per step of the world
 BAGS = 4
 LAP = 10.5  # m
 CHUTES = {1: 3.4, 2: 6.4}
 WIDE = 2.4  # m
-TRAY = 0.6  # m from the middle of the tray to its edge
+TRAY = 0.6  # distance from the middle of the tray to its edge (m)
 TILTING = 1.3  # rad/s
 
 

@@ -13,10 +13,10 @@ PITCH = 2.0 * math.pi / GONDOLAS
 
 cruise = 0.11  # rad/s
 accel = 0.05  # rad/s^2, set in the inverter
-brake_decel = 0.055  # rad/s^2, brake shoes on the rim
-brake_delay = 0.25  # s until the shoes touch
+brake_decel = 0.055  # deceleration by the brake shoes on the rim (rad/s^2)
+brake_delay = 0.25  # time until the shoes touch (s)
 boarding_time = 4.0  # s
-wet = 85.0  # percent, roofs of the gondolas are closed above
+wet = 85.0  # humidity (%) above which the roofs of the gondolas are closed
 
 angle = None
 last_angle = None

@@ -14,7 +14,7 @@ RelativeHumidity = message_type("sensor_msgs/RelativeHumidity")
 DT = 0.1
 STOPS = 3
 PITCH = math.pi / 6.0
-STEP = 0.05  # rad, a gap that a foot does not reach
+STEP = 0.05  # a gap that a foot cannot bridge (rad)
 TIME_BOUND = 38.0
 
 

@@ -7,15 +7,15 @@ import rospy
 from sensor_msgs.msg import Temperature
 from std_msgs.msg import Bool, Float32, String
 
-CORE = 1.8  # m to drill in a run
-TRIP_SPEED = 0.5  # m/s in the open hole
-APPROACH = 1.0  # m above the bottom, slow from here
+CORE = 1.8  # length of core to drill per run (m)
+TRIP_SPEED = 0.5  # speed in the open hole (m/s)
+APPROACH = 1.0  # height above the bottom from which the drill moves slowly (m)
 FEED = 0.018  # m/s
 CLEAR_EVERY = 0.60  # m of core
-CLEAR_STROKE = 0.9  # m up and down again, chips fall behind the barrel
+CLEAR_STROKE = 0.9  # stroke up and down during which chips fall behind the barrel (m)
 CLEAR_SPEED = 0.15  # m/s
 MOTOR_RPM = 90.0
-BREAK_PULL = 4.0  # s with the core dogs at the bottom
+BREAK_PULL = 4.0  # duration of the pull with the core dogs at the bottom (s)
 OVERLOAD = 14.0  # A
 STABLE = 0.02  # m
 

@@ -10,7 +10,7 @@ Temperature = message_type("sensor_msgs/Temperature")
 
 DT = 0.5
 CORE = 1.75  # m
-LEVELS = 0.9  # chips beside the barrel that jam it, in m of core
+LEVELS = 0.9  # amount of chips that jams the barrel, in m of core
 TIME_BOUND = 230.0
 COLD, WARM = -18.0, -1.5  # °C
 

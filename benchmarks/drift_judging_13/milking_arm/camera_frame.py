@@ -2,8 +2,8 @@
 
 import math
 
-CAMERA_X = 0.06  # m from the base of the arm, towards the cow
-CAMERA_Z = 0.24  # m above the base of the arm
+CAMERA_X = 0.06  # distance from the base of the arm towards the cow (m)
+CAMERA_Z = 0.24  # height above the base of the arm (m)
 MOUNT_PITCH = 0.35  # rad, upwards
 
 

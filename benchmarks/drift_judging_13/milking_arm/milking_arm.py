@@ -18,7 +18,7 @@ TEATS = 4
 class MilkingArm(Node):
     def __init__(self):
         super().__init__("milking_arm")
-        self.declare_parameter("clearance", 0.09)  # m between cup and teat before it is raised
+        self.declare_parameter("clearance", 0.09)  # gap to the teat before the cup is raised (m)
         self.declare_parameter("smoothing", 0.5)
         self.declare_parameter("raise_speed", 0.12)  # m/s
         self.declare_parameter("settled", 0.012)  # m

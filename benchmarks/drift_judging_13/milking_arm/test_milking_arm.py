@@ -12,7 +12,7 @@ PointStamped = message_type("geometry_msgs/msg/PointStamped")
 UInt8 = message_type("std_msgs/msg/UInt8")
 
 DT = 0.1
-ASIDE, ALONG = 0.024, 0.03  # m, how far the cup may be from the teat
+ASIDE, ALONG = 0.024, 0.03  # maximum distance of the cup from the teat (m)
 TIME_BOUND = 40.0
 STRAIGHT, KICKED = 0.35, 0.47  # rad
 

@@ -42,7 +42,7 @@ class NurseryCart(Node):
     def odom_callback(self, msg):
         self.x = msg.pose.pose.position.x
         self.y = msg.pose.pose.position.y
-        # small angles only, the cart drives on a lane
+        # valid for small angles; the cart drives on a lane
         self.yaw = 2.0 * msg.pose.pose.orientation.z
 
     def beds_callback(self, msg):

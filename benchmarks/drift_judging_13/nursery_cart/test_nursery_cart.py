@@ -12,10 +12,10 @@ Float32MultiArray = message_type("std_msgs/msg/Float32MultiArray")
 Odometry = message_type("nav_msgs/msg/Odometry")
 
 DT = 0.1
-FINE = 5  # steps of the rocking pot in a step of the world
-POT = 0.11  # m, half of its width
+FINE = 5  # number of steps of the rocking pot per step of the world
+POT = 0.11  # half of its width (m)
 ROCKED = 0.012  # rad
-SHRUBS, TREES = 0.22, 0.88  # m, height of the centre of mass
+SHRUBS, TREES = 0.22, 0.88  # heights of the centre of mass (m)
 UNLOADING = 1.6  # s
 TIME_BOUND = 31.5
 

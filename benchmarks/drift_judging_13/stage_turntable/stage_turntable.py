@@ -7,12 +7,12 @@ from std_msgs.msg import Bool, Float32, Int32, String
 
 COUNTS_PER_REV = 2048.0  # encoder on the shaft of the motor
 GEARBOX = 24.0
-WHEEL_RADIUS = 0.125  # m, rubber wheel that drives the rim
+WHEEL_RADIUS = 0.125  # radius of the rubber wheel that drives the rim (m)
 RIM_RADIUS = 4.5  # m
 
-MAX_RIM_SPEED = 0.95  # m/s, people stand on it
+MAX_RIM_SPEED = 0.95  # m/s; people stand on the stage
 RIM_ACCEL = 0.45  # m/s2
-KP = 1.1  # 1/s close to the angle
+KP = 1.1  # gain near the target angle (1/s)
 DEADBAND = math.radians(0.3)
 RATE = 5.0  # Hz
 

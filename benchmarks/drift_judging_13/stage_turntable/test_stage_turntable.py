@@ -13,7 +13,7 @@ Int32 = message_type("std_msgs/Int32")
 
 DT = 0.2
 CUES = 3
-EVERY = 17.0  # s from cue to cue
+EVERY = 17.0  # time between two cues (s)
 TOLERANCE = 5.0  # degrees
 NEW, WORN = 0.125, 0.104  # m
 

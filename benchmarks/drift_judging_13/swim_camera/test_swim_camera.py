@@ -16,7 +16,7 @@ PointStamped = message_type("geometry_msgs/msg/PointStamped")
 DT = 0.1
 POOL = 25.0
 STEPS = 280
-FRAME = 0.70  # m from the middle of the picture to its edge
+FRAME = 0.70  # distance from the middle of the picture to its edge (m)
 MISSED = 6.0  # s
 OLD, NEW = 0.12, 0.62  # s
 

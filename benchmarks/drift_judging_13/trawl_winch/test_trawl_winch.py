@@ -11,8 +11,8 @@ Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 2.0
 STEPS = 200
-SETTLED = 80  # steps until the net fishes
-NET = 11.0  # m, half of the height of the layer and the mouth
+SETTLED = 80  # number of steps until the net fishes
+NET = 11.0  # half of the height of the layer and of the net's mouth (m)
 BOTTOM = 100.0  # m
 
 

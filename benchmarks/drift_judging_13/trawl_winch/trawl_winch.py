@@ -31,12 +31,12 @@ class TrawlWinch(Node):
         self.declare_parameters(
             "",
             [
-                ("warp_ratio", 2.5),  # m of warp for a metre of depth
-                ("headline", 4.0),  # m, the net is set this much above the middle of the layer
-                ("gain", 0.08),  # m/s for a metre of warp
+                ("warp_ratio", 2.5),  # length of warp per metre of depth
+                ("headline", 4.0),  # height of the net's set point above the middle of the layer (m)
+                ("gain", 0.08),  # speed per metre of warp (1/s)
                 ("deadband", 2.0),  # m
                 ("max_speed", 1.4),  # m/s
-                ("max_tension", 60.0),  # kN, the winch gives way above
+                ("max_tension", 60.0),  # tension above which the winch gives way (kN)
                 ("period", 2.0),
             ],
         )
@@ -61,7 +61,7 @@ class TrawlWinch(Node):
         self.ticks = 0
 
     def layer_callback(self, msg):
-        if msg.data > 10.0:  # the sounder returns 0 without an echo
+        if msg.data > 10.0:  # the sounder returns 0 if there is no echo
             self.layer.add(msg.data)
 
     def length_callback(self, msg):

@@ -17,9 +17,9 @@ class FarmGantry(Node):
     def __init__(self):
         super().__init__("farm_gantry")
         self.declare_parameter("speed", 250.0)  # mm/s
-        self.declare_parameter("flow", 40.0)  # ml/s through the nozzle
+        self.declare_parameter("flow", 40.0)  # flow through the nozzle (ml/s)
         self.declare_parameter("tolerance", 4.0)  # mm
-        self.declare_parameter("settle_time", 0.4)  # s, until the nozzle hangs still
+        self.declare_parameter("settle_time", 0.4)  # time until the nozzle hangs still (s)
         self.speed = self.get_parameter("speed").value
         self.flow = self.get_parameter("flow").value
         self.tolerance = self.get_parameter("tolerance").value

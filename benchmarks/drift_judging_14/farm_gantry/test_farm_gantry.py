@@ -14,7 +14,7 @@ PointStamped = message_type("geometry_msgs/msg/PointStamped")
 DT = 0.1
 PLANTS = 3
 FLOW = 0.040  # l/s
-REACH = 55.0  # mm from the stem, where the water still reaches the roots
+REACH = 55.0  # distance from the stem at which the water still reaches the roots (mm)
 TIME_BOUND = 60.0
 USUAL, SPARE = 20, 16  # teeth
 

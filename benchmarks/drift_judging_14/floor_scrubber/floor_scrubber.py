@@ -9,14 +9,14 @@ from geometry_msgs.msg import Point
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Bool, String
 
-CAPACITY = 3.0  # Ah of a pack
+CAPACITY = 3.0  # capacity of a pack (Ah)
 RESERVE = 0.2  # charge that is never used (Ah)
-DRIVE_CURRENT = 11.0  # A, brush and pump off
+DRIVE_CURRENT = 11.0  # current with brush and pump off (A)
 
 LANES = 8
 LANE_WIDTH = 1.5  # m
 LANE_LENGTH = 24.0  # m
-SPEED = 0.5  # m/s while it scrubs
+SPEED = 0.5  # speed while scrubbing (m/s)
 TRANSIT_SPEED = 0.8  # m/s
 DOCK = (0.0, 0.0)
 NEAR = 0.5  # m

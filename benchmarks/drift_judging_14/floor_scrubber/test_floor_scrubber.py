@@ -11,7 +11,7 @@ BatteryState = message_type("sensor_msgs/BatteryState")
 Point = message_type("geometry_msgs/Point")
 
 DT = 2.0
-CELL = 1.0  # length of the lane in a cell (m)
+CELL = 1.0  # length of lane per cell (m)
 LANES, LENGTH = 8, 24
 TIME_BOUND = 800.0
 YOUNG, OLD = 3.0, 1.95  # Ah
@@ -80,7 +80,7 @@ class Hall:
 
     def _scrub(self):
         lane = int(self.y / 1.5)
-        for back in (0.0, 0.5):  # the step is as long as a cell
+        for back in (0.0, 0.5):  # one step covers one cell
             place = (lane, int((self.x - 1.0 - back) / CELL))
             if 0 <= place[0] < LANES and 0 <= place[1] < LENGTH and place not in self.clean:
                 self.clean.add(place)

@@ -12,9 +12,9 @@ Float32 = message_type("std_msgs/msg/Float32")
 Pose2D = message_type("geometry_msgs/msg/Pose2D")
 
 DT = 0.1
-WALL = 0.55  # m from the middle line, for the middle of the robot
+WALL = 0.55  # maximum distance of the robot's middle from the middle line (m)
 TIME_BOUND = 45.0
-QUIET, FULL = 0.1, 0.7  # s, of a round trip
+QUIET, FULL = 0.1, 0.7  # delays of a round trip (s)
 
 
 class Corridor:

@@ -14,7 +14,7 @@ Int32 = message_type("std_msgs/msg/Int32")
 DT = 0.05
 PAGES = 3
 TIME_BOUND = 25.0
-DAMP = 0.10  # share of the books
+DAMP = 0.10  # share of damp books
 
 
 class Book:
@@ -23,7 +23,7 @@ class Book:
     def __init__(self, rng, damp):
         self.rng = rng
         low, high = (0.95, 1.20) if rng.random() < damp else (0.15, 0.45)
-        self.needs = [rng.uniform(low, high) for _ in range(PAGES)]  # s of air with the head 2 cm up
+        self.needs = [rng.uniform(low, high) for _ in range(PAGES)]  # air with the head 2 cm up (s)
         self.leak = rng.uniform(0.9, 1.1)
         self.height, self.angle, self.pressure = 0.05, 0.0, 0.0
         self.held, self.swept = False, False

@@ -17,7 +17,7 @@ LASER_Y = 0.42  # m
 LASER_YAW = 0.785  # rad
 
 FORK_LENGTH = 1.15  # m
-INSERTED = 0.25  # m from the axle to the front of the pallet
+INSERTED = 0.25  # distance from the axle to the front of the pallet (m)
 
 
 class PID(object):

@@ -11,8 +11,8 @@ Bool = message_type("std_msgs/Bool")
 Pose2D = message_type("geometry_msgs/Pose2D")
 
 DT = 0.1
-FORKS = 1.15  # m ahead of the axle
-POCKET = 0.05  # m to either side
+FORKS = 1.15  # distance ahead of the axle (m)
+POCKET = 0.05  # distance to either side (m)
 ASKEW = 0.06  # rad
 TIME_BOUND = 40.0
 BUILT, KNOCKED = 0.785, 0.685  # rad

@@ -14,7 +14,7 @@ class SeedDrone(Node):
         self.declare_parameters(
             "",
             [
-                ("height", 3.0),  # m above the ground; the swath depends on it
+                ("height", 3.0),  # height above the ground, on which the swath depends (m)
                 ("climb_rate", 0.8),  # m/s
                 ("hover_throttle", 0.49),
                 ("kp", 0.24),

@@ -15,7 +15,7 @@ DT = 0.1
 AISLE = 20.0  # m
 SEES = 3.0  # m
 TIME_BOUND = 38.0
-BUSY = 0.06  # share of the readings that are echoes of others
+BUSY = 0.06  # share of the readings that are pings of other robots
 
 
 class Aisle:

@@ -12,7 +12,7 @@ Float32 = message_type("std_msgs/Float32")
 
 DT = 0.1
 OFF_GRADE = 0.075  # m
-FAR, NEAR = 7.0, 3.0  # m, reach of the stick
+FAR, NEAR = 7.0, 3.0  # reach of the stick (m)
 TIME_BOUND = 40.0
 WINTER = -6.0  # degrees C
 

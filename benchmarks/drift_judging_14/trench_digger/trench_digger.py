@@ -4,13 +4,13 @@
 import rospy
 from std_msgs.msg import Bool, Float32, String
 
-SPOOL_DEADBAND = 0.10  # share of the spool's travel before oil flows
-GAIN = 3.5  # spool per m of height
+SPOOL_DEADBAND = 0.10  # share of its travel that the spool covers before oil flows
+GAIN = 3.5  # spool travel per m of height
 SPOOL_LIMIT = 0.9
-STICK_SPOOL = 0.45  # of the stick, pulling in
+STICK_SPOOL = 0.45  # spool command that pulls the stick in
 TOLERANCE = 0.008  # m
 OIL_HOT = 85.0  # degrees C
-ON_GRADE = 0.04  # m, before the stick starts
+ON_GRADE = 0.04  # maximum height error before the stick starts (m)
 
 
 def sign(value):
@@ -19,7 +19,7 @@ def sign(value):
 
 class TrenchDigger(object):
     def __init__(self):
-        self.depth = rospy.get_param("~depth", 0.0)  # m above (+) or below (-) the plane of the laser
+        self.depth = rospy.get_param("~depth", 0.0)  # height above (+) or below (-) the laser plane (m)
         self.height = None
         self.reach = 0.0
         self.oil = 50.0

@@ -9,10 +9,10 @@ from rclpy.parameter import Parameter
 from std_msgs.msg import Float64, Float64MultiArray
 from winch_pid import PID
 
-TRACK = (2.0, 98.0)  # m, ends of the usable cable
-LEAD_TIME = 0.35  # s that the camera looks ahead of the athletes
+TRACK = (2.0, 98.0)  # ends of the usable cable (m)
+LEAD_TIME = 0.35  # time by which the camera looks ahead of the athletes (s)
 MAX_FORCE = 900.0  # N
-LINE_MASS = 46.0  # kg of camera and carriage
+LINE_MASS = 46.0  # mass of camera and carriage (kg)
 
 
 class CableCamera(Node):

@@ -11,7 +11,7 @@ PointStamped = message_type("geometry_msgs/msg/PointStamped")
 
 DT = 0.05
 STEPS = 260
-SETTLED = 120  # steps until the picture counts
+SETTLED = 120  # number of steps until the picture counts
 CALM = 1.5  # m/s
 
 

@@ -12,7 +12,7 @@ RECIPES = {
     "tailgate": {"area": 16.0, "start_boost": 1.25, "boost_time": 0.3},
 }
 
-# viscosity of the sealant against the temperature of the barrel
+# viscosity of the sealant as a function of the barrel's temperature
 REFERENCE_TEMP = 25.0  # degC
 LEAK_PER_DEGREE = 0.004
 COLD = 18.0

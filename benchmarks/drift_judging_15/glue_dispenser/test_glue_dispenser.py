@@ -10,9 +10,9 @@ Float64 = message_type("std_msgs/msg/Float64")
 Vector3 = message_type("geometry_msgs/msg/Vector3")
 
 DT = 0.05
-AREA = 12.0  # mm² of a good bead
+AREA = 12.0  # cross-section of a good bead (mm²)
 SEAM = 2.4  # m
-PIECE = 0.2  # m that are judged at once
+PIECE = 0.2  # length of bead that is judged at once (m)
 NEW, WORN = 0.60, 0.43  # ml per turn
 
 

@@ -6,8 +6,8 @@ from geometry_msgs.msg import Twist
 from std_msgs.msg import Float32, Int32, String
 
 TIMEOUTS = {"call": 22.0, "door": 8.0, "ride": 60.0}  # s
-STOP_LINE = 1.2  # m from the door of the lift
-INSIDE = -1.3  # m, behind the door
+STOP_LINE = 1.2  # distance from the door of the lift (m)
+INSIDE = -1.3  # position behind the door (m)
 DOOR_GAP = 0.9  # m
 
 

@@ -11,7 +11,7 @@ Int32 = message_type("std_msgs/Int32")
 DT = 0.25
 FLOOR = 3
 TIME_BOUND = 120.0
-BUSY = 0.12  # share of rides that find the lift busy
+BUSY = 0.12  # share of the rides for which the lift is busy
 
 
 class Hospital:
@@ -19,7 +19,7 @@ class Hospital:
 
     def __init__(self, rng, busy):
         self.rng = rng
-        self.left = rng.uniform(3.0, 5.0)  # m to the door
+        self.left = rng.uniform(3.0, 5.0)  # distance to the door (m)
         long = rng.random() < busy
         self.wait = rng.uniform(32.0, 45.0) if long else rng.uniform(5.0, 14.0)
         self.ride = rng.uniform(8.0, 14.0)

@@ -11,7 +11,7 @@ from sensor_msgs.msg import FluidPressure, Range
 from std_msgs.msg import Float32, String
 
 GAINS = {"speed": {"kp": 2.4, "ki": 0.2, "limit": 0.6}}
-STOP_GAP = 0.8  # m between tyres and berm
+STOP_GAP = 0.8  # distance between tyres and berm (m)
 CREEP = 0.25  # m/s
 
 

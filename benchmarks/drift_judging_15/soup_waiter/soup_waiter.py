@@ -12,7 +12,7 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
 TABLE_X = 9.0  # m
-STOP_DISTANCE = 1.1  # m to a guest
+STOP_DISTANCE = 1.1  # distance to a guest (m)
 SLOW_DISTANCE = 2.0
 FRONT = math.radians(20.0)
 

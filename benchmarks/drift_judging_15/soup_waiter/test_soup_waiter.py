@@ -11,10 +11,10 @@ LaserScan = message_type("sensor_msgs/msg/LaserScan")
 Odometry = message_type("nav_msgs/msg/Odometry")
 
 DT = 0.1
-PARTS = 4  # of a step, for the soup
+PARTS = 4  # number of steps of the soup per step of the world
 TABLE = 9.0
 TIME_BOUND = 24.0
-RIM = 0.11  # slope of the surface at which a full bowl spills
+RIM = 0.11  # slope of the soup's surface at which a full bowl spills
 
 
 class Restaurant:
@@ -26,7 +26,7 @@ class Restaurant:
         self.x, self.y, self.yaw = 0.0, rng.uniform(-0.15, 0.15), rng.uniform(-0.1, 0.1)
         self.v, self.turn = 0.0, 0.0
         self.guest = rng.uniform(3.5, 6.0)
-        self.crossing = rng.uniform(1.6, 2.2)  # m from the robot when the guest steps into the aisle
+        self.crossing = rng.uniform(1.6, 2.2)  # where the guest steps into the aisle (m)
         self.stay, self.stands = rng.uniform(1.5, 2.5), False
         self.wave = 2 * math.pi * rng.uniform(1.5, 1.8)
         self.slope, self.sway = 0.0, 0.0

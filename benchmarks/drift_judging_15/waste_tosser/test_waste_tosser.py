@@ -14,7 +14,7 @@ DT = 0.1
 ITEMS = 6
 EMPTY, FULL = 0.08, 1.0  # kg
 HEIGHT, REACH = 0.9, 0.85  # m
-HALF = 0.46  # m, of the opening of the bin
+HALF = 0.46  # half of the bin's opening (m)
 
 
 class Cell:
@@ -23,7 +23,7 @@ class Cell:
     def __init__(self, rng, mass):
         self.rng = rng
         self.masses = mass * (1.0 + 0.05 * rng.normal(size=ITEMS))
-        self.bin = rng.uniform(1.75, 2.25)  # m to its front edge
+        self.bin = rng.uniform(1.75, 2.25)  # distance to its front edge (m)
         self.item, self.empty, self.thrown = 0, 0.3, None
         self.hits, self.gained, self.time = 0, 0.0, 0.0
 

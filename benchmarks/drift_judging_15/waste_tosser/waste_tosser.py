@@ -10,12 +10,12 @@ from std_msgs.msg import Float32, String
 
 ARM = {
     "reach": 0.85,  # m
-    "max_speed": 7.5,  # m/s at the gripper
-    "release_angle": 0.70,  # rad above the horizon
-    "lead": 0.04,  # s that the gripper needs to open
+    "max_speed": 7.5,  # speed of the gripper (m/s)
+    "release_angle": 0.70,  # angle above the horizon (rad)
+    "lead": 0.04,  # time that the gripper needs to open (s)
 }
-SPEED_GAIN = 1.04  # of the tracking of the arm, measured with empty bottles
-BIN_DEPTH = 0.30  # m from the front edge to the middle
+SPEED_GAIN = 1.04  # tracking gain of the arm, measured with empty bottles
+BIN_DEPTH = 0.30  # distance from the front edge to the middle (m)
 GRIP_OK = 0.3  # N
 HEAVY = 15.0  # N
 

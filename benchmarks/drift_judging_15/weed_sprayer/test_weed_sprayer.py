@@ -13,7 +13,7 @@ TwistStamped = message_type("geometry_msgs/TwistStamped")
 
 DT = 0.05
 HEIGHT, BOOM = 0.95, 0.40  # m
-VALVE = 0.08  # s until a valve opens
+VALVE = 0.08  # time until a valve opens (s)
 MOUNTED, PUSHED = 0.62, 0.72  # rad
 
 

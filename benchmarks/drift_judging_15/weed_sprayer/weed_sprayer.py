@@ -15,7 +15,7 @@ IMAGE = {"width": 640, "height": 480, "fx": 420.0, "fy": 420.0}
 
 # camera above the ground, in front of the boom
 CAMERA_HEIGHT = 0.95  # m
-CAMERA_PITCH = 0.62  # rad below the horizon
+CAMERA_PITCH = 0.62  # angle below the horizon (rad)
 CAMERA_TO_BOOM = 0.40  # m
 
 NOZZLE_SPACING = 0.25  # m

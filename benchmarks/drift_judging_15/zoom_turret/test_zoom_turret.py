@@ -13,8 +13,8 @@ PointStamped = message_type("geometry_msgs/PointStamped")
 
 DT = 0.1
 STEPS = 120
-LATE = 2  # steps from the camera to the tracker
-SCALE = 1280 / math.radians(52.0)  # px per rad in the wide picture
+LATE = 2  # number of steps from the camera to the tracker
+SCALE = 1280 / math.radians(52.0)  # scale of the wide picture (px/rad)
 WIDE, NEAR = 1.0, 6.5
 
 
@@ -24,7 +24,7 @@ class Sky:
     def __init__(self, rng, zoom):
         self.rng = rng
         self.zoom = zoom * (1.0 + 0.04 * rng.normal())
-        self.fast = rng.uniform(0.85, 1.0) * (1.0 if zoom < 2.0 else 0.2)  # rad/s; far birds seem slow
+        self.fast = rng.uniform(0.85, 1.0) * (1.0 if zoom < 2.0 else 0.2)  # rad/s; distant birds seem slow
         self.wide, self.phase = rng.uniform(0.25, 0.4), rng.uniform(0.0, 2 * math.pi)
         self.now = 0
         self.head, self.rates = list(self.bird()), [0.0, 0.0]

@@ -10,8 +10,8 @@ from rclpy.node import Node
 from std_msgs.msg import Bool
 
 PIXELS_PER_METRE = 1180.0
-CENTRE = (320.0, 240.0)  # px, middle of the plate in the image
-EDGE = {"x": 0.19, "y": 0.14}  # m from the middle to the rim
+CENTRE = (320.0, 240.0)  # middle of the plate in the image (px)
+EDGE = {"x": 0.19, "y": 0.14}  # distances from the middle to the rim (m)
 GAINS = {"x": {"kp": 1.05, "kd": 0.62}, "y": {"kp": 1.15, "kd": 0.66}}
 
 

@@ -20,7 +20,7 @@ class Plate:
         self.place = [float(rng.uniform(-0.06, 0.06)), float(rng.uniform(-0.05, 0.05))]
         self.speed = [0.0, 0.0]
         self.angle = [0.0, 0.0]
-        self.level = rng.normal(0.0, 0.002, 2)  # rad that the table is out of level
+        self.level = rng.normal(0.0, 0.002, 2)  # tilt of the table (rad)
         sides = [float(side) for side in rng.choice([-1.0, 1.0], 2)]
         self.goals = [(0.10 * sides[0], 0.06 * sides[1]), (-0.10 * sides[0], 0.07 * sides[1])]
         self.now, self.near, self.gained, self.fallen = 0, 0, 0.0, False

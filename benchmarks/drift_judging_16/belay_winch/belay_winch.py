@@ -15,7 +15,7 @@ class Mode(enum.Enum):
 
 
 class BelayWinch(object):
-    TAKE_IN = 0.9  # m/s at most
+    TAKE_IN = 0.9  # maximum speed (m/s)
     LOWERING = 0.7
 
     def __init__(self, fall_speed=1.1, slack_tension=25.0):

@@ -9,7 +9,7 @@ Float64 = message_type("std_msgs/Float64")
 
 DT = 0.05
 WALL = 9.0  # m
-CLUB = (1.45, 1.75)  # m/s that a climber drops back after a leap
+CLUB = (1.45, 1.75)  # speed at which a climber drops back after a leap (m/s)
 BEGINNER = (0.15, 0.35)
 
 

@@ -10,7 +10,7 @@ last = {"current": 0.0, "pedal": None}
 
 
 def pedal_cb(msg):
-    # x: torque of the crank, y: cadence in rev/min
+    # x: crank torque, y: cadence in rev/min
     state["torque"] = 0.8 * state["torque"] + 0.2 * msg.vector.x
     state["cadence"] = msg.vector.y
     last["pedal"] = rospy.get_time()

@@ -10,7 +10,7 @@ Vector3Stamped = message_type("geometry_msgs/Vector3Stamped")
 
 DT = 0.1
 STEPS = 300
-EMPTY, CHILDREN = 6.0, 78.0  # kg in the box
+EMPTY, CHILDREN = 6.0, 78.0  # load in the box (kg)
 
 
 class Street:

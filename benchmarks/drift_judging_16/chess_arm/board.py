@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 FILES = "abcdefgh"
-GRIP_SHARE = 0.6  # share of a piece's height where the fingers close
+GRIP_SHARE = 0.6  # height at which the fingers close, as a share of the piece's height
 HEIGHTS = {"pawn": 0.042, "rook": 0.048, "knight": 0.054, "bishop": 0.062, "queen": 0.074, "king": 0.082}
 
 

@@ -12,7 +12,7 @@ Pose2D = message_type("geometry_msgs/Pose2D")
 String = message_type("std_msgs/String")
 
 DT = 0.1
-CLUB = 0.050  # m, side of a square
+CLUB = 0.050  # side of a square (m)
 TOURNAMENT = 0.057
 FRAME = 0.018
 TIME_BOUND = 32.0

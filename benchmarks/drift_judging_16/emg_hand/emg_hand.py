@@ -21,7 +21,7 @@ class EmgHand(Node):
                 ("extensor_on", 0.36),
                 ("flexor_smoothing", 0.30),
                 ("extensor_smoothing", 0.25),
-                ("release_share", 0.55),  # of a threshold, where the hand comes to rest
+                ("release_share", 0.55),  # share of a threshold at which the hand comes to rest
                 ("close_speed", 0.09),  # m/s
                 ("open_speed", 0.11),
                 ("grip_force", 9.0),  # N

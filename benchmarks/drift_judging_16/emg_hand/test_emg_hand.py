@@ -8,8 +8,8 @@ from pytest_tarl.ros import message_type
 Float64 = message_type("std_msgs/msg/Float64")
 
 DT = 0.05
-SWEAT = 0.45  # share of the amplitudes that is left
-CYCLE = 90  # steps from a grip to the next one
+SWEAT = 0.45  # share of the amplitudes that remains
+CYCLE = 90  # number of steps from one grip to the next
 CYCLES = 2
 
 

@@ -13,7 +13,7 @@ Vector3 = message_type("geometry_msgs/Vector3")
 
 DT = 1.0
 STEPS = 480
-FOREST = 5.0  # deg, swing of the direction
+FOREST = 5.0  # swing of the wind's direction (deg)
 OPEN = 0.4
 
 

@@ -10,7 +10,7 @@ from rclpy.node import Node
 from std_msgs.msg import Float32, String
 
 PROBE_RANGE = (3.5, 9.5)
-FLOW = 1.2  # ml/s of the dosing pump
+FLOW = 1.2  # flow of the dosing pump (ml/s)
 
 
 class PhBalancer(Node):

@@ -9,7 +9,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 2.0
 STEPS = 750  # 25 minutes
-RAIN = 30.0  # ml of acid per unit of pH
+RAIN = 30.0  # acid per unit of pH (ml)
 SETTLED = 450
 
 
@@ -19,7 +19,7 @@ class Tank:
     def __init__(self, rng, buffer):
         self.rng = rng
         self.buffer = buffer * rng.uniform(0.97, 1.03)
-        self.rise = 0.0007 * rng.uniform(0.9, 1.1)  # pH per second, by roots and air
+        self.rise = 0.0007 * rng.uniform(0.9, 1.1)  # rise of the pH per second, caused by roots and air
         self.rise *= (buffer / RAIN) ** 0.5
         self.ph, self.ec = rng.uniform(6.8, 7.1), 0.75 + 0.0125 * buffer
         self.mixed, self.now, self.off, self.gained = 0.0, 0, 0, 0.0

@@ -13,7 +13,7 @@ Odometry = message_type("nav_msgs/msg/Odometry")
 Range = message_type("sensor_msgs/msg/Range")
 
 DT = 0.05
-TREMOR = 0.5  # of the full deflection
+TREMOR = 0.5  # share of the full deflection
 DOOR = 7.0  # m
 TIME_BOUND = 22.0
 

@@ -28,8 +28,8 @@ class Profile:
     max_forward: float = 0.9  # m/s
     max_backward: float = 0.35
     max_turn: float = 1.1  # rad/s
-    turn_at_speed: float = 0.35  # share of the turn that is lost at full speed
-    clearance: float = 0.45  # m where the chair stops
+    turn_at_speed: float = 0.35  # share of the turn rate that is lost at full speed
+    clearance: float = 0.45  # distance at which the chair stops (m)
     slow_zone: float = 1.3
     stick_timeout: float = 0.4  # s
 

@@ -7,7 +7,7 @@ from std_msgs.msg import Bool, Float32, String
 CELLS = 7
 CELL_EMPTY = 3.15  # V
 CELL_FULL = 4.12
-CHARGER_VOLTS = 26.5  # V at the contacts, from here on the charger feeds them
+CHARGER_VOLTS = 26.5  # voltage at the contacts from which on the charger feeds them (V)
 DEBOUNCE = 4
 
 

@@ -12,8 +12,8 @@ Float32 = message_type("std_msgs/Float32")
 
 DT = 0.1
 CHARGER = 29.4  # V
-DIODE = 21.0  # V that leak from the pack to the open contacts
-WORN = 5.0  # V lost at the contacts
+DIODE = 21.0  # voltage that leaks from the pack to the open contacts (V)
+WORN = 5.0  # voltage lost at the contacts (V)
 
 
 class Room:

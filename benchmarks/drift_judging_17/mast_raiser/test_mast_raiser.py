@@ -9,8 +9,8 @@ Bool = message_type("std_msgs/Bool")
 Float32 = message_type("std_msgs/Float32")
 
 DT = 0.05
-STIFF = 0.1  # share of the mornings with stiff grease
-HOLD = 60  # steps that a picture takes
+STIFF = 0.1  # share of mornings with stiff grease
+HOLD = 60  # number of steps that a picture takes
 
 
 class Mast:

@@ -10,7 +10,7 @@ BatteryState = message_type("sensor_msgs/msg/BatteryState")
 
 DT = 2.0
 STEPS = 600  # 20 minutes
-QUIET = 0.01  # K of noise
+QUIET = 0.01  # noise (K)
 NOISY = 0.3
 
 

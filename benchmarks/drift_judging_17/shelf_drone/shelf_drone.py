@@ -5,7 +5,7 @@ import rospy
 from sensor_msgs.msg import Range
 from std_msgs.msg import Bool, Float64, Int16
 
-HOVER = 0.52  # throttle at which it hovers
+HOVER = 0.52  # throttle at which the drone hovers
 FLOOR_CLEARANCE = 0.35
 
 

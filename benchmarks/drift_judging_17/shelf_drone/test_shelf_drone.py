@@ -10,8 +10,8 @@ Float64 = message_type("std_msgs/Float64")
 Int16 = message_type("std_msgs/Int16")
 
 DT = 0.05
-LEVEL = 260  # steps at each height
-READS = 100  # of them, the last ones are for reading
+LEVEL = 260  # number of steps at each height
+READS = 100  # number of the last of these steps, in which labels are read
 OLD = (0.72, 0.92)
 
 

@@ -8,7 +8,7 @@ from pytest_tarl.ros import message_type
 Range = message_type("sensor_msgs/msg/Range")
 
 DT = 0.05
-DRY = 3.0  # m/s² that the wheels can transmit
+DRY = 3.0  # maximum acceleration that the wheels can transmit (m/s²)
 WET = 0.62
 LOAD = 2
 
@@ -23,7 +23,7 @@ class Hall:
         self.stations = [float(gaps[: i + 1].sum()) for i in range(3)]
         self.place, self.speed, self.time, self.gained, self.failure = 0.0, 0.0, 0.0, 0.0, ""
         self.served, self.loading = 0, 0
-        self.person = float(rng.uniform(1.0, 9.0))  # m where someone crosses
+        self.person = float(rng.uniform(1.0, 9.0))  # position where someone crosses (m)
         self.waits = 40
 
     @property

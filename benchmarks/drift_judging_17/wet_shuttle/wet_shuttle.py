@@ -26,7 +26,7 @@ class Shuttle(Node):
     ACCEL = 0.6  # m/s2
     DECEL = 1.15
     STOP_BEFORE = 0.02
-    PERSON = 0.8  # m, wait if someone stands in front
+    PERSON = 0.8  # wait if someone is closer than this (m)
 
     def __init__(self):
         super().__init__("shuttle")

@@ -186,7 +186,7 @@ def _constant(constant: Constant) -> Any:
 
 PACKED = frozenset(CODES) - {"byte"}  # types that rosidl stores in an `array.array`
 _UNSET = object()
-_parts: dict[str, type[Message]] = {}  # parts of services and actions, needed by the transport messages
+_parts: dict[str, type[Message]] = {}  # parts of services and actions; transport messages need them
 
 
 def _init_lines(fields: list[Field]) -> list[str]:
@@ -215,7 +215,7 @@ def _packed_code(field: Field) -> str:
 
 def _fill(message: Message, given: dict[str, Any]) -> None:
     names = {field.name: _packed_code(field) for field in message._tarl_fields}
-    given.pop("check_fields", None)  # option of newer rosidl; fields are always checked here
+    given.pop("check_fields", None)  # option of newer rosidl; TARL always checks the fields
     assert all(key in names for key in given), "Invalid arguments passed to constructor: " + ", ".join(
         sorted(key for key in given if key not in names)
     )

@@ -29,7 +29,7 @@ class TransformRegistration:
         self._converters[key] = callback
 
     def get(self, key: Any) -> Callable[[Any, Any], Any]:
-        """Return the transformation of a type. Raise TypeException if there is none."""
+        """Return the function that transforms messages of a type. Raise TypeException if there is none."""
         if key in self._converters:
             return self._converters[key]
         if key.__name__ == "PointCloud2":

@@ -61,7 +61,7 @@ class LifecycleNodeMixin(ManagedEntity):
         for transition in TRANSITIONS:
             if transition.label == "shutdown" and transition.start == self._state:
                 return self._change(transition.number)
-        raise RCLError("Shutdown transtion not possible")
+        raise RCLError("Shutdown transtion not possible")  # rclpy's own spelling
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
         """Add an entity that takes part in all transitions. Raise TypeError if it is not a ManagedEntity."""
