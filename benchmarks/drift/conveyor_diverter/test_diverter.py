@@ -8,7 +8,7 @@ from pytest_tarl.ros import message_type
 Float32 = message_type("std_msgs/Float32")
 
 DT = 0.05
-PUSHER = 1.0  # from the gate, m
+PUSHER = 1.0  # distance from the gate (m)
 REACH = 0.14
 NEEDED = 0.035  # impulse needed per kg: share of full force times seconds
 

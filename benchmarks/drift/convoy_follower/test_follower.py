@@ -11,7 +11,7 @@ Range = message_type("sensor_msgs/Range")
 
 DT = 0.1
 DURATION = 18.0
-WET = (60.0, 220.0)  # along the road, m
+WET = (60.0, 220.0)  # section of the road (m)
 
 
 class Road:

@@ -12,7 +12,7 @@ Bool = message_type("std_msgs/msg/Bool")
 JointState = message_type("sensor_msgs/msg/JointState")
 
 DT = 0.05
-HOLD = 36  # steps for each goal
+HOLD = 36  # number of steps per goal
 NEAR = 0.1  # rad
 
 

@@ -14,7 +14,7 @@ Float64 = message_type("std_msgs/Float64")
 DT = 0.1
 LENGTH = 6.0
 SLOPE = (2.0, 5.0)
-STRIP = 0.16  # from the middle, m
+STRIP = 0.16  # distance from the middle (m)
 
 
 class Lawn:

@@ -7,7 +7,7 @@ from std_msgs.msg import Float32
 
 LEVEL = 1.5  # m
 GAIN = 0.9
-TRIM = 0.15  # per s
+TRIM = 0.15  # gain of the integral part (1/s)
 DEAD = 0.01  # m
 
 

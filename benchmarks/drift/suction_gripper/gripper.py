@@ -5,8 +5,8 @@ import rclpy
 from rclpy.node import Node
 from std_msgs.msg import Float32, UInt8
 
-VACUUM = [22.0, 30.0, 40.0]  # for each size of carton (kPa)
-LIFT_SPEED = [0.5, 0.4, 0.3]  # for each size of carton (m/s)
+VACUUM = [22.0, 30.0, 40.0]  # vacuum for each size of carton (kPa)
+LIFT_SPEED = [0.5, 0.4, 0.3]  # speed for each size of carton (m/s)
 HEIGHT = 0.6  # height to which the carton is lifted, m
 RAMP = 0.05  # change of speed per period (m/s)
 

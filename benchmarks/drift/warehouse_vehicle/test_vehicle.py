@@ -10,7 +10,7 @@ Float32 = message_type("std_msgs/Float32")
 
 DT = 0.1
 TIME_BOUND = 11.0
-BAY = (0.25, 0.55)  # from the wall, m
+BAY = (0.25, 0.55)  # distances from the wall (m)
 RADIUS = 0.05
 TOP_TURNS = 100.0
 

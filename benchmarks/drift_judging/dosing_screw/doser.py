@@ -8,7 +8,7 @@ RECIPE = {
     "kg_per_turn": 0.04,
     "fast": 12.0,  # turns per second
     "slow": 1.5,
-    "ease": 1.8,  # turns per second for each remaining turn
+    "ease": 1.8,  # speed (turns/s) per remaining turn
 }
 
 

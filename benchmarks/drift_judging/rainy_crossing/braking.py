@@ -1,6 +1,6 @@
 """The braking distance, and the pedal for acceleration."""
 
-DECELERATION = 3.0  # with full brakes (m/s²)
+DECELERATION = 3.0  # deceleration with full brakes (m/s²)
 REACTION = 0.4  # s
 RESERVE = 1.2  # m
 

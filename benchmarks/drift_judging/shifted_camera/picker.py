@@ -14,7 +14,7 @@ class Picker(Node):
 
     def __init__(self):
         super().__init__("picker")
-        self.declare_parameter("camera_x", 0.12)  # of the picture's middle, m
+        self.declare_parameter("camera_x", 0.12)  # position of the picture's middle (m)
         self.declare_parameter("camera_y", 0.05)
         self.declare_parameter("metres_per_pixel", 0.0005)
         self.declare_parameter("close_within", 0.003)

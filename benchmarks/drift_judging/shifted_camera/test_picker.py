@@ -12,7 +12,7 @@ Point = message_type("geometry_msgs/msg/Point")
 DT = 0.05
 SCALE = 0.0005  # m per pixel
 MIDDLE = (0.12, 0.05)  # calibrated middle of the picture, m
-GRASP = 0.016  # from the part's middle, m
+GRASP = 0.016  # distance from the part's middle (m)
 TIME_BOUND = 6.0
 
 

@@ -14,7 +14,7 @@ Float64 = message_type("std_msgs/Float64")
 Int32MultiArray = message_type("std_msgs/Int32MultiArray")
 
 DT = 0.1
-TICKS = 1200.0  # per metre of tread, new tyres
+TICKS = 1200.0  # ticks per metre of tread with new tyres
 TRACK = 0.42
 REACH = 0.14  # distance from the shelf at which a box can still be taken, m
 TIME_BOUND = 18.0

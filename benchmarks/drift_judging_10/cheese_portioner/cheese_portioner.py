@@ -17,8 +17,8 @@ class CheesePortioner(Node):
                 ("kerf", 0.10),  # thickness that the blade cuts away (cm)
                 ("spacing", 1.0),  # distance between two heights (cm)
                 ("push", 2.0),  # cm/s
-                ("creep", 0.5),  # cm/s near the cut
-                ("creep_at", 0.85),  # share of a portion
+                ("creep", 0.5),  # speed near the cut (cm/s)
+                ("creep_at", 0.85),  # as a share of a portion
                 ("clearance", 12.0),  # clearance under the raised blade (cm)
             ],
         )

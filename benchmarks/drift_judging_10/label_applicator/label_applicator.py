@@ -22,7 +22,7 @@ class LabelApplicator(Node):
         self.web = 0
         self.belt_speed = 0.0
         self.blocked = False
-        self.waiting = deque()  # counts of the belt at which a bottle passed the eye
+        self.waiting = deque()  # belt positions at which a bottle passed the eye (counts)
         self.feed_from = None
         self.create_subscription(Int32, "belt/counts", self.on_belt, 10)
         self.create_subscription(Int32, "web/counts", self.on_web, 10)

@@ -22,11 +22,11 @@ class Board:
     def __init__(self, rng, oak):
         self.rng = rng
         self.density = rng.uniform(700.0, 760.0) if oak else rng.uniform(500.0, 550.0)
-        self.depth_per = (1.5 if oak else 2.4) * rng.uniform(0.98, 1.02)  # mm per J/mm
+        self.depth_per = (1.5 if oak else 2.4) * rng.uniform(0.98, 1.02)  # depth per energy (mm per J/mm)
         self.black_at = 19.0 if oak else 21.0  # W² s/mm
         self.x, self.y, self.vx, self.vy = 3.0, 0.0, 0.0, 0.0
         self.volts = rng.uniform(46.0, 49.0)
-        self.burnt, self.length = 0.0, 0.0  # of this row: mm², mm
+        self.burnt, self.length = 0.0, 0.0  # burnt area (mm²) and length (mm) of this row
         self.finished = 0
         self.black = 0
         self.time, self.gained = 0.0, 0.0

@@ -11,7 +11,7 @@ class Engraver(object):
     def __init__(self):
         self.power = rospy.get_param("~power", 30.0)  # W
         self.feed = rospy.get_param("~feed", 60.0)  # mm/s
-        self.travel = rospy.get_param("~travel", 150.0)  # mm/s, with the laser off
+        self.travel = rospy.get_param("~travel", 150.0)  # speed with the laser off (mm/s)
         self.rows = rospy.get_param("~rows", 5)
         self.pitch = rospy.get_param("~pitch", 4.0)  # mm
         self.width = rospy.get_param("~width", 90.0)  # mm

@@ -5,7 +5,7 @@ import rospy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32
 
-LEAF = 40.0  # kNm, moment of the closed leaf that the counterweight does not balance
+LEAF = 40.0  # unbalanced moment of the closed leaf (kNm)
 KP = 60.0
 KD = 45.0
 OPEN = 1.2  # rad

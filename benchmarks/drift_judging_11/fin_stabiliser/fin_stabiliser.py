@@ -11,8 +11,8 @@ from std_msgs.msg import Float32
 class FinStabiliser(Node):
     def __init__(self):
         super().__init__("fin_stabiliser")
-        self.gain = self.declare_parameter("gain", 0.9).value  # fin rad per rad/s of roll rate
-        self.stiff = self.declare_parameter("stiff", 0.15).value  # fin rad per rad of roll
+        self.gain = self.declare_parameter("gain", 0.9).value  # fin angle (rad) per roll rate (rad/s)
+        self.stiff = self.declare_parameter("stiff", 0.15).value  # fin angle per roll angle
         self.limit = self.declare_parameter("limit", 0.45).value
         self.bias = 0.0
         self.roll, self.rate = None, 0.0

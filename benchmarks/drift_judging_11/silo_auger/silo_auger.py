@@ -8,7 +8,7 @@ JAM_TORQUE = 55.0  # Nm
 JAM_SAMPLES = 3
 FULL = 300.0  # kg
 TOP_SPEED = 1.0
-FINE = 0.35  # share of the speed for the last kilograms
+FINE = 0.35  # speed for the last kilograms, as a share of full speed
 FINE_FROM = 270.0
 
 

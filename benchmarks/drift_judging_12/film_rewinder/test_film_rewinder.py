@@ -14,7 +14,7 @@ DT = 0.1
 STEPS = 250
 WANTED = 80.0  # N
 LOOSE, TIGHT = 66.0, 100.0  # mean tension over half a second (N)
-THICKNESS = 0.0012  # of a coarse foamed film (m)
+THICKNESS = 0.0012  # thickness of a coarse foamed film (m)
 SETTLED = 6.0  # s
 
 

@@ -13,7 +13,7 @@ SLOW_BELOW = 4.0  # missing mass below which the ladle pours slowly (kg)
 FAST, SLOW, BACK = 2.4, 0.9, -6.0  # deg/s
 SMOOTHING = 0.6
 STARTS = 0.15  # loss of mass that shows that iron flows (kg)
-MIN_LEFT = 8.0  # with less iron in the ladle, slag would flow out (kg)
+MIN_LEFT = 8.0  # mass of iron in the ladle below which slag flows out (kg)
 
 
 class FoundryLadle(Node):

@@ -10,7 +10,7 @@ from std_msgs.msg import Empty, Float32
 STANDOFF = 1.8  # m
 TOP = 14.0  # m
 CLIMB = 0.5  # m/s
-GAIN = 0.8  # m/s per m
+GAIN = 0.8  # speed per distance (1/s)
 DAMPING = 0.5
 TILT_COMFORT = 0.12  # tilt above which the climb waits (rad)
 MAX_SPEED = 1.0  # m/s

@@ -10,7 +10,7 @@ PARK = 45.0  # m
 NEAR = 12.0  # height above the parking depth at which the float starts to brake (m)
 PARKED = 600.0  # s
 KP = 12.0  # cm3 per m
-KD = 900.0  # cm3 per m/s
+KD = 900.0  # volume per speed (cm3 per m/s)
 MAX_OIL = 1000.0
 PERIOD = 5.0
 

@@ -12,9 +12,9 @@ Float64 = message_type("std_msgs/Float64")
 UInt32 = message_type("std_msgs/UInt32")
 
 DT = 0.05
-QUALITY = 6.0  # of the resonance
-FASTEST = 20.0  # parts per s at resonance and full amplitude
-JAM = 17.0  # parts per s at which the exit jams
+QUALITY = 6.0  # quality factor of the resonance
+FASTEST = 20.0  # feed rate at resonance and full amplitude (parts/s)
+JAM = 17.0  # feed rate at which the exit jams (parts/s)
 TIME_BOUND = 6.5
 
 

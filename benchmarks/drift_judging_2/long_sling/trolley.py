@@ -6,7 +6,7 @@ from rclpy.node import Node
 from shaper import ZeroVibration
 from std_msgs.msg import Bool, Float64
 
-SLING = 1.0  # hook to centre of the load, m
+SLING = 1.0  # distance from the hook to the centre of the load (m)
 PERIOD = 0.1  # s
 TOP_SPEED = 0.8  # m/s
 CREEP_SPEED = 0.05

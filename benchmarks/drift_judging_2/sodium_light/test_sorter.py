@@ -10,9 +10,9 @@ ColorRGBA = message_type("std_msgs/msg/ColorRGBA")
 String = message_type("std_msgs/msg/String")
 
 DT = 0.1
-SPACING = 20  # steps from one fruit to the next
-VIEW = 5  # steps that a fruit is in view
-FLAP = 12  # steps from the middle of the view to the flap
+SPACING = 20  # number of steps from one fruit to the next
+VIEW = 5  # number of steps for which a fruit is in view
+FLAP = 12  # number of steps from the middle of the view to the flap
 FRUITS = 6
 WRONG = 1  # maximum number of fruits sorted wrongly
 

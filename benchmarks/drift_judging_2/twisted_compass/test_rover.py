@@ -12,7 +12,7 @@ Float32 = message_type("std_msgs/Float32")
 
 DT = 0.1
 LENGTH = 10.0
-HEDGE = 0.9  # from the middle of the row, m
+HEDGE = 0.9  # distance from the middle of the row (m)
 TIME_BOUND = 30.0
 
 

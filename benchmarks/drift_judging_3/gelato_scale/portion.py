@@ -16,7 +16,7 @@ rate = rospy.Rate(10)
 while not rospy.is_shutdown():
     net = scale["gross"] - TUB
     missing = scale.get("order", 0.0) - AFTERRUN - net
-    if net < -15.0 or missing <= 0.0:  # no tub, or full
+    if net < -15.0 or missing <= 0.0:  # there is no tub, or it is full
         flap.publish(0.0)
     elif missing < 25.0:
         flap.publish(0.3)

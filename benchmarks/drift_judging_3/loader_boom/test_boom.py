@@ -12,7 +12,7 @@ Float64 = message_type("std_msgs/msg/Float64")
 JointState = message_type("sensor_msgs/msg/JointState")
 
 DT = 0.05
-EACH = 110  # steps for an angle
+EACH = 110  # number of steps per angle
 HOLD = 25  # number of last steps that are rewarded
 NEAR = 0.04  # rad
 STOPS = (-0.6, 1.1)  # rad

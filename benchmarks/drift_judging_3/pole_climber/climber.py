@@ -32,7 +32,7 @@ class DriveConfig:
     """Speed of the rollers."""
 
     climb: float = 0.35  # m/s
-    near: float = 0.6  # distance below the mark at which it slows down, m
+    near: float = 0.6  # distance below the mark at which the climber slows down (m)
     creep: float = 0.08  # m/s
     lean_limit: float = 0.20  # rad
     hold_gain: float = 1.5  # 1/s

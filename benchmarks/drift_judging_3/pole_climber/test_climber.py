@@ -15,7 +15,7 @@ Range = message_type("sensor_msgs/msg/Range")
 DT = 0.1
 WEIGHT = 85.0  # N
 SPRING = 320.0  # largest force of the clamp (N)
-HELD = 10  # steps at the mark
+HELD = 10  # number of steps at the mark
 TIME_BOUND = 22.0
 
 

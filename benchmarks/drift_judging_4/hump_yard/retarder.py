@@ -18,7 +18,7 @@ G = 9.81
 class Track:
     """The track behind the retarder."""
 
-    rolling_resistance: float = 0.0022  # share of the weight, for bearings at summer temperature
+    rolling_resistance: float = 0.0022  # rolling resistance of summer-warm bearings, as a share of the weight
     gradient: float = 0.0006  # slope of the yard, downwards
     coupling_speed: float = 1.1  # speed at which buffers touch and the coupler closes (m/s)
 

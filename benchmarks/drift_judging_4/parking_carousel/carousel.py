@@ -12,8 +12,8 @@ COUNTS_PER_BAY = 4096.0
 class Carousel(Node):
     """A state machine with one method per state, which returns the name of the next state."""
 
-    TOLERANCE = 0.05  # bays; within this distance the bolt finds its hole
-    SETTLE = 4  # ticks within the tolerance before the bolt moves
+    TOLERANCE = 0.05  # distance within which the bolt finds its hole (bays)
+    SETTLE = 4  # number of ticks within the tolerance before the bolt moves
     OPEN_FOR = 8  # ticks
 
     def __init__(self):

@@ -17,7 +17,7 @@ DT = 0.05
 LENGTH_WINDOW = 0.13  # tolerated error, as a share of the stitch
 LOCK_WINDOW = 0.2  # tolerated error, as a share of the tension that the cloth needs
 TIME_BOUND = 14.0
-CLOTHS = {"cotton": (0.04, 1.0), "denim": (0.27, 1.55)}  # slip, tension relative to cotton
+CLOTHS = {"cotton": (0.04, 1.0), "denim": (0.27, 1.55)}  # slip, and tension relative to cotton
 
 
 class Table:

@@ -19,7 +19,7 @@ def read_table(path):
 
 
 class Focuser:
-    COMPENSATION = 26.0  # steps per kelvin; a colder tube is shorter
+    COMPENSATION = 26.0  # focus change (steps/K); a colder tube is shorter
     BACKLASH = 60  # steps of overshoot, so that each position is approached from the same side
     DEADBAND = 6
 

@@ -12,7 +12,7 @@ String = message_type("std_msgs/String")
 DT = 120.0  # duration of an exposure (s)
 EXPOSURES = 90
 SHARP = 42.0  # steps
-SLACK = 30.0  # steps of backlash
+SLACK = 30.0  # backlash (steps)
 OFFSETS = {"L": 0.0, "R": 34.0, "G": 21.0, "B": 47.0, "Ha": 88.0}
 
 

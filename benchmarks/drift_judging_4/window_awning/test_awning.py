@@ -13,7 +13,7 @@ String = message_type("std_msgs/String")
 
 DT = 2.0  # s
 STEPS = 180
-TRAVEL = 0.12  # share of the awning in one step
+TRAVEL = 0.12  # change in one step, as a share of the awning
 PLAY = 0.04  # smaller movements are ignored by the drive
 START_HEAT = 1.0  # heat per start or reversal
 COOLING = 0.012  # share of the heat that the motor loses in a step

@@ -13,7 +13,7 @@ Vector3 = message_type("geometry_msgs/Vector3")
 DT = 0.1
 COLOURS = np.array([[0.82, 0.84, 0.80], [0.30, 0.62, 0.34], [0.48, 0.30, 0.14]])
 SHARDS = 12
-SEEN, FALL = 6, 10  # steps at which a shard leaves the eye and reaches the flap
+SEEN, FALL = 6, 10  # numbers of the steps at which a shard leaves the eye and reaches the flap
 
 
 class Belt:

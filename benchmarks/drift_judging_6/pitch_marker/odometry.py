@@ -2,7 +2,7 @@
 
 from math import cos, pi, sin
 
-TICKS = 1024.0  # per turn of a wheel
+TICKS = 1024.0  # ticks per turn of a wheel
 WHEEL = 0.105  # radius (m)
 TRACK = 0.52  # distance between the points about which the two sides turn (m)
 

@@ -24,7 +24,7 @@ class ApplePicker(Node):
             [
                 ("twist_rate", 2.4),  # rad/s
                 ("twist_angle", 2.8),  # angle to either side (rad)
-                ("max_twists", 3),  # maximum half turns before the apple is left for the next pass
+                ("max_twists", 3),  # maximum number of half turns before the apple is left for the next pass
                 ("pull", 14.0),  # N
             ],
         )

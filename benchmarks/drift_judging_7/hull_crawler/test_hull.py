@@ -13,7 +13,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 DT = 0.25
 LENGTH = 6.5
 OVERLAP = 1.8  # width in m that the previous strip has already cleaned
-LAG = 5  # steps until an echo is evaluated
+LAG = 5  # number of steps until an echo is evaluated
 BAND = 0.09  # m
 
 

@@ -17,7 +17,7 @@ class Launcher(Node):
     def __init__(self):
         super().__init__("launcher")
         self.elevation = self.declare_parameter("elevation_deg", 32.0).value
-        self.steeper = self.declare_parameter("steeper_per_m", 0.8).value  # for near spots
+        self.steeper = self.declare_parameter("steeper_per_m", 0.8).value  # increase for near spots
         self.drag_gain = self.declare_parameter("drag_gain", 1.11).value
         self.wheel_radius = self.declare_parameter("wheel_radius", 0.11).value
         self.shots = 0

@@ -23,7 +23,7 @@ class Corridor:
 
     def __init__(self, rng, output):
         self.rng = rng
-        self.output = output * rng.uniform(0.98, 1.02)  # as a share of the data sheet's value
+        self.output = output * rng.uniform(0.98, 1.02)  # relative to the data sheet's value
         self.dose = [0.0] * round(LENGTH / CELL)
         self.x = -STRIP
         self.time = 0.0

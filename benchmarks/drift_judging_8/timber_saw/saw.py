@@ -17,7 +17,7 @@ class Cut:
     slab: float = 18.0  # thickness of the first slab, with the bark (mm)
     least: float = 40.0  # minimum thickness left on the carriage (mm)
     feed: float = 22.0  # m/min
-    hard_feed: float = 15.0  # m/min above hard_current
+    hard_feed: float = 15.0  # feed above hard_current (m/min)
     hard_current: float = 34.0  # A
 
 

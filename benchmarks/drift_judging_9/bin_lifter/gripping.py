@@ -14,7 +14,7 @@ class ClampConfig:
     reserve: float = 1.25
     touch: float = 120.0
     most: float = 2600.0
-    build_up: float = 140.0  # per tick
+    build_up: float = 140.0  # increase of the force per tick
 
 
 def holding_force(config, mass):

@@ -12,10 +12,10 @@ from std_msgs.msg import Bool, Float32, String
 
 RESTS = [("maltose", 63.0, 100.0), ("sugar", 72.0, 100.0)]
 CLOSE = 0.9  # distance from the temperature of a rest at which the time of the rest starts (K)
-LOSS = 0.0062  # duty per kelvin over the room, lid on
+LOSS = 0.0062  # duty per kelvin above room temperature, with the lid on
 ROOM = 20.0  # degC
 STIR_FAST, STIR_SLOW = 0.9, 0.4
-DRY = 5.0  # with less water, the element burns (litres)
+DRY = 5.0  # volume of water below which the element burns (litres)
 DUTY_MAX = 0.95
 
 

@@ -19,7 +19,7 @@ OMEGA_MAX = 3.0  # rad/s
 OMEGA_STEP = 0.2  # change per tick (rad/s)
 CRUISE = 0.45  # m/s
 CURVE_SLOWS = 0.6
-DANCER_LOW, DANCER_HIGH = 0.03, 0.37  # outside of these limits, the crawler stops (m)
+DANCER_LOW, DANCER_HIGH = 0.03, 0.37  # limits outside which the crawler stops (m)
 
 
 class CableLayer(object):

@@ -7,13 +7,13 @@ from std_msgs.msg import Bool, Float32
 # film
 PULL = 150.0  # tension of the film (N)
 PULL_GAIN = 0.0012  # brake per newton
-TURNS = 8  # layers that the load gets
+TURNS = 8  # number of layers around the load
 TOP_TURNS = 2.0
 
 # turntable and carriage
 TABLE_SPEED = 0.2  # turns/s
 START_SPEED = 0.07
-SOFT_TURNS = 0.5  # at the start, until the film is tucked in
+SOFT_TURNS = 0.5  # number of slow turns at the start, until the film is tucked in
 CARRIAGE_TOP = 1.6  # m
 CARRIAGE_SPEED = 0.15  # m/s
 RATE = 10.0

@@ -11,8 +11,8 @@ String = message_type("std_msgs/String")
 
 DT = 0.1
 FULL_BRAKE = 500.0  # N
-HOLDS = 900.0  # force of all layers that holds the load (N)
-FILM = 15.5  # turns of film that a pallet may cost
+HOLDS = 900.0  # total force of all layers that is needed to hold the load (N)
+FILM = 15.5  # maximum number of turns of film per pallet
 TIME_BOUND = 120.0
 
 

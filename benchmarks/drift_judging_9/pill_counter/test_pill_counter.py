@@ -10,10 +10,10 @@ Float32 = message_type("std_msgs/Float32")
 Int32 = message_type("std_msgs/Int32")
 
 DT = 0.05
-PILLS = 30.0  # per second at full drive
+PILLS = 30.0  # pills per second at full drive
 VIALS = 3
 CHANGE = 10  # steps
-CLOSING = 4  # steps that the gate takes
+CLOSING = 4  # number of steps that the gate takes
 TIME_BOUND = 60.0
 
 

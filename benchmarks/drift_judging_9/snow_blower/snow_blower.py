@@ -6,7 +6,7 @@ from std_msgs.msg import Bool, Float32
 
 RATE = 10
 WIDTH = 0.7  # width of the auger (m)
-INTAKE = 0.16  # m^3/s that the auger takes
+INTAKE = 0.16  # flow of snow that the auger takes (m^3/s)
 V_MAX = 0.9  # m/s
 V_MIN = 0.08  # the tracks stall at lower speeds (m/s)
 V_BACK = -0.15  # speed out of a bank (m/s)
