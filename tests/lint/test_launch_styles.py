@@ -415,7 +415,7 @@ def test_the_line_of_a_node_is_in_the_launch_file(tmp_path: Path) -> None:
     assert all("made(name)" in lines[one.line - 1] for one in found.nodes)
 
 
-def test_nodes_beside_unknown_ones_are_found(tmp_path: Path) -> None:
+def test_known_nodes_in_a_list_with_unknown_ones_are_found(tmp_path: Path) -> None:
     text = """
         from robots_that_are_not_installed import nodes
         def generate_launch_description():
@@ -426,7 +426,7 @@ def test_nodes_beside_unknown_ones_are_found(tmp_path: Path) -> None:
     assert {one.reason for one in found.problems} == {"`nodes()` is not followed"}
 
 
-def test_pairs_of_a_mapping_are_remappings(tmp_path: Path) -> None:
+def test_the_items_of_a_dict_can_be_remappings(tmp_path: Path) -> None:
     text = """
         def generate_launch_description():
             names = {"in": "/scan", "out": "/cmd"}
@@ -436,7 +436,7 @@ def test_pairs_of_a_mapping_are_remappings(tmp_path: Path) -> None:
     assert node.remaps == (("in", "/scan"), ("out", "/cmd"))
 
 
-def test_what_a_launch_file_changes_in_a_file_that_it_read_does_not_change_the_next_one(
+def test_changing_data_read_from_a_file_does_not_affect_the_next_launch_file(
     tmp_path: Path,
 ) -> None:
     text = """

@@ -130,7 +130,7 @@ rospy.spin()
 """
 
 
-def test_an_object_that_begins_to_stand_for_several_reruns_only_the_roots_that_stored_to_it():
+def test_when_an_object_begins_to_stand_for_several_only_roots_that_stored_to_it_run_again():
     machine = Counted(ROBOTS)
     with_deep_stack(machine.link)
     assert any(obj.many and obj.name == "Robot" for obj in machine.objects.values())

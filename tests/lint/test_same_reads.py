@@ -128,7 +128,7 @@ def test_a_call_always_sees_a_change_in_the_description_of_an_object(store, obj)
     assert not same(store, reads)
 
 
-def test_a_call_is_not_replayed_if_a_reachable_object_refers_to_an_object_that_the_call_creates(store):
+def test_a_call_is_not_replayed_if_an_object_that_it_creates_is_already_referenced(store):
     obj, holder = Obj("lib", "made"), Obj("instance", "holder")
     reads = Reads(objects={obj: NEW})
     hidden(store, obj, BORN, BOTTOM)
@@ -195,7 +195,7 @@ def test_an_inner_loop_starts_from_its_last_fixpoint(monkeypatch):
     assert going_on.total < 0.7 * afresh.total
 
 
-def test_a_loop_also_starts_with_stores_that_come_later(store):
+def test_the_start_of_a_loop_also_includes_later_stores(store):
     machine = linked(NESTED)
     frame = next(f for f in machine.frames.values() if f.function.name == "on_message")
     machine.store = store

@@ -44,7 +44,7 @@ def test_functions_are_found_in_source_order():
     assert lines == sorted(lines)
 
 
-def test_statements_outside_functions_include_those_in_other_statements():
+def test_statements_outside_functions_include_those_inside_other_statements():
     text = """
         a = 1
         if b:

@@ -22,9 +22,7 @@ def refused(folder: Path, *nodes: str) -> str:
 @pytest.mark.parametrize(
     "name", ["params.yaml", "params.yml", "robot.launch", "robot.launch.xml", "gains.json"]
 )
-def test_a_settings_file_among_the_nodes_is_told_how_parameters_reach_a_node(
-    tmp_path: Path, name: str
-) -> None:
+def test_the_error_for_a_settings_file_among_the_nodes_explains_parameters(tmp_path: Path, name: str) -> None:
     (tmp_path / "node.py").write_text("import rospy\n")
     (tmp_path / name).write_text("gain: 2.0\n")
     found = refused(tmp_path, "node.py", name)
@@ -39,7 +37,7 @@ def test_a_script_without_a_suffix_may_be_a_node(tmp_path: Path) -> None:
     )
 
 
-def test_a_missing_file_comes_first(tmp_path: Path) -> None:
+def test_a_missing_file_is_reported_first(tmp_path: Path) -> None:
     assert refused(tmp_path, "params.yaml").startswith(
         "The marker names the node 'params.yaml': no such file in "
     )

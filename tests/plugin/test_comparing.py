@@ -39,7 +39,7 @@ def listed(*names: str) -> TaintList:
     return TaintList("/a", "/b", tuple(map(place, names)))
 
 
-def test_recorded_sites_get_their_numbers_and_places_of_today() -> None:
+def test_recorded_sites_get_their_current_numbers_and_positions() -> None:
     fixture: Any = SimpleNamespace(lists=(listed("a", "b"), listed("c", "a")))
     plan: Any = SimpleNamespace(places=(place("c", 9), place("a", 7)))
     assert current_members(fixture, plan) == ((1, -1), (0, 1))
@@ -47,7 +47,7 @@ def test_recorded_sites_get_their_numbers_and_places_of_today() -> None:
     assert [[site.line for site in one.sites] for one in now] == [[7, 3], [9, 7]]
 
 
-def test_tables_are_spread_over_the_cells_of_both_worlds() -> None:
+def test_tables_are_extended_to_the_cells_of_both_worlds() -> None:
     found = _spread(np.array([[1.0, 2.0], [3.0, 4.0]]), [(4,), (1,)], CELLS)
     assert np.array_equal(found, [[3.0, 4.0], [np.nan] * 2, [1.0, 2.0], [np.nan] * 2], equal_nan=True)
     fixture: Any = SimpleNamespace(sarsa=(np.ones((1, 1)),), sample=SimpleNamespace(cells=((2,),)))
@@ -142,7 +142,9 @@ def watched(monkeypatch: pytest.MonkeyPatch, sure: set[int]) -> tuple[_Watch, li
     return _Watch(offline, marked, given, (Look(2, 0.25), Look(4, 0.75)), 999), asked
 
 
-def test_verdicts_are_made_at_the_planned_looks_until_one_is_certain(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_verdicts_are_computed_at_the_planned_looks_until_one_is_certain(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     watch, asked = watched(monkeypatch, {4})
     samples: list[Any] = []
     stops = []

@@ -93,7 +93,7 @@ def test_the_first_reason_why_an_episode_is_unusable_is_reported(changed: dict[s
         {"faults": ACTIVE},
     ],
 )
-def test_what_a_drift_or_a_test_without_nodes_may_lack_is_no_error(changed: dict[str, Any]) -> None:
+def test_missing_output_is_no_error_under_a_drift_or_in_a_test_without_nodes(changed: dict[str, Any]) -> None:
     assert problem(**changed) == ""
 
 

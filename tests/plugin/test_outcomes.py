@@ -54,7 +54,7 @@ def test_a_mission_without_a_failed_report_has_passed() -> None:
         (KeyError("speed"), (False, "", "assert 1 == 2", False, False)),
     ],
 )
-def test_a_failed_mission_is_told_from_a_broken_test(error: BaseException, expected: Any) -> None:
+def test_a_failed_mission_is_distinguished_from_a_broken_test(error: BaseException, expected: Any) -> None:
     run = ran(FAILED, error=error)
     if expected is None:
         assert (run.passed, run.stuck) == (False, True)

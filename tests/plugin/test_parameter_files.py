@@ -94,7 +94,7 @@ def test_a_file_that_cannot_be_used_is_described_in_one_sentence(
     assert "\n" not in str(caught.value)
 
 
-def test_a_missing_file_is_named_with_the_folder_that_it_is_relative_to(tmp_path: Path) -> None:
+def test_the_error_for_a_missing_file_names_it_and_its_base_folder(tmp_path: Path) -> None:
     with pytest.raises(
         SettingsError, match=r"no parameter file .*nowhere\.yaml.*relative to the test's folder"
     ):

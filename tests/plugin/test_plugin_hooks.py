@@ -106,7 +106,7 @@ def collected(error: BaseException | None) -> Any:
     return sent(pytest_make_collect_report(collector), report)
 
 
-def test_errors_of_a_collection_are_one_sentence_or_get_advice() -> None:
+def test_collection_errors_are_one_sentence_or_come_with_advice() -> None:
     assert collected(None).longrepr == "traceback"
     found = collected(SettingsError("Sensor name 'a b' is wrong."))
     assert found.longrepr.startswith("test_plugin_hooks.py:")
@@ -134,7 +134,7 @@ def test_an_error_is_located_at_the_innermost_line_outside_tarl() -> None:
     assert located(entry(ours, 5)) == "wrong"
 
 
-def test_only_errors_of_tarl_are_ours() -> None:
+def test_only_errors_of_tarl_are_recognised_as_such() -> None:
     assert _ours(SettingsError("x"))
     assert not _ours(ValueError("x"))
 

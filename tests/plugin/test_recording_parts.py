@@ -106,7 +106,7 @@ def test_a_recording_ends_when_its_rule_says_so() -> None:
     assert len(missions.plans) == 3
 
 
-def test_nothing_is_learned_from_no_episode_or_a_broken_one() -> None:
+def test_bins_are_not_learned_from_a_broken_episode_or_without_episodes() -> None:
     with pytest.raises(RecordingError, match="0 episodes were requested"):
         run(Missions(), 0)
     with pytest.raises(RecordingError, match=r"\(seed 10\) that did not end: never waits"):
@@ -165,7 +165,7 @@ def test_an_episode_that_cannot_be_repeated_is_noted() -> None:
     assert "is unknown. This" in note
 
 
-def test_too_many_failures_come_before_formulas_that_were_never_judged() -> None:
+def test_too_many_failures_are_reported_before_formulas_that_were_never_judged() -> None:
     def refused(failing: str, robustness: float, *failures: str) -> str:
         judged = SimpleNamespace(formulas=("up",), robustness=np.array([[robustness]]))
         found: Any = SimpleNamespace(failures=failures, sample=SimpleNamespace(judgements=judged, episodes=7))
@@ -185,7 +185,7 @@ def test_too_many_failures_come_before_formulas_that_were_never_judged() -> None
     assert "first failure" not in refused("2 of 5 failed", 1.0)
 
 
-def test_lists_of_which_no_statement_ran_are_noted() -> None:
+def test_a_note_names_lists_without_an_executed_statement() -> None:
     plan: Any = SimpleNamespace(
         lists=tuple(SimpleNamespace(name=name) for name in ("a", "b", "c")), forwarded=frozenset({2})
     )

@@ -54,7 +54,7 @@ def test_moved_sites_are_named_only_if_others_are_lost() -> None:
     assert "more" not in remarks.lost_sites(recorded(ALL), now(*moved[:3]))[1]
 
 
-def test_an_early_stop_is_told() -> None:
+def test_a_note_states_that_the_comparison_stopped_early() -> None:
     sample: Any = SimpleNamespace(episodes=20)
     assert remarks.early(sample, 20) == ()
     assert remarks.early(sample, 40)[0].startswith("stopped after 20 of 40 episodes")
@@ -63,13 +63,13 @@ def test_an_early_stop_is_told() -> None:
 VERDICT = Verdict("no difference", 1.0, 1.0, 0.0, 0.5, 0.1)
 
 
-def test_failures_without_a_loss_are_told() -> None:
+def test_a_note_states_failures_without_a_loss() -> None:
     assert remarks.failing(VERDICT) == ()
     assert remarks.failing(replace(VERDICT, because=("reward", "success"))) == ()
     assert remarks.failing(replace(VERDICT, because=("success",)))[0].startswith("more missions fail")
 
 
-def test_situations_that_are_all_new_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_note_states_that_all_situations_are_new(monkeypatch: pytest.MonkeyPatch) -> None:
     sensors = [Sensor("near"), Sensor("far"), Sensor("wet")]
 
     def told(result: Any, without: tuple[int, ...], far: bool) -> list[str]:
@@ -91,7 +91,7 @@ def judged(formulas: tuple[str, ...], *robustness: list[float]) -> Any:
     return SimpleNamespace(judgements=SimpleNamespace(formulas=formulas, robustness=np.array(robustness)))
 
 
-def test_new_formulas_and_formulas_that_were_never_judged_are_told() -> None:
+def test_notes_name_new_formulas_and_formulas_that_were_never_judged() -> None:
     none: Any = SimpleNamespace(judgements=None)
     nan = float("nan")
     assert remarks.other_formulas(none, none) == ()
@@ -132,7 +132,7 @@ def test_a_single_comparison_stays_as_it_is() -> None:
     assert one == comparison(0.01, 0.02)
 
 
-def test_the_detectable_loss_is_that_of_the_first_step_but_at_least_the_tolerance() -> None:
+def test_the_detectable_loss_is_that_of_holms_first_step_but_at_least_the_tolerance() -> None:
     one, _ = corrected([comparison(0.01, 0.02), comparison(0.5, 0.6)], 0.05)
     offline, online = (np.array(one.totals[world]) for world in ("offline", "online"))
     assert one.verdict.detectable_loss == detectable_loss(offline, online, 0.025)

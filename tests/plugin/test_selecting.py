@@ -98,13 +98,13 @@ def test_stress_selects_spaces(monkeypatch: pytest.MonkeyPatch) -> None:
         selecting.with_space([space])
 
 
-def test_a_space_is_told_from_other_drifts() -> None:
+def test_a_space_is_distinguished_from_other_drifts() -> None:
     assert selecting.is_space(SPACE)
     assert not selecting.is_space(Drift(0.5))
     assert not selecting.is_space(None)
 
 
-def test_a_method_of_a_test_case_takes_the_fixture_by_another_fixture() -> None:
+def test_a_method_of_a_test_case_gets_the_fixture_through_another_fixture() -> None:
     class Plain:
         pass
 

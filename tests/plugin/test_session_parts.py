@@ -150,7 +150,7 @@ def warned(of: TarlSession) -> list[str]:
     return terminal.lines
 
 
-def test_a_run_without_any_marked_test_is_warned_about() -> None:
+def test_a_run_without_any_marked_test_gives_a_warning() -> None:
     of = run()
     collected(of, item(marked=False))
     assert warned(of) == [UNMARKED]
@@ -287,7 +287,7 @@ def others(monkeypatch: pytest.MonkeyPatch, **given: Any) -> list[str]:
     return [*found]
 
 
-def test_repairs_and_new_designs_know_the_other_tests_of_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_repairs_and_new_designs_get_the_other_tests_of_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     assert others(monkeypatch, mode="repair") == ["b"]
     assert others(monkeypatch, mode="stress", stress_repair=True) == ["b"]
     assert others(monkeypatch, mode="record", drift="mud") == ["b"]

@@ -49,7 +49,7 @@ def test_without_a_confidence_a_recording_runs_all_its_episodes() -> None:
         (0.9, 100, "F" * 11, 11),
     ],
 )
-def test_a_recording_stops_once_more_fail_than_may_fail(
+def test_a_recording_stops_once_too_many_episodes_fail(
     least: float, asked: int, results: str, stops: int | None
 ) -> None:
     settling = Settling(designated(min_success=least), asked)
@@ -58,7 +58,7 @@ def test_a_recording_stops_once_more_fail_than_may_fail(
     assert ENOUGH_FAILURES == 5
 
 
-def test_too_many_failures_are_told_with_the_episodes_that_were_not_run() -> None:
+def test_the_error_about_too_many_failures_states_how_many_episodes_were_not_run() -> None:
     settling = Settling(designated(), 20)
     run(settling, ".FFFFF")
     assert settling.failing == (
@@ -74,7 +74,7 @@ def test_a_confidence_allows_more_episodes() -> None:
     assert Settling(designated(confidence=0.95), MOST + 1).most == MOST + 1
 
 
-def test_with_a_confidence_a_recording_ends_when_the_rate_is_shown_but_not_before_the_asked_episodes() -> (
+def test_with_a_confidence_a_recording_ends_once_the_rate_is_shown_and_the_requested_episodes_have_run() -> (
     None
 ):
     sure = designated(min_success=0.5, confidence=0.95)
@@ -86,7 +86,7 @@ def test_with_a_confidence_a_recording_ends_when_the_rate_is_shown_but_not_befor
     assert run(Settling(sure, 2), ".F" * 10) is None
 
 
-def test_the_result_of_a_recording_with_a_confidence_is_told() -> None:
+def test_the_summary_states_the_result_of_a_recording_with_a_confidence() -> None:
     sure = designated(min_success=0.5, confidence=0.95)
     told = {}
     for results in ("F" * 7, "." * 7, ".F"):

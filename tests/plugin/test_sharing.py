@@ -51,7 +51,7 @@ def test_the_next_look_must_fit_into_the_episodes_left() -> None:
     assert SHARED.following([compared(40, 0.01), compared(20, 0.2), compared(41, decided=True)]) is None
 
 
-def test_notes_tell_how_each_comparison_ended() -> None:
+def test_a_note_states_how_each_comparison_ended() -> None:
     outcomes = [compared(60), compared(20, 0.01, decided=True), compared(21), "error"]
     notes = SHARED.notes(outcomes)
     assert notes[3] == ""

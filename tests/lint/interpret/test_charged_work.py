@@ -79,18 +79,18 @@ def reads_of_objects(monkeypatch, files: dict[str, str]) -> int:
     return count
 
 
-def test_objects_in_a_ring_are_read_again_only_after_stores_in_them(monkeypatch):
+def test_cyclic_objects_are_read_again_only_after_a_store_into_one_of_them(monkeypatch):
     """A read of each object after each store would double with the size of the ring."""
     small, large = (reads_of_objects(monkeypatch, ring(size, 120)) for size in (8, 16))
     assert 0 < large < 1.5 * small
 
 
-def test_reads_of_objects_grow_linearly_with_the_number_of_statements(monkeypatch):
+def test_the_number_of_object_reads_grows_linearly_with_the_number_of_statements(monkeypatch):
     few, many = (reads_of_objects(monkeypatch, ring(8, steps)) for steps in (60, 120))
     assert 0 < many < 2.2 * few
 
 
-def test_searches_for_data_are_charged():
+def test_searches_for_data_are_charged_to_the_budget():
     machine = linked(ring(16, 60))
     (charged,) = machine.work.totals.values()
     assert machine.work.handled > 0
@@ -106,20 +106,20 @@ SHARED = {
 }
 
 
-def test_the_roots_of_an_imported_file_use_the_budget_of_the_program():
+def test_the_entry_points_of_an_imported_file_use_the_budget_of_the_program():
     machine = linked({**SHARED, "run.py": "import rospy\nfrom pkg.inner import on_a\nrospy.spin()\n"})
     assert set(machine.work.totals) <= {"run.py", "pkg/__init__.py", "pkg/inner.py"}
     assert machine.work.charged_to("pkg/inner.py") == "run.py"
     assert machine.work.charged_to("run.py") == "run.py"
 
 
-def test_a_file_that_is_run_has_a_budget_of_its_own_even_if_another_file_imports_it():
+def test_a_program_has_its_own_budget_even_if_another_file_imports_it():
     inner = SHARED["pkg/inner.py"] + "if __name__ == '__main__':\n    rospy.spin()\n"
     machine = linked({"inner.py": inner, "test_inner.py": "from inner import on_a\n"})
     assert machine.work.charged_to("inner.py") == "inner.py"
 
 
-def test_the_first_program_that_imports_a_file_is_charged_and_cycles_end():
+def test_the_first_program_that_imports_a_file_is_charged_even_if_imports_form_a_cycle():
     work = Work(importers={"a": {"b": False, "init": True}, "b": {"a": False, "run": False}})
     assert [work.charged_to(path) for path in ("a", "b", "run", "init")] == ["run", "run", "run", "init"]
     assert Work(importers={"a": {"b": False}, "b": {"a": False}}).charged_to("a") == "a"

@@ -194,7 +194,7 @@ def test_a_handler_sees_what_was_stored_before_the_exception():
     assert flows(called.format(after="self.pub.publish(self.x)", handler="pass")) == []
 
 
-def test_a_condition_later_in_a_loop_decides_about_the_next_iteration():
+def test_the_next_iteration_depends_on_conditions_later_in_the_loop():
     body = """\
     for i in (1, 2):
         if self.x:

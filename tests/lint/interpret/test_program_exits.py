@@ -35,7 +35,7 @@ main()
 @pytest.mark.parametrize(
     "leaving", ["sys.exit(1)", "sys.exit()", "exit()", "quit(3)", "os._exit(1)", "os.abort()", "stop()"]
 )
-def test_a_call_that_ends_the_program_decides_what_follows(leaving: str) -> None:
+def test_the_statements_after_an_exit_call_depend_on_its_condition(leaving: str) -> None:
     assert not differing(_node(f"if msg.data > 1.0:\n        {leaving}", "control"))
 
 
@@ -49,14 +49,14 @@ def test_a_call_that_ends_the_program_decides_what_follows(leaving: str) -> None
         ("try:\n        if msg.data > 1.0: sys.exit(1)\n    except:\n        pass", "clean"),
     ],
 )
-def test_only_an_exit_that_no_handler_catches_decides(body: str, kind: str) -> None:
+def test_statements_depend_on_an_exit_call_only_if_no_handler_catches_it(body: str, kind: str) -> None:
     assert not differing(_node(body, kind))
 
 
 @pytest.mark.parametrize(
     "own", ["def exit(): pass", "from shop import exit", "exit = print", "import shop as exit"]
 )
-def test_another_function_named_exit_ends_nothing(own: str) -> None:
+def test_another_function_named_exit_does_not_end_the_program(own: str) -> None:
     body = "if msg.data > 1.0:\n        exit()"
     assert not differing(f"{own}\n{_node(body, 'clean')}")
 

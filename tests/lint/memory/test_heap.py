@@ -73,7 +73,7 @@ def a_function(ctx, name: str, *decorators: str) -> Obj:
 # --- reads --------------------------------------------------------------------------------------------
 
 
-def test_the_content_of_a_field_includes_the_data_of_the_whole_object(ctx):
+def test_the_data_of_a_field_includes_data_of_the_object_as_a_whole(ctx):
     whole = made(ctx, "lib", "a")
     part = whole.sub("x")
     assert heap.content(ctx, part) is BOTTOM
@@ -380,7 +380,7 @@ def test_an_object_created_on_one_path_has_no_value_on_the_other_path(ctx):
     assert joins.joined(ctx, [ctx.store.pop(), {}])[obj, "[0]"] is ONE
 
 
-def test_all_paths_that_do_not_store_contribute_the_former_value_only_one_time(ctx):
+def test_paths_without_a_store_together_contribute_the_former_value_once(ctx):
     obj = made(ctx, "sequence", "a")
     ctx.store.put((obj, "x"), ONE)
     assert joins.joined(ctx, [{(obj, "x"): TWO}, {}, {}])[obj, "x"] == BOTH

@@ -31,7 +31,7 @@ def test_a_library_method_that_queries_gets_the_instances_of_the_class_and_its_s
 
 
 @pytest.mark.parametrize("name", ["push_screen", "gets", "query2"])
-def test_other_methods_find_nothing(program, name):
+def test_methods_that_are_no_queries_return_no_instances(program, name):
     ctx, _, view, _ = program
     assert looked_up(ctx, name, [pointer(view)]) == BOTTOM
     assert ctx.looked_up == set()

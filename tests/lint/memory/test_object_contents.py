@@ -32,7 +32,7 @@ def made(ctx, key: object, kind: str = "mapping") -> Obj:
     return obj
 
 
-def test_contents_are_kept_until_something_is_stored_in_the_object(ctx):
+def test_contents_are_cached_until_something_is_stored_in_the_object(ctx):
     outer, other = made(ctx, "outer"), made(ctx, "other")
     ctx.store.put((outer, "a"), ONE)
     ctx.store.put((outer, "b"), pointer(other))
@@ -62,7 +62,7 @@ def test_contents_include_the_summary_of_the_enclosing_object(ctx):
 
 
 @pytest.mark.parametrize("wrote", [False, True])
-def test_contents_are_reads_of_the_running_call_except_for_its_own_stores(ctx, wrote):
+def test_the_running_call_depends_on_contents_except_for_its_own_stores(ctx, wrote):
     obj = made(ctx, "obj")
     ctx.store.put((obj, "a"), ONE)
     ctx.store.reads = Reads()
@@ -111,7 +111,7 @@ def _interpreter() -> tuple[Interpreter, Frame]:
 
 @settings(max_examples=150, deadline=None)
 @given(STORES)
-def test_searches_with_and_without_kept_contents_find_the_same(stores):
+def test_searches_give_the_same_result_with_and_without_cached_contents(stores):
     ctx, frame = _interpreter()
     store = ctx.store
     objects = [made(ctx, number, ("mapping", "lib", "sequence")[number % 3]) for number in range(OBJECTS)]

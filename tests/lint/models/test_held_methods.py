@@ -72,5 +72,5 @@ def test_a_method_of_another_name_makes_nothing():
         ("create_subscriptions", False),
     ],
 )
-def test_a_file_that_names_such_a_method_may_start_a_node(text, starts):
+def test_a_file_that_names_a_held_method_may_start_a_node(text, starts):
     assert (STARTING.search(text) is not None) is starts

@@ -89,7 +89,7 @@ def found(name: str, importer: File, *files: File) -> str:
     return "" if module is None else module.path
 
 
-def test_of_several_modules_the_nearest_one_is_imported():
+def test_the_nearest_of_several_modules_is_imported():
     files = File("a/x/util.py", "util"), File("a/y/util.py", "util"), File("b/util.py", "util")
     assert found("util", File("a/x/node.py", "node"), *files) == "a/x/util.py"
     assert found("util", File("a/y/deep/node.py", "node"), *files) == "a/y/util.py"

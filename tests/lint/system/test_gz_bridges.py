@@ -239,7 +239,7 @@ def test_a_missing_publisher_may_be_started_by_a_file_that_is_not_read(cart, cap
     assert ("TARL301" in out) is not bool(place)
 
 
-def test_a_list_of_arguments_that_may_be_incomplete_decides_nothing(cart, capsys):
+def test_no_conclusion_is_drawn_from_arguments_that_may_be_incomplete(cart, capsys):
     text = """
         from launch import LaunchDescription
         from launch_ros.actions import Node

@@ -56,7 +56,7 @@ def interpreted(folder: Path, text: str) -> Any:
 
 
 @pytest.mark.parametrize("name", COSTLY)
-def test_what_might_take_long_is_unknown(tmp_path, name):
+def test_calls_that_might_take_long_have_unknown_results(tmp_path, name):
     assert isinstance(interpreted(tmp_path, COSTLY[name]), Unknown)
 
 
@@ -75,7 +75,7 @@ KNOWN = {
 
 
 @pytest.mark.parametrize("name", KNOWN)
-def test_what_is_cheap_is_known(tmp_path, name):
+def test_cheap_calls_have_known_results(tmp_path, name):
     text, right = KNOWN[name]
     assert interpreted(tmp_path, text) == right
 
@@ -101,7 +101,7 @@ FUNCTIONS = sorted({*BUILTINS, *LIBRARIES, "getattr", "setattr", "vars", "proper
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_no_call_of_a_function_ends_in_an_exception_of_the_linter(tmp_path, name):
+def test_no_call_of_a_library_function_makes_the_linter_fail(tmp_path, name):
     start = f"{START}import {name.split('.')[0]}\n" if "." in name else START
     if "." in name:
         start += f"import {name.rpartition('.')[0]}\n"
@@ -119,7 +119,7 @@ NAMES = sorted({name for names in METHODS.values() for name in names} | {"parse"
 
 
 @pytest.mark.parametrize("value", VALUES)
-def test_no_call_of_a_method_ends_in_an_exception_of_the_linter(tmp_path, value):
+def test_no_call_of_a_library_method_makes_the_linter_fail(tmp_path, value):
     start = f"{START}import collections, re, string, pathlib\nr = []\n"
     calls = [f"r.append({value}.{name}({one}))" for name in NAMES for one in ARGUMENTS]
     found = interpreted(tmp_path, start + "\n".join(calls) + "\n")

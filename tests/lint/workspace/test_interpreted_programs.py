@@ -20,7 +20,7 @@ def programs(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_random_programs_have_the_results_of_python(tmp_path, programs, seed):
+def test_random_programs_have_the_same_results_as_in_python(tmp_path, programs, seed):
     compared = 0
     for number in range(20):
         text = programs.Programs(random.Random(f"{seed} {number}")).program()
@@ -33,7 +33,7 @@ def test_random_programs_have_the_results_of_python(tmp_path, programs, seed):
     assert compared > 20
 
 
-def test_a_program_that_is_read_differently_is_noticed(tmp_path, programs):
+def test_the_comparison_notices_a_wrong_result(tmp_path, programs):
     text = "import os\nr = [1, len(os.environ) - len(os.environ)]\n"
     results, wrong = programs.compared(text, tmp_path)
     assert results == 2

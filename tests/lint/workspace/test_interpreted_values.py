@@ -528,7 +528,7 @@ STILL_KNOWN = {
 
 
 @pytest.mark.parametrize("name", STILL_KNOWN)
-def test_a_value_is_known_in_spite_of_what_is_not(tmp_path, name):
+def test_a_value_is_known_although_other_values_are_unknown(tmp_path, name):
     text, right = STILL_KNOWN[name]
     assert interpreted(tmp_path, text)["r"] == right
 

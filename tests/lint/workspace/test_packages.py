@@ -518,7 +518,7 @@ def test_endless_and_unfinished_blocks_of_cmake_end(tmp_path, text, number):
     assert len(found) < 10_000 if number is None else len(found) == number
 
 
-def test_a_package_of_messages_comes_before_a_copy_of_its_definitions(tmp_path: Path) -> None:
+def test_a_message_package_takes_precedence_over_a_copy_of_its_definitions(tmp_path: Path) -> None:
     folders = {
         "a_first/arm_msgs/msg/Old.msg": "float64 value",
         "a_first/arm_msgs/msg/Grip.msg": "float64 old",

@@ -80,7 +80,7 @@ def test_only_a_connection_with_the_latching_field_is_latched(tmp_path: Path, la
     assert found.latched is False
 
 
-def test_of_a_bag_that_is_cut_anywhere_all_whole_records_before_the_cut_are_read(tmp_path: Path) -> None:
+def test_all_whole_records_of_a_truncated_bag_are_read(tmp_path: Path) -> None:
     records = [connection(3, "/a"), message(3, 1, 0, b"one"), message(3, 2, 0, b"two")]
     whole = bag(tmp_path, *records).read_bytes()
     expected = [BOOL, Recorded(10**9, "/a", b"one"), Recorded(2 * 10**9, "/a", b"two")]
@@ -90,7 +90,7 @@ def test_of_a_bag_that_is_cut_anywhere_all_whole_records_before_the_cut_are_read
         assert list(walk(tmp_path / "a.bag")) == expected[: sum(end <= cut for end in ends)]
 
 
-def test_the_whole_records_of_a_cut_chunk_are_read(tmp_path: Path) -> None:
+def test_the_whole_records_of_a_truncated_chunk_are_read(tmp_path: Path) -> None:
     inside = connection(3, "/a") + message(3, 1, 0, b"one") + message(3, 2, 0, b"two")
     path = bag(tmp_path, chunk(inside))
     path.write_bytes(path.read_bytes()[:-1])
@@ -189,7 +189,7 @@ def test_an_mcap_has_channels_with_the_definition_of_their_schema(tmp_path: Path
     ]
 
 
-def test_of_an_mcap_that_is_cut_anywhere_all_whole_records_before_the_cut_are_read(tmp_path: Path) -> None:
+def test_all_whole_records_of_a_truncated_mcap_file_are_read(tmp_path: Path) -> None:
     records = [*HEAD, recorded(5, 1, b"one"), recorded(5, 2, b"two")]
     whole = mcap_file(tmp_path, *records).read_bytes()
     expected = [BOOL, Recorded(1, "/a", b"one"), Recorded(2, "/a", b"two")]

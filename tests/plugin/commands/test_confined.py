@@ -179,7 +179,7 @@ def test_file_names_outside_the_project_are_refused(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [".git/hooks/step.py", "lib/.git/step.py", ".git/../.git/step.py"])
-def test_files_of_git_are_refused(name: str, capsys: Printed) -> None:
+def test_files_inside_the_git_folder_are_refused(name: str, capsys: Printed) -> None:
     with robot() as (root, place):
         for folder in (".git/hooks", "lib/.git"):
             (root / folder).mkdir(parents=True)
@@ -192,7 +192,7 @@ def test_files_of_git_are_refused(name: str, capsys: Printed) -> None:
         assert texts(root.parent) == before
 
 
-def test_links_into_the_folder_of_git_are_refused(capsys: Printed) -> None:
+def test_links_into_the_git_folder_are_refused(capsys: Printed) -> None:
     with robot() as (root, place):
         (root / ".git" / "hooks").mkdir(parents=True)
         (root / "node.py").rename(root / ".git" / "hooks" / "step.py")
@@ -359,7 +359,7 @@ main(["apply", sys.argv[1]])
 
 
 @pytest.mark.parametrize("command", ["apply", "revert"])
-def test_repeating_the_command_completes_an_interrupted_one(command: str, capsys: Printed) -> None:
+def test_repeating_an_interrupted_command_completes_it(command: str, capsys: Printed) -> None:
     with robot() as (root, place):
         place.write_bytes(PATCH)
         subprocess.run([sys.executable, "-c", KILLED, str(place)], check=False, capture_output=True)

@@ -220,7 +220,7 @@ def test_a_service_call_waits_longer_after_a_command_on_a_busy_machine(
     assert link_ros1._pause() == pytest.approx(expected)
 
 
-def test_the_pause_is_the_shortest_where_the_load_is_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_pause_is_shortest_if_the_load_is_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
     def unknown() -> tuple[float, float, float]:
         raise OSError
 

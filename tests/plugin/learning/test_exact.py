@@ -34,7 +34,7 @@ def test_the_interval_of_a_difference_uses_welchs_degrees_of_freedom(number: int
 
 
 @pytest.mark.parametrize("count", [2, 3, 10, 21, 60])
-def test_the_interval_of_a_mean_is_students_t_interval(count: int) -> None:
+def test_the_interval_of_a_mean_is_the_student_t_interval(count: int) -> None:
     values = [float(n * n % 17) for n in range(count)]
     wanted = stats.t.interval(0.95, count - 1, np.mean(values), stats.sem(values))
     assert mean_bounds(values, 0.95) == pytest.approx(wanted, rel=1e-4)

@@ -50,7 +50,7 @@ def test_an_imported_name_has_its_expression_in_the_file(text: str, expression: 
         ("", None),
     ],
 )
-def test_a_new_name_of_a_module_is_reached_as_the_file_reaches_the_module(
+def test_a_new_name_is_accessed_in_the_same_way_as_its_module(
     text: str, found: tuple[str, Import | None] | None
 ) -> None:
     assert reference(document("node.py", text + "\n"), "pkg.gains", "wet") == found

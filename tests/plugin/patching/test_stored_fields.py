@@ -75,7 +75,7 @@ def test_a_value_is_read_from_the_instance_or_the_module() -> None:
     assert Store(source).variable("near") == "near"
 
 
-def test_the_first_statement_follows_the_docstring_if_there_is_another() -> None:
+def test_the_first_statement_skips_the_docstring_if_another_statement_follows() -> None:
     def first(body: str) -> str:
         (found,) = ast.parse(f"def f():\n{body}").body
         assert isinstance(found, ast.FunctionDef)

@@ -34,7 +34,7 @@ def test_a_refused_candidate_is_reported_if_no_other_candidate_is_left() -> None
     assert furthest(refused, NONE) is refused
 
 
-def test_a_candidate_that_held_in_the_drifted_world_ranks_above_a_candidate_that_did_not() -> None:
+def test_a_candidate_that_passed_in_the_drifted_world_ranks_above_one_that_did_not() -> None:
     weak, costly = Refused(SOME, "gain too small", 9.0), Refused(ANOTHER, "nominal gets worse")
     assert furthest(weak, costly) is costly
     assert furthest(costly, weak) is costly
@@ -322,7 +322,7 @@ class Edge(Window):
 
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.4, 3.5), st.floats(0.91, 0.99))
-def test_a_value_at_the_edge_of_the_range_that_works_is_moved_further(low: float, share: float) -> None:
+def test_a_value_at_the_edge_of_the_working_range_is_moved_further(low: float, share: float) -> None:
     """The value holds on the seeds of the search but fails on others, so the factor is increased, not reduced."""
     field: Any = Edge(low, 100.0)
     assert accepted_factor(field, (low * share,)) == pytest.approx((low * share) ** 1.5, rel=1e-3)

@@ -99,16 +99,16 @@ def judged(line: str, code: str, more: str = "") -> bool:
         ("speed = 3 * left", "3", False),
     ],
 )
-def test_each_kind_of_bookkeeping(line: str, code: str, expected: bool) -> None:
+def test_each_kind_of_bookkeeping_number_is_recognised(line: str, code: str, expected: bool) -> None:
     assert judged(line, code) is expected
 
 
-def test_an_own_function_with_the_name_of_one_of_ros_is_no_bookkeeping() -> None:
+def test_a_user_function_that_has_the_name_of_a_ros_function_is_not_bookkeeping() -> None:
     assert judged("level = Buffer(12)", "12")
     assert not judged("level = Buffer(12)", "12", "class Buffer:\n    pass\n")
 
 
-def test_a_timer_with_an_unknown_callback_counts() -> None:
+def test_the_period_of_a_timer_with_an_unknown_callback_may_be_changed() -> None:
     assert not judged("timer = node.create_timer(0.5, other.tick)", "0.5")
     assert judged("timer = node.create_timer(0.5, tick)", "0.5", "def tick():\n    print(1)\n")
     assert not judged("timer = node.create_timer(0.5, lambda: tick())", "0.5", "def tick():\n    print(1)\n")

@@ -41,7 +41,7 @@ MODES = "from enum import Enum\n\n\nclass Mode(Enum):\n    WAIT = 1\n    DRIVE =
         ("publish(LIMIT if self.eager else x)", "LIMIT", 0.8, True),
     ],
 )
-def test_a_search_changes_quantities_but_no_indices_and_sizes(
+def test_a_search_changes_quantities_but_not_indices_or_sizes(
     line: str, code: str, value: float | bool | None, moved: bool
 ) -> None:
     at = line.index(code) + 1

@@ -19,7 +19,7 @@ def test_the_ledger_knows_which_values_were_examined_under_a_guard() -> None:
     assert not Ledger().examined(scaled(2.0))
 
 
-def test_of_two_refused_candidates_the_one_that_passed_in_more_worlds_is_reported() -> None:
+def test_the_refused_candidate_that_passed_in_more_worlds_is_reported() -> None:
     nothing, low = Refused(None, "budget"), Refused(scaled(2.0), "not shown", 1.0, 5)
     high = Refused(scaled(3.0), "gain too small", 2.0, 5)
     drifted, both = (

@@ -89,13 +89,13 @@ def suggested(folder: Path, *missions: dict[str, tuple[float, float]]) -> list[d
     return [{operand.code: factor for operand, factor in hint} for hint in found]
 
 
-def test_constants_beside_values_with_the_same_factor_change_together_then_alone(tmp_path: Path) -> None:
+def test_constants_with_the_same_measured_factor_change_together_and_then_alone(tmp_path: Path) -> None:
     weak = {FLEXOR: (0.8, 0.36), EXTENSOR: (0.6, 0.27)}
     found = suggested(tmp_path, weak, {FLEXOR: (0.7, 0.315), EXTENSOR: (0.5, 0.225)})
     assert found[:3] == [{"FLEXOR_ON": 0.45, "EXTENSOR_ON": 0.45}, {"FLEXOR_ON": 0.45}, {"EXTENSOR_ON": 0.45}]
 
 
-def test_a_constant_with_the_unit_of_a_value_changes_by_its_offset(tmp_path: Path) -> None:
+def test_a_constant_with_the_unit_of_a_value_changes_by_the_difference_of_that_value(tmp_path: Path) -> None:
     found = suggested(tmp_path, {LEVEL: (40.0, 54.0)}, {LEVEL: (42.0, 56.0)})
     assert {"TARGET": 1.28} in found  # 50 + 14
     assert {"TRIM": -2.5} not in found  # a changed sign is no measured step
@@ -104,7 +104,7 @@ def test_a_constant_with_the_unit_of_a_value_changes_by_its_offset(tmp_path: Pat
     assert {"TARGET": 0.94} in found
 
 
-def test_a_factor_changes_by_that_of_its_result_in_either_direction(tmp_path: Path) -> None:
+def test_a_multiplier_changes_by_the_factor_of_its_result_in_either_direction(tmp_path: Path) -> None:
     assert suggested(tmp_path, {PUSH: (2.0, 6.0)}, {PUSH: (1.0, 3.1)}) == [{"GAIN": 0.328}, {"GAIN": 3.05}]
 
 
@@ -113,17 +113,19 @@ def test_a_factor_changes_by_that_of_its_result_in_either_direction(tmp_path: Pa
     [{FLEXOR: (0.8, 0.7)}, {FLEXOR: (0.8, 0.9)}, {EXTENSOR: (0.8, 0.36)}],
     ids=["another factor", "another direction", "no value"],
 )
-def test_pairs_that_disagree_suggest_nothing(tmp_path: Path, second: dict[str, tuple[float, float]]) -> None:
+def test_mission_pairs_that_disagree_suggest_no_change(
+    tmp_path: Path, second: dict[str, tuple[float, float]]
+) -> None:
     assert suggested(tmp_path, {FLEXOR: (0.8, 0.36)}, second) == []
 
 
-def test_small_and_huge_changes_suggest_nothing(tmp_path: Path) -> None:
+def test_small_and_huge_differences_suggest_no_change(tmp_path: Path) -> None:
     assert suggested(tmp_path, {FLEXOR: (0.8, 0.79)}) == []
     assert suggested(tmp_path, {PUSH: (0.001, 6.0)}) == []
     assert hints(SimpleNamespace(analysis=analysed(tmp_path)), [], ()) == []  # type: ignore[arg-type]
 
 
-def test_there_are_few_suggestions(tmp_path: Path) -> None:
+def test_the_number_of_suggestions_is_limited(tmp_path: Path) -> None:
     every = dict.fromkeys((FLEXOR, EXTENSOR, LEVEL, PUSH), (1.0, 1.5))
     assert len(suggested(tmp_path, every)) == MOST
 

@@ -210,7 +210,7 @@ def test_changes_without_parameters_are_left_out_while_a_constant_gains_a_part(
     assert made.once is once
 
 
-def test_the_search_keeps_its_waiting_state_if_a_candidate_is_accepted(early: Early) -> None:
+def test_the_search_is_still_waiting_after_a_candidate_is_accepted(early: Early) -> None:
     found = charged(early, FROM).candidates()
     next(found)
     charged(early, 2)

@@ -51,7 +51,7 @@ if __name__ == "__main__":
 """
 
 
-def test_uses_are_united_only_where_a_name_means_the_same(tmp_path: Path) -> None:
+def test_uses_are_combined_only_where_a_name_means_the_same(tmp_path: Path) -> None:
     (tmp_path / "turner.py").write_text(NODE)
     (tmp_path / "gains.py").write_text("KP = 1.5\n")
     analysis = analyse([tmp_path / "turner.py", tmp_path / "gains.py"], root=tmp_path)

@@ -58,7 +58,7 @@ def test_two_candidates_are_tested_at_most() -> None:
 
 
 @pytest.mark.parametrize(("lost", "episodes"), [(1.0, BOTH), (1.01, 0)])
-def test_a_candidate_may_lose_the_margin_as_designed(lost: float, episodes: int) -> None:
+def test_a_candidate_may_lose_the_margin_in_the_designed_world(lost: float, episodes: int) -> None:
     found, spent = best({ONE: (5.0, -lost)})
     assert (found is not None) == bool(episodes)
     assert spent == KNOWN + episodes
@@ -126,7 +126,7 @@ def test_a_candidate_that_cannot_run_is_skipped() -> None:
     assert (found.candidate, spent) == (THREE, 2 * KNOWN + DRIFTED + BOTH)  # the failed test counts as one
 
 
-def test_under_a_permanent_drift_a_candidate_may_lose_anything_as_designed() -> None:
+def test_under_a_permanent_drift_losses_in_the_designed_world_do_not_matter() -> None:
     def permanent(mutants: Any, _: Any, __: Watch) -> None:
         mutants.order.permanent = True
 
@@ -145,7 +145,7 @@ def test_a_candidate_moves_to_its_definition_within_a_dozen_episodes() -> None:
     assert _placed(mutants, judge, ONE) == (ONE, 12)
 
 
-def test_episodes_of_the_placing_run_in_the_drifted_world_and_count() -> None:
+def test_episodes_that_place_a_candidate_run_in_the_drifted_world_and_are_counted() -> None:
     mutants, judge, found = of_partial({ONE: (5.0, 0.0)})
     totals: list[float] = []
 

@@ -183,7 +183,7 @@ def before() -> Any:
     return SimpleNamespace(trials=trials, signs=lambda _: Signs({"here": {}}))
 
 
-def test_a_structural_search_knows_symptoms_and_outcomes_of_the_search_before(
+def test_a_structural_search_gets_the_symptoms_and_outcomes_of_the_previous_search(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     found, (guards, trials, effects, signs), examiner = restructured(monkeypatch, before())
@@ -201,7 +201,7 @@ def test_a_constant_that_is_accepted_in_the_structural_search_is_no_structure(
     assert (found.accepted, found.effects, found.method, found.structure) == (ONE, {"old": []}, "", 0)
 
 
-def test_a_structural_search_without_time_or_a_search_before_has_no_symptoms(
+def test_a_structural_search_without_time_or_a_previous_search_has_no_symptoms(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert restructured(monkeypatch, before(), late=True)[1][3] == NO_SIGNS

@@ -34,7 +34,9 @@ def ranged(tank: pytest.Pytester) -> pytest.Pytester:
     return tank
 
 
-def test_episodes_draw_from_the_range_and_a_repair_holds_over_all_of_it(ranged: pytest.Pytester) -> None:
+def test_episodes_draw_from_the_range_and_a_repair_works_over_the_whole_range(
+    ranged: pytest.Pytester,
+) -> None:
     changed(ranged, "test_tank", "    draws = ", "    print('SIZE', tarl_drift)\n    draws = ")
     ranged.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     done = ranged.runpytest(*REPAIR)

@@ -92,10 +92,12 @@ def nearer(window: tuple[float, float]) -> list[float]:
 
 
 @pytest.mark.parametrize("low", [1.3, 1.6, 1.9])
-def test_a_value_that_costs_too_much_as_designed_becomes_smaller_but_still_succeeds(low: float) -> None:
+def test_a_value_that_loses_too_much_in_the_designed_world_is_reduced_while_it_still_succeeds(
+    low: float,
+) -> None:
     (by,) = nearer((low, 3.0))
     assert low < by < 2.2
 
 
-def test_if_no_smaller_value_succeeds_nothing_is_proposed() -> None:
+def test_nothing_is_proposed_if_no_smaller_value_succeeds() -> None:
     assert nearer((2.19, 3.0)) == []

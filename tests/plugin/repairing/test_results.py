@@ -158,7 +158,7 @@ def factors(of: Candidate | None) -> list[float]:
     return [factor(one) or math.nan for one in of.mutations]
 
 
-def test_a_bisection_halves_the_exponents_until_no_result_shows_which_way_to_go() -> None:
+def test_a_bisection_halves_the_exponents_until_no_result_shows_the_direction() -> None:
     both = Candidate((*scaled(16.0).mutations, *scaled(1 / 16.0, of=OTHER).mutations), ALWAYS)
     between = Between(both, mutations)
     assert factors(between.middle()) == pytest.approx([4.0, 0.25], rel=0.01)
@@ -328,7 +328,7 @@ def test_promising_candidates_are_the_best_refused_one_and_those_that_gained_mos
     assert [*_promising(examined(furthest=best), found)] == [best, harmful, more]
 
 
-def test_the_loss_as_designed_is_the_mean_of_three_recorded_missions() -> None:
+def test_the_loss_in_the_designed_world_is_the_mean_over_three_recorded_missions() -> None:
     def mutants(permanent: bool = False) -> Any:
         sample = SimpleNamespace(seeds=(4, 5, 6, 7), total=np.array([10.0, 11.0, 12.0, 13.0]))
         order = SimpleNamespace(permanent=permanent, fixture=SimpleNamespace(sample=sample))

@@ -106,7 +106,7 @@ def test_the_constants_of_several_objects_of_a_class_are_changed_where_the_objec
     assert len(found) == len(set(found))
 
 
-def test_the_rate_of_a_loop_is_an_operand_aside(order: Any) -> None:
+def test_the_rate_of_a_loop_is_an_operand_that_is_set_aside(order: Any) -> None:
     assert codes(aside_operands(order)) == ["20.0 in 29"]
     assert not set(aside_operands(order)) & set(operands(order))
 
@@ -133,7 +133,7 @@ def made(monkeypatch: pytest.MonkeyPatch, order: Any, method: str, *guards: Guar
     return strategy(mutants, method, guards, trials)  # type: ignore[return-value]
 
 
-def test_a_sweep_knows_the_operands_aside_and_whether_structural_changes_follow(
+def test_a_sweep_gets_the_set_aside_operands_and_whether_structural_changes_follow(
     monkeypatch: pytest.MonkeyPatch, order: Any
 ) -> None:
     found = made(monkeypatch, order, "sweep", WET, ALWAYS)

@@ -304,7 +304,9 @@ times.append((client.send_goal_and_wait(FibonacciGoal(), rospy.Duration(0.5), ro
         ("raise ValueError('bad order')", "Exception in execute callback: bad order"),
     ],
 )
-def test_a_callback_that_sets_no_end_or_fails_aborts_its_goal(start: Start, body: str, text: str) -> None:
+def test_a_goal_is_aborted_if_its_callback_sets_no_final_state_or_fails(
+    start: Start, body: str, text: str
+) -> None:
     ros = start(f"""
         import actionlib, rospy
         from actionlib_tutorials.msg import FibonacciAction

@@ -91,7 +91,7 @@ class Server:
         return {one.goal_id.id: one.status for one in self.states[-1].status_list}
 
 
-def test_a_server_has_several_goals_at_a_time(start: Start) -> None:
+def test_a_server_handles_several_goals_at_a_time(start: Start) -> None:
     server = Server(start)
     server.goal("a")
     server.goal("b", order=0)
@@ -110,7 +110,7 @@ def test_a_server_has_several_goals_at_a_time(start: Start) -> None:
     assert server.shown() == {}
 
 
-def test_cancel_requests_mean_one_goal_earlier_goals_or_all(start: Start) -> None:
+def test_a_cancel_request_concerns_one_goal_all_earlier_goals_or_all_goals(start: Start) -> None:
     server = Server(start)
     server.goal("a", stamp=1.0)
     server.goal("b", order=0, stamp=2.0)
@@ -155,7 +155,7 @@ def test_a_client_follows_several_goals_of_a_server(start: Start) -> None:
     ]  # fmt: skip
 
 
-def test_a_client_waits_only_as_long_as_it_says(start: Start) -> None:
+def test_a_client_waits_no_longer_than_its_timeout(start: Start) -> None:
     ros: Any = start("ORDERS = ()\n" + CLIENT.replace("\n    ", "\n"))
     ros.step(3.0)
     assert ros.namespace["served"] is False
@@ -174,7 +174,9 @@ def test_a_client_waits_only_as_long_as_it_says(start: Start) -> None:
         ("DONE", protocol.PREEMPTED, []),
     ],
 )
-def test_a_status_leads_through_the_states_of_actionlib(state: str, status: int, expected: list[str]) -> None:
+def test_a_status_moves_the_client_through_the_states_of_actionlib(
+    state: str, status: int, expected: list[str]
+) -> None:
     found = steps(getattr(CommState, state), status)
     assert [CommState.to_string(one) for one in found] == expected
 

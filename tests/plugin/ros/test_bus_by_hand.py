@@ -100,7 +100,7 @@ def test_a_latched_message_is_delivered_to_later_subscribers_that_want_it(
     assert bus.subscribed == {"/a"}
 
 
-def test_a_message_that_is_not_valid_is_an_error_of_the_test(bus: Bus) -> None:
+def test_an_invalid_message_of_the_world_is_an_error_in_the_test(bus: Bus) -> None:
     with pytest.raises(RecordingError, match=r"^The message published on /a is not valid: "):
         bus.publish("a", "text")
     with pytest.raises(RecordingError, match="is not callable"):
@@ -120,7 +120,7 @@ def test_a_header_without_a_stamp_gets_the_present_time(bus: Bus, program: Progr
     assert stamps == [(2, 500_000_001), (1, 0)]
 
 
-def test_a_nodes_message_reaches_the_world_at_once_and_other_nodes_when_it_waits(
+def test_a_message_of_a_node_reaches_the_world_at_once_and_other_nodes_once_the_node_waits(
     bus: Bus, program: Program, clock: Scheduler
 ) -> None:
     one, origin, heard, told = Subscriber(program), Publisher(program), list[str](), list[Any]()
@@ -147,7 +147,7 @@ def test_a_nodes_message_reaches_the_world_at_once_and_other_nodes_when_it_waits
     assert bus.published == {"/a": 1}
 
 
-def test_a_kept_message_of_a_node_comes_from_its_publication(
+def test_a_latched_message_of_a_node_keeps_its_publisher(
     bus: Bus, program: Program, clock: Scheduler
 ) -> None:
     origin, place = Publisher(program), bus.topic("/a")
@@ -166,7 +166,7 @@ def test_a_kept_message_of_a_node_comes_from_its_publication(
     assert [(message.data, end) for message, end in two.received] == [("x", None)]
 
 
-def test_only_the_ends_of_an_ended_process_are_disconnected(
+def test_only_the_endpoints_of_the_ended_process_are_disconnected(
     bus: Bus, program: Program, clock: Scheduler
 ) -> None:
     other = Program(clock)
@@ -215,7 +215,7 @@ def test_messages_pass_through_channels_and_arrive_after_their_delays(
     assert one.texts == ["x", "late"]
 
 
-def test_a_type_that_differs_is_named_with_its_node(bus: Bus, program: Program) -> None:
+def test_an_error_about_different_types_names_the_node(bus: Bus, program: Program) -> None:
     bus.attach(Subscriber(program, message_type("std_msgs/Float64")), bus.topic("/a"))
     with pytest.raises(
         RecordingError,
@@ -224,7 +224,7 @@ def test_a_type_that_differs_is_named_with_its_node(bus: Bus, program: Program) 
         bus.publish("/a", STRING(data="x"))
 
 
-def test_profiles_decide_whether_two_ends_of_ros2_connect() -> None:
+def test_qos_profiles_decide_whether_two_ros2_endpoints_connect() -> None:
     yes, no = (SimpleNamespace(satisfies=lambda _, answer=answer: answer) for answer in (True, False))
     end: Any = lambda profile: SimpleNamespace(qos_profile=profile)  # noqa: E731
     assert _compatible(end(yes), end(no))
@@ -289,7 +289,7 @@ def test_an_offered_service_is_created_on_the_first_request(clock: Scheduler) ->
     assert directory.find("/t") is None
 
 
-def test_only_the_present_endpoint_of_a_name_can_be_removed(clock: Scheduler) -> None:
+def test_only_the_current_endpoint_of_a_name_can_be_removed(clock: Scheduler) -> None:
     directory = ServiceDirectory(clock)
     old, new = Endpoint(), Endpoint()
     directory.add("/s", old)  # type: ignore[arg-type]
@@ -300,7 +300,7 @@ def test_only_the_present_endpoint_of_a_name_can_be_removed(clock: Scheduler) ->
     assert "/s" not in directory
 
 
-def test_a_task_waits_for_a_service_until_it_is_served_or_too_late(
+def test_a_task_waits_for_a_service_until_the_service_exists_or_a_timeout(
     clock: Scheduler, program: Program
 ) -> None:
     directory, trail = ServiceDirectory(clock), list[Any]()
@@ -322,7 +322,7 @@ def test_a_task_waits_for_a_service_until_it_is_served_or_too_late(
     assert trail[-1] == (True, 7)
 
 
-def test_a_reply_is_done_with_a_response_or_a_reason() -> None:
+def test_a_reply_ends_with_a_response_or_with_a_reason_for_the_refusal() -> None:
     reply = Reply("/s")
     assert (reply.done, reply.response, reply.error) == (False, None, "")
     reply.take("answer")

@@ -42,7 +42,7 @@ def matrix(turn: Rotation) -> np.ndarray:
 # vectors
 
 
-def test_vectors_are_added_scaled_and_multiplied_crosswise() -> None:
+def test_vectors_are_added_scaled_and_multiplied_by_the_cross_product() -> None:
     assert numbers(A + B) == [-3.0, 2.5, 9.0]
     assert numbers(A - B) == [5.0, 1.5, -3.0]
     assert numbers(-A) == [-1.0, -2.0, -3.0]
@@ -111,7 +111,7 @@ def test_vectors_are_equal_if_all_coordinates_differ_by_less_than_a_millionth() 
     assert not kdl.Equal(A, Vector(1, 2.5, 3), 0.5)
 
 
-def test_other_operands_are_refused() -> None:
+def test_operands_of_other_types_are_refused() -> None:
     for wrong in (lambda: A + 1, lambda: A - 1, lambda: A * "x", lambda: A / A, lambda: MOTION + LOAD):
         with pytest.raises(TypeError):
             wrong()
@@ -250,7 +250,7 @@ def test_a_half_turn_has_an_axis_and_a_quaternion_without_a_real_part(axis: tupl
     assert abs(quaternion[:3] @ axis) == pytest.approx(float(np.linalg.norm(axis)))
 
 
-def test_no_rotation_is_about_the_z_axis() -> None:
+def test_the_identity_has_the_z_axis_as_its_axis() -> None:
     angle, axis = Rotation().GetRotAngle()
     assert (angle, numbers(axis)) == (0.0, [0.0, 0.0, 1.0])
     assert numbers(Rotation.Identity()) == [1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0]
@@ -258,7 +258,7 @@ def test_no_rotation_is_about_the_z_axis() -> None:
     assert tiny == 0.0
 
 
-def test_columns_are_read_and_set() -> None:
+def test_columns_of_a_jacobian_can_be_read_and_set() -> None:
     turn = Rotation(Vector(1, 2, 3), Vector(4, 5, 6), Vector(7, 8, 9))
     assert numbers(turn) == [1.0, 4.0, 7.0, 2.0, 5.0, 8.0, 3.0, 6.0, 9.0]
     assert [numbers(one()) for one in (turn.UnitX, turn.UnitY, turn.UnitZ)] == [
@@ -270,7 +270,7 @@ def test_columns_are_read_and_set() -> None:
     assert numbers(turn) == [1.0, 0.0, 7.0, 2.0, 0.0, 8.0, 3.0, 1.0, 9.0]
 
 
-def test_entries_have_a_row_and_a_column() -> None:
+def test_entries_of_a_rotation_are_indexed_by_row_and_column() -> None:
     turn = Rotation(*range(9))
     assert [turn[place] for place in ((0, 2), (1, 0), (2, 1))] == [2.0, 3.0, 7.0]
     turn[1, 2] = -1
@@ -337,14 +337,14 @@ def test_a_frame_is_made_of_a_rotation_a_vector_both_or_a_frame() -> None:
     assert Frame(TURN, A) != Frame(A)
 
 
-def test_a_twist_moves_a_frame_in_its_own_axes_for_the_inverse_of_a_frequency() -> None:
+def test_a_twist_moves_a_frame_along_its_own_axes_for_one_period_of_a_frequency() -> None:
     frame = Frame(Rotation.RotZ(pi / 2), Vector(1, 0, 0))
     frame.Integrate(Twist(Vector(2, 0, 0), Vector(0, 0, 1)), 4)
     assert numbers(frame.p) == near(1.0, 0.5, 0.0)
     assert Rotation.RotZ(pi / 2 + 0.25) == frame.M
 
 
-def test_differences_and_sums_are_per_time() -> None:
+def test_differences_are_divided_by_the_time_and_sums_multiply_by_it() -> None:
     assert numbers(kdl.diff(A, B, 2)) == [-2.5, -0.75, 1.5]
     assert numbers(kdl.addDelta(A, Vector(1, 2, 3), 2)) == [3.0, 6.0, 9.0]
     turned = kdl.addDelta(Rotation.RotX(0.2), Vector(0, 0, 0.3), 2)
@@ -452,7 +452,7 @@ def test_a_fixed_joint_does_not_move() -> None:
     assert Joint(one).getName() == "f"
 
 
-def test_a_segment_reaches_its_tip_at_the_joint_value_zero() -> None:
+def test_the_pose_of_a_segment_at_joint_value_zero_is_its_tip() -> None:
     tip = Frame(Rotation.RotX(0.2), Vector(1, 0, 0))
     one = Segment("s", Joint("j", Joint.RotZ, 1, 0.5), tip)
     assert one.getFrameToTip() == tip
@@ -496,7 +496,7 @@ def test_a_tree_takes_segments_at_known_places_with_new_names() -> None:
             tree.getChain(root, tip)
 
 
-def test_a_chain_is_attached_to_a_tree_in_a_row() -> None:
+def test_a_tree_takes_the_segments_of_a_chain_one_after_another() -> None:
     chain, tree = Chain(), Tree()
     for name in ("a", "b"):
         chain.addSegment(link(name))
@@ -563,7 +563,7 @@ def test_sizes_that_do_not_match_are_refused_by_every_solver() -> None:
     ]
 
 
-def test_joint_speeds_cause_the_twist_as_well_as_possible() -> None:
+def test_joint_speeds_approximate_the_twist_as_well_as_possible() -> None:
     chain, values, speeds, jacobian = arm(), joints(0.4, -0.5, 0.2), JntArray(3), Jacobian(3)
     ChainJntToJacSolver(chain).JntToJac(values, jacobian)
     twist = Twist(
@@ -575,7 +575,7 @@ def test_joint_speeds_cause_the_twist_as_well_as_possible() -> None:
     assert speeds.data.tolist() == [0.0, 0.0, 0.0]
 
 
-def test_a_search_that_is_cut_off_ends_with_its_number_of_iterations() -> None:
+def test_a_solver_that_reaches_its_iteration_limit_returns_the_number_of_iterations() -> None:
     chain, pose, found = arm(), Frame(), JntArray(3)
     forward, speeds = ChainFkSolverPos_recursive(chain), ChainIkSolverVel_pinv(chain)
     forward.JntToCart(joints(0.4, -0.5, 0.2), pose)

@@ -107,7 +107,7 @@ def test_the_text_for_a_checksum_has_constants_first_and_nested_types_as_checksu
         ("int64", -(2**63), 2**63 - 1),
     ],
 )
-def test_integers_fit_their_type(base: str, low: int, high: int) -> None:
+def test_integers_must_fit_their_type(base: str, low: int, high: int) -> None:
     assert [as_integer(one, base, "f") for one in (low, high, True)] == [low, high, 1]
     for wrong in (low - 1, high + 1):
         with pytest.raises(FieldError, match=rf"must lie within {base}, from {low} to {high}, not {wrong}"):
@@ -116,7 +116,7 @@ def test_integers_fit_their_type(base: str, low: int, high: int) -> None:
         as_integer(1.0, base, "f")
 
 
-def test_values_of_other_types_are_refused_in_a_sentence() -> None:
+def test_values_of_other_types_are_refused_with_a_reason() -> None:
     assert (as_float(3, "f"), as_bool(1, "f"), as_bool(False, "f"), as_text("x", "f")) == (
         3.0,
         True,
@@ -167,7 +167,7 @@ def test_ros1_numbers_are_little_endian_and_lists_begin_with_their_length() -> N
     )
 
 
-def test_ros1_strings_times_and_messages_follow_each_other() -> None:
+def test_ros1_strings_times_and_nested_messages_are_written_without_padding() -> None:
     kind = one_field(
         Field("a", "string", "sequence"),
         Field("t", "time"),

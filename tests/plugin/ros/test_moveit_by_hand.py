@@ -46,7 +46,7 @@ def test_the_pose_of_a_link_is_that_of_the_joints_before_it() -> None:
         ARM.pose("leg", state)
 
 
-def test_the_joints_that_move_are_those_of_the_robot_and_not_fixed() -> None:
+def test_the_moving_joints_of_the_robot_exclude_fixed_ones() -> None:
     assert ARM.joints == ("shoulder", "elbow")
     assert ARM.root == "base"
 
@@ -71,7 +71,7 @@ def joint(name: str, kind: str, more: str = "") -> str:
     )
 
 
-def test_a_joint_without_limits_is_unbounded_and_moves_at_speed_one() -> None:
+def test_a_joint_without_limits_is_unbounded_and_has_speed_one() -> None:
     limit = '<limit lower="-1" upper="1" effort="1" velocity="{}"/>'
     turning = semantic("", joint("j", "continuous", limit.format(3)))
     assert (turning.bounds("j"), turning.speed("j")) == (None, 3.0)
@@ -151,7 +151,7 @@ def test_a_pose_is_reached_within_the_limits_by_the_joints_of_the_group() -> Non
     assert ARM.reached(fore, "hand", near, {"shoulder": 0.0, "elbow": 0.1}) is None
 
 
-def test_the_search_for_joint_values_begins_in_the_range_as_well() -> None:
+def test_the_search_for_joint_values_can_start_from_values_inside_the_range() -> None:
     assert ARM._between(["elbow"], 0.25) == {"elbow": -1.0}
     assert ARM._between(["elbow"], 0.75) == {"elbow": 1.0}
     assert semantic("", joint("j", "continuous"))._between(["j"], 0.5) == {"j": 0.0}
@@ -170,7 +170,7 @@ def test_a_robot_needs_both_of_its_descriptions() -> None:
 # motions
 
 
-def test_a_straight_motion_has_a_point_each_tenth_of_a_second_at_the_pace_of_the_slowest_joint() -> None:
+def test_a_straight_motion_has_ten_points_per_second_and_takes_as_long_as_its_slowest_joint() -> None:
     found = straight(ARM, AT_REST, [{"shoulder": 0.1, "elbow": -0.05}], 1.0)
     assert (found.joint_names, found.header.frame_id) == (["shoulder", "elbow"], "base")
     assert [one.time_from_start.to_sec() for one in found.points] == pytest.approx([0.0, 0.1, 0.2])
@@ -187,7 +187,7 @@ def test_a_straight_motion_has_a_point_each_tenth_of_a_second_at_the_pace_of_the
     assert {tuple(one.accelerations) for one in found.points} == {(0.0, 0.0)}
 
 
-def test_a_slower_share_of_the_speed_takes_longer() -> None:
+def test_a_motion_at_a_smaller_share_of_the_speed_takes_longer() -> None:
     found = straight(ARM, AT_REST, [{"shoulder": 0.1, "elbow": 0.0}], 0.5)
     assert found.points[-1].time_from_start.to_sec() == pytest.approx(0.4)
     assert len(found.points) == 5
@@ -208,7 +208,7 @@ def test_a_motion_to_the_present_values_has_one_point() -> None:
     assert straight(ARM, AT_REST, [], 1.0).joint_names == []
 
 
-def test_a_frame_on_the_way_is_between_both_in_place_and_turn() -> None:
+def test_an_interpolated_frame_has_a_position_and_an_orientation_in_between() -> None:
     one, other = Frame(Rotation.RotX(0.2), Vector(0, 0, 0)), Frame(Rotation.RotX(1.0), Vector(4, 0, 2))
     assert along(one, other, 0.25) == Frame(Rotation.RotX(0.4), Vector(1, 0, 0.5))
     assert along(one, other, 0.0) == one
@@ -360,7 +360,7 @@ def test_the_robot_has_groups_joints_and_links(start: Start) -> None:
 
 
 @pytest.mark.parametrize("value", [0, -0.1, 1.01])
-def test_shares_of_the_limits_are_above_zero_and_at_most_one(value: float, start: Start) -> None:
+def test_scaling_factors_must_be_above_zero_and_at_most_one(value: float, start: Start) -> None:
     source = """
     for name in ("velocity", "acceleration"):
         try:

@@ -110,7 +110,7 @@ def test_a_task_that_begins_while_a_process_is_killed_is_killed_as_well(network:
     assert process.tasks == []
 
 
-def test_parts_are_made_once_for_a_process_and_for_the_episode(network: Network) -> None:
+def test_services_are_created_once_per_process_or_once_per_episode(network: Network) -> None:
     made: list[Any] = []
 
     def part(owner: Any) -> str:
@@ -158,7 +158,7 @@ def test_the_first_error_is_kept(network: Network) -> None:
 
 
 @pytest.mark.parametrize("error", [RecordingError("x"), KeyboardInterrupt()])
-def test_errors_that_are_not_the_nodes_are_passed_on(error: BaseException, network: Network) -> None:
+def test_errors_that_the_node_did_not_cause_are_passed_on(error: BaseException, network: Network) -> None:
     failing(network, error)
     assert network.scheduler.failure is error
 
@@ -194,7 +194,7 @@ def test_an_exit_with_a_text_has_status_one_and_the_first_line(code: Any, status
     assert _status(SystemExit(code)) == status
 
 
-def test_an_exit_in_another_task_ends_only_this_task_unless_it_is_of_the_whole_process(
+def test_an_exit_in_another_task_ends_only_this_task_unless_it_ends_the_whole_process(
     network: Network,
 ) -> None:
     def exits(error: SystemExit) -> Callable[[], None]:
@@ -215,7 +215,9 @@ def test_an_exit_in_another_task_ends_only_this_task_unless_it_is_of_the_whole_p
     assert "exited with status 4" in str(network.scheduler.failure)
 
 
-def test_errors_during_the_end_are_kept_apart_and_expected_ones_ignored(network: Network) -> None:
+def test_errors_during_the_shutdown_are_stored_separately_and_expected_ones_are_ignored(
+    network: Network,
+) -> None:
     class ExpectedError(Exception):
         tarl_shutdown = True
 
@@ -237,7 +239,7 @@ def test_errors_during_the_end_are_kept_apart_and_expected_ones_ignored(network:
     assert "ExpectedError" in str(network.scheduler.failure)
 
 
-def test_a_node_that_never_waits_is_named_with_its_limit(network: Network) -> None:
+def test_the_error_for_a_node_that_never_waits_names_it_and_its_limit(network: Network) -> None:
     process = failing(network, Spinning())
     failure = network.scheduler.failure
     assert isinstance(failure, StuckNodeError)
@@ -248,7 +250,9 @@ def test_a_node_that_never_waits_is_named_with_its_limit(network: Network) -> No
     assert str(process.spins(None)).startswith("Node 'renamed' never waits")
 
 
-def test_a_task_that_ignores_the_end_is_suspended_after_a_thousand_refused_waits(network: Network) -> None:
+def test_a_task_that_ignores_the_shutdown_is_suspended_after_a_thousand_refused_waits(
+    network: Network,
+) -> None:
     counted: list[int] = []
 
     def program() -> None:
@@ -263,7 +267,7 @@ def test_a_task_that_ignores_the_end_is_suspended_after_a_thousand_refused_waits
     assert process.ended
 
 
-def test_a_watchdog_tells_computing_from_waiting() -> None:
+def test_the_watchdog_distinguishes_computing_from_waiting() -> None:
     dog = Watchdog()
     assert dog.hanging(2.5) == "2.5 s of computing"
     dog.hung = True
@@ -328,7 +332,7 @@ def test_a_sleep_ends_with_the_process(network: Network) -> None:
     assert seen == [2.0]
 
 
-def test_a_select_without_streams_waits_for_its_timeout(network: Network) -> None:
+def test_select_without_streams_waits_for_its_timeout(network: Network) -> None:
     seen: list[Any] = []
 
     def program() -> None:
@@ -372,7 +376,7 @@ def test_a_node_reads_whole_lines_when_they_are_typed(network: Network) -> None:
     assert process.part(Terminal).waited
 
 
-def test_all_text_is_read_until_the_node_ends(network: Network) -> None:
+def test_a_node_that_reads_all_text_waits_until_the_episode_ends(network: Network) -> None:
     seen: list[Any] = []
 
     def program() -> None:
@@ -396,7 +400,7 @@ def test_a_read_at_the_end_is_interrupted(network: Network) -> None:
     assert seen == [NodeInterruptedError]
 
 
-def test_a_select_tells_when_a_line_can_be_read(network: Network) -> None:
+def test_select_returns_when_a_line_can_be_read(network: Network) -> None:
     seen: list[Any] = []
 
     def program() -> None:
@@ -411,7 +415,7 @@ def test_a_select_tells_when_a_line_can_be_read(network: Network) -> None:
     assert seen[2] == "x\n"
 
 
-def test_a_window_gets_each_key_and_gives_up_after_its_patience(network: Network) -> None:
+def test_a_window_gets_each_key_and_stops_waiting_after_its_timeout(network: Network) -> None:
     seen: list[Any] = []
 
     def program() -> None:

@@ -95,7 +95,9 @@ def test_a_subscriber_of_rospy_keeps_the_newest_messages_while_its_callback_is_b
         ((BEST_EFFORT, VOLATILE), (RELIABLE, LOCAL), False),
     ],
 )
-def test_profiles_connect_as_the_table_of_ros_2_says(offered: Any, wanted: Any, connects: bool) -> None:
+def test_qos_profiles_connect_according_to_the_table_of_ros_2(
+    offered: Any, wanted: Any, connects: bool
+) -> None:
     def profile(pair: Any) -> QoSProfile:
         return QoSProfile(depth=1, reliability=pair[0], durability=pair[1])
 
@@ -294,7 +296,7 @@ def test_muted_messages_of_the_world_reach_no_node_and_are_not_latched(start: St
     assert not ros.bus.topic("x").kept
 
 
-def test_a_message_that_waits_in_a_queue_does_not_change_with_the_one_of_its_publisher(start: Start) -> None:
+def test_a_queued_message_does_not_change_if_the_publisher_changes_its_own(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -316,7 +318,7 @@ def test_a_message_that_waits_in_a_queue_does_not_change_with_the_one_of_its_pub
     assert "unregistered" in ros.namespace["said"]  # type: ignore[attr-defined]
 
 
-def test_alarms_and_tasks_of_an_instant_run_in_order_and_the_clock_stops_where_it_is_told(
+def test_alarms_and_tasks_of_an_instant_run_in_order_and_the_clock_stops_at_the_requested_time(
     start: Start,
 ) -> None:
     ros = start("""

@@ -75,7 +75,7 @@ def test_a_name_is_declared_once_and_is_not_empty() -> None:
             node.declare_parameter(wrong)  # type: ignore[arg-type]
 
 
-def test_the_type_is_that_of_the_default_or_the_declared_one_and_of_the_override_without_both() -> None:
+def test_the_type_is_the_declared_one_or_that_of_the_default_or_else_that_of_the_override() -> None:
     with pytest.raises(InvalidParameterTypeException):
         declared(("a", 1), overrides={"a": 1.5})
     with pytest.raises(InvalidParameterTypeException):
@@ -123,7 +123,7 @@ def test_an_unknown_parameter_is_an_error_unless_the_node_allows_it() -> None:
         free.undeclare_parameter("y")
 
 
-def test_a_read_only_parameter_is_neither_set_nor_undeclared_nor_described_anew() -> None:
+def test_a_read_only_parameter_cannot_be_set_undeclared_or_given_a_new_descriptor() -> None:
     node = declared(("a", 1, new_descriptor(read_only=True)), ("b", 1))
     result = node.set_parameters([Parameter("a", value=2)])[0]
     assert (result.successful, result.reason) == (False, "Trying to set a read-only parameter: a.")
@@ -143,7 +143,7 @@ def test_an_atomic_change_sets_all_or_nothing_and_others_one_by_one() -> None:
     assert values(node) == {"a": 2, "b": 1}
 
 
-def test_callbacks_rewrite_refuse_and_hear_of_changes_newest_first() -> None:
+def test_parameter_callbacks_run_newest_first_before_on_and_after_a_change() -> None:
     node, trail = declared(("a", 1)), list[Any]()
 
     def noting(name: str, result: Any = None) -> Callable[[list[Parameter]], Any]:
@@ -307,7 +307,7 @@ def spinning(
     return trail, process
 
 
-def test_one_callback_runs_for_each_call(network: Network) -> None:
+def test_each_spin_once_runs_one_callback(network: Network) -> None:
     def program(executor: Executor, trail: list[Any]) -> None:
         executor.add_node(Node(Work("a", trail), Work("b", trail)))  # type: ignore[arg-type]
         executor.spin_once()
@@ -337,7 +337,7 @@ def test_timers_come_first_and_wake_the_executor_when_they_are_due(network: Netw
     assert spinning(network, program)[0] == ["now", 0, "a", 0, "late", 5]
 
 
-def test_a_future_ends_the_spin_and_so_does_its_time_limit(network: Network) -> None:
+def test_a_spin_ends_with_its_future_or_at_its_time_limit(network: Network) -> None:
     clock = network.scheduler
 
     def program(executor: Executor, trail: list[Any]) -> None:
@@ -355,7 +355,9 @@ def test_a_future_ends_the_spin_and_so_does_its_time_limit(network: Network) -> 
     assert spinning(network, program)[0] == [("x", 7), (False, 12), 12, 13]
 
 
-def test_a_task_of_the_executor_comes_before_the_nodes_and_may_be_a_coroutine(network: Network) -> None:
+def test_a_task_of_the_executor_runs_before_callbacks_of_nodes_and_may_be_a_coroutine(
+    network: Network,
+) -> None:
     def program(executor: Executor, trail: list[Any]) -> None:
         gate = executor.create_future()
 

@@ -69,7 +69,7 @@ def test_an_instant_that_has_passed_wakes_a_task_without_moving_the_clock(
     assert trail == [10]
 
 
-def test_a_woken_task_resumes_once_and_is_told_so(clock: Scheduler, program: Program) -> None:
+def test_a_woken_task_resumes_once_and_its_wait_returns_true(clock: Scheduler, program: Program) -> None:
     trail: list[Any] = []
 
     def task() -> None:
@@ -136,7 +136,7 @@ def test_alarms_come_before_the_tasks_of_their_instant(clock: Scheduler, program
     assert trail[-1] == ("late", 8)
 
 
-def test_an_alarm_that_an_alarm_sets_is_in_order_as_well(clock: Scheduler) -> None:
+def test_an_alarm_that_is_set_by_an_alarm_is_also_in_order(clock: Scheduler) -> None:
     trail: list[int] = []
     clock.at(2, lambda: clock.at(3, lambda: trail.append(clock.time)))
     clock.at(4, lambda: trail.append(clock.time))
@@ -195,7 +195,7 @@ def test_a_failure_stops_the_clock(clock: Scheduler, program: Program) -> None:
     assert trail == []
 
 
-def test_jobs_run_outside_of_tasks_once_the_running_one_waits(clock: Scheduler, program: Program) -> None:
+def test_jobs_run_outside_tasks_once_the_running_task_waits(clock: Scheduler, program: Program) -> None:
     trail: list[Any] = []
 
     def task() -> None:
@@ -243,7 +243,7 @@ def test_a_killed_task_ends_where_it_waits_and_one_that_never_ran_does_not_begin
     assert (trail, waiting[0].done, program.tasks) == (["unwound"], True, [])
 
 
-def test_greenlets_are_used_again_and_end_with_the_scheduler(clock: Scheduler, program: Program) -> None:
+def test_greenlets_are_reused_and_end_with_the_scheduler(clock: Scheduler, program: Program) -> None:
     workers = []
     for _ in range(3):
         made = clock.spawn(program, lambda: None)
@@ -275,7 +275,7 @@ def test_the_program_is_entered_before_each_of_its_tasks(clock: Scheduler, progr
     assert entered == [program, program]
 
 
-def test_a_task_that_never_waits_is_named_by_its_program(clock: Scheduler, program: Program) -> None:
+def test_the_error_for_a_task_that_never_waits_names_its_program(clock: Scheduler, program: Program) -> None:
     assert isinstance(clock.spinning(), StuckNodeError)
     told: list[NodeError] = []
     clock.spawn(program, lambda: told.append(clock.spinning()))
@@ -312,14 +312,14 @@ def polls(clock: Scheduler, program: Program, count: int) -> int:
         (PATIENCE + 5 * AGAIN, 6),
     ],
 )
-def test_a_polling_task_waits_after_its_patience_and_then_more_often(
+def test_a_polling_task_waits_after_its_limit_of_polls_and_then_more_often(
     count: int, waits: int, clock: Scheduler, program: Program
 ) -> None:
     assert polls(clock, program, count) == waits
 
 
 @pytest.mark.parametrize(("ahead", "pauses"), [(1, 0), (0, 1), (None, 0)])
-def test_a_wait_for_a_later_instant_renews_the_patience_of_a_task(
+def test_a_wait_for_a_later_instant_resets_the_poll_limit_of_a_task(
     ahead: int | None, pauses: int, clock: Scheduler, program: Program
 ) -> None:
     before: list[int] = []
@@ -433,7 +433,7 @@ def test_a_reentrant_lock_is_free_after_as_many_releases(clock: Scheduler, progr
     assert not lock.locked()
 
 
-def test_a_condition_restores_how_often_its_lock_was_acquired(clock: Scheduler, program: Program) -> None:
+def test_a_condition_restores_the_recursion_count_of_its_lock(clock: Scheduler, program: Program) -> None:
     lock, trail = ReentrantLock(clock), list[Any]()
     condition = threading.Condition(lock)  # type: ignore[arg-type]
 

@@ -101,7 +101,7 @@ def test_an_action_state_has_the_outcome_of_its_goal(
     assert state.served == (outcome == "preempted")
 
 
-def test_a_goal_is_cancelled_after_its_limit_and_given_up_after_another(clock: list[float]) -> None:
+def test_a_goal_is_cancelled_after_one_time_limit_and_abandoned_after_another(clock: list[float]) -> None:
     client = Client(None, GoalStatus.ACTIVE, clock)
     state = Acting(client, clock, _limit=1.0, _end=0.55)
     assert state.execute({}) == "aborted"
@@ -115,7 +115,7 @@ def test_a_goal_without_a_limit_waits_until_its_end(clock: list[float]) -> None:
     assert client.log[2:] == []
 
 
-def test_a_state_that_must_end_at_once_sends_nothing_and_neither_does_one_without_a_server(
+def test_a_state_sends_no_goal_if_it_must_end_at_once_or_has_no_server(
     clock: list[float],
 ) -> None:
     client = Client(1.0, GoalStatus.SUCCEEDED, clock)
@@ -295,7 +295,7 @@ def concurrence(**given: Any) -> Concurrence:
     ("ended", "outcome"),
     [({"a": "x", "b": "x"}, "good"), ({"a": "x", "b": "y"}, "bad"), ({"a": "y", "b": "x"}, "default")],
 )
-def test_the_first_outcome_whose_states_ended_as_mapped_is_chosen(
+def test_the_first_outcome_whose_mapped_states_have_ended_accordingly_is_chosen(
     ended: dict[str, str], outcome: str
 ) -> None:
     made = concurrence(outcome_map={"good": {"a": "x", "b": "x"}, "bad": {"b": "y"}})
@@ -306,7 +306,7 @@ def test_the_first_outcome_whose_states_ended_as_mapped_is_chosen(
     assert made.get_initial_states() == ["a", "b"]
 
 
-def test_a_callback_chooses_before_the_map_and_must_know_the_outcome() -> None:
+def test_the_outcome_callback_takes_precedence_over_the_map_and_must_return_a_known_outcome() -> None:
     for chosen, outcome in (("bad", "bad"), (None, "good")):
         made = concurrence(outcome_map={"good": {}}, outcome_cb=lambda ended, chosen=chosen: chosen)
         assert made._outcome() == outcome

@@ -113,7 +113,7 @@ def raised(cause: BaseException | None) -> NodeError:
         return error
 
 
-def test_an_account_has_the_sentence_the_traceback_of_the_node_and_the_line_of_the_test() -> None:
+def test_an_error_report_contains_the_message_the_traceback_of_the_node_and_the_line_of_the_test() -> None:
     text = account(raised(ValueError("boom")), Path(__file__))
     sentence, trace, line = text.split("\n\n")
     assert sentence == "Node failed."
@@ -122,14 +122,14 @@ def test_an_account_has_the_sentence_the_traceback_of_the_node_and_the_line_of_t
     assert line.endswith('raise NodeError("Node failed.") from error')
 
 
-def test_an_error_without_a_cause_or_of_the_test_is_only_its_message() -> None:
+def test_the_report_of_an_error_in_the_test_or_without_a_cause_is_only_its_message() -> None:
     assert account(raised(None), Path(__file__)) == "Node failed."
     assert account(ValueError("mine"), Path(__file__)) == "mine"
     other = account(raised(ValueError("boom")), Path("/elsewhere/test_x.py"))
     assert "The test was at" not in other
 
 
-def test_the_frames_of_the_package_at_the_beginning_are_left_out() -> None:
+def test_a_traceback_omits_the_first_frames_if_they_are_in_the_package() -> None:
     def of(*files: str) -> Any:
         frame: Any = None
         for file in reversed(files):
@@ -177,7 +177,7 @@ class Lazy(topic_tools.LazyTransport):
         self.trail.append("unsubscribe")
 
 
-def test_a_lazy_node_subscribes_once_and_until_its_last_peer_has_gone(
+def test_a_lazy_node_subscribes_once_and_unsubscribes_when_its_last_peer_leaves(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(topic_tools, "get_param", lambda name, default: default)

@@ -214,7 +214,7 @@ MOVING = """
 """
 
 
-def test_look_ups_between_two_instants_lead_through_a_fixed_frame(start: Start) -> None:
+def test_look_ups_between_two_times_use_a_fixed_frame(start: Start) -> None:
     ros = start(
         MOVING
         + """
@@ -245,7 +245,9 @@ def test_look_ups_between_two_instants_lead_through_a_fixed_frame(start: Start) 
     assert names["frames"] == []
 
 
-def test_messages_move_through_a_fixed_frame_and_old_clouds_into_another_frame(start: Start) -> None:
+def test_messages_are_transformed_via_a_fixed_frame_and_old_point_clouds_to_another_frame(
+    start: Start,
+) -> None:
     ros = start(
         MOVING
         + """

@@ -73,7 +73,7 @@ def test_a_repair_that_breaks_the_designed_world_is_refused() -> None:
 
 
 @pytest.mark.parametrize("loss", [0.45, 2.0])
-def test_the_result_says_whether_the_designed_world_is_the_reason(loss: float) -> None:
+def test_the_result_states_whether_the_designed_world_caused_the_rejection(loss: float) -> None:
     """A loss of nearly the margin is not shown to be tolerable, and one of four margins is shown not to be."""
     costly = judged(world(DESIGNED), world(DESIGNED - loss, seed=1))
     weak = judged(world(DESIGNED - loss), world(DESIGNED, seed=1))

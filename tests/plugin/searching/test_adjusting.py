@@ -69,7 +69,7 @@ def test_refining_goes_on_while_the_gain_grows_or_is_almost_the_wanted_one() -> 
     assert len(search.tried) == 2
 
 
-def test_noise_refused_constants_and_those_refined_enough_are_not_refined() -> None:
+def test_constants_with_a_noise_gain_a_refusal_or_enough_refinements_are_not_refined() -> None:
     assert adjusted(entered((A, 2.2, 0.1)))[1].tried == []
     assert adjusted(Gains(0.1))[1].tried == []
     refused = entered((A, 2.2, 3.0), (B, 2.2, 1.0))
@@ -150,7 +150,7 @@ def test_the_fixed_parameters_of_a_promising_proposal_are_varied_once() -> None:
     assert varied(4.0, proposed=False) == 0
 
 
-def test_a_gain_that_stays_the_same_between_two_values_is_not_refined_for_ever() -> None:
+def test_refining_ends_if_the_gain_stays_the_same_between_two_values() -> None:
     """A threshold that is low enough lets missions last longer; another one fails them then."""
     found, search = adjusted(entered((A, 2.2, 3.0)), {one / 1000: 3.0 for one in range(1, 60000)})
     for _ in range(5):
@@ -176,7 +176,7 @@ def test_a_named_constant_with_a_sharp_peak_is_refined_until_its_neighbours_are_
     assert len(search.tried) == 2 * IDLE
 
 
-def test_of_uses_that_act_alike_only_the_first_is_refined() -> None:
+def test_only_the_first_of_several_uses_with_the_same_effect_is_refined() -> None:
     whole = Unit((constant(3, "AHEAD", 0.65),))
     use = Unit((replace(constant(8, "AHEAD", 0.65), definition=whole.operands[0].definition),))
     gains = entered((whole, 2.2, 3.0), (whole, 0.4, -1.0), (use, 2.2, 3.0), (use, 0.4, -1.0))

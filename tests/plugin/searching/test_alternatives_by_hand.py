@@ -79,7 +79,7 @@ def test_the_factor_is_kept_if_nothing_is_closer() -> None:
     assert nearest(2.0, lambda _: inf) == (2.0, inf)
 
 
-def test_of_equal_deviations_the_exponent_nearest_to_one_is_taken() -> None:
+def test_the_exponent_nearest_to_one_is_taken_if_deviations_are_equal() -> None:
     values = iter([1.0, 0.5, 0.5, 0.5])
     found, least = nearest(2.0, lambda _: next(values))
     assert found == pytest.approx(2**0.8, rel=1e-3)
@@ -251,14 +251,14 @@ def test_a_gain_of_half_a_percent_is_followed_by_larger_steps(gain: float, follo
     assert bool(onward([(B, 1.22)], A, 50.0, entered((B, 1.22, gain)), ALWAYS, 10.0)) is followed
 
 
-def test_halfway_is_the_square_root_and_a_factor_at_an_end_is_not_between() -> None:
+def test_the_halfway_factor_is_the_square_root_and_the_ends_are_not_between() -> None:
     assert milder(A, 2.25, {1.0: 0.0, 2.25: 9.0, 0.4: 1.0, 3.0: 1.0}) == 1.5
     assert milder(A, 0.25, {1.0: 0.0, 0.25: 9.0, 2.2: 1.0, 0.2: 1.0}) == 0.5
     assert milder(A, 2.25, {2.0: 1.0}) is None
     assert milder(A, 0.0, {}) is None
 
 
-def test_a_value_inside_is_nearer_to_the_old_one() -> None:
+def test_an_inner_value_is_nearer_to_the_old_one() -> None:
     assert inside(exp(1.0)) == pytest.approx(exp(0.85), abs=5e-4)
     assert inside(exp(-1.0)) == pytest.approx(exp(-0.85), abs=5e-4)
     assert inside(1.0) == 1.0

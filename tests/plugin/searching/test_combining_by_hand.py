@@ -105,7 +105,7 @@ def test_a_gain_that_may_be_noise_is_not_combined(gain: float, combined: bool) -
     assert bool(search.calls) is combined
 
 
-def test_nothing_is_combined_if_nothing_was_tried_or_all_was_refused() -> None:
+def test_nothing_is_combined_if_nothing_was_tried_or_everything_was_refused() -> None:
     assert list(Combining(searching([A])).best_with_others()) == []
     search = searching([A], (A, 2.2, 9.0), refused={(A, ALWAYS)})
     list(Combining(search).best_with_others())
@@ -137,7 +137,7 @@ def test_leaders_are_united_if_they_gain_more_than_noise_and_less_than_almost_al
     assert bool(search.calls) is united
 
 
-def test_what_was_refused_under_a_guard_may_be_tried_again_under_this_guard_only() -> None:
+def test_a_change_that_was_refused_under_a_guard_may_be_retried_only_under_this_guard() -> None:
     search = searching([A, B], (A, 2.2, 3.0), refused={(A, ALWAYS), (A, WET), (B, WET)})
     list(Combining(search).leaders(ALWAYS))
     assert search.refused == {(A, WET), (B, WET)}
@@ -149,7 +149,7 @@ def test_proposals_and_worlds_without_any_gain_have_no_leaders() -> None:
         assert search.calls == []
 
 
-def test_the_best_constant_under_each_guard_is_sharpened() -> None:
+def test_the_best_constant_under_each_guard_is_refined() -> None:
     search = searching([A, B], (A, 2.2, 3.0), (B, 0.4, 4.0))
     search.gains.enter((A, WET), 1.5, 2.0)
     list(Combining(search).sharpened([WET, ALWAYS]))
@@ -184,7 +184,7 @@ def together(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
     return Together.made
 
 
-def test_the_joint_search_starts_at_the_three_best_points_under_the_guard_that_gained_most(
+def test_the_joint_search_starts_at_the_three_best_points_of_the_best_guard(
     together: list[tuple[Any, ...]],
 ) -> None:
     tries = [(A, 2.2, 3.0), (B, 2.2, 4.0), (C, 2.2, 2.0), (D, 2.2, 1.5)]
@@ -204,7 +204,7 @@ def test_a_negative_factor_is_no_start_of_a_joint_search(together: list[tuple[An
     assert together[0][2] == [Joint(((B, 2.2),), ALWAYS)]
 
 
-def test_constants_in_no_data_flow_are_moved_jointly_as_well(together: list[tuple[Any, ...]]) -> None:
+def test_constants_in_no_data_flow_are_also_searched_jointly(together: list[tuple[Any, ...]]) -> None:
     search = searching([A], (A, 2.2, 3.0), (B, 2.2, 2.0), generator=np.random.default_rng(0), late=(B,))
     list(Combining(search).jointly([ALWAYS]))
     assert set(together[0][0]) == {A, B}
@@ -277,7 +277,9 @@ def test_a_change_that_cannot_be_written_unmasks_nothing() -> None:
 
 
 @pytest.mark.parametrize(("steps", "expected"), [(11, False), (12, True)])
-def test_missions_under_a_change_are_longer_from_a_fifth_on(steps: int, expected: bool) -> None:
+def test_missions_count_as_longer_under_a_change_from_a_fifth_more_steps_on(
+    steps: int, expected: bool
+) -> None:
     joining, _ = selection(lambda _: Outcome(0.0, False, steps=steps))
     assert not longer(BASE, joining)  # it has not run
     list(joining.gain(BASE))
@@ -352,7 +354,7 @@ MANY = Unit((*A.operands, *B.operands, *C.operands, *D.operands))
 PARTS = {WHOLE: (A, B, C), MANY: (A, B, C, D)}
 
 
-def test_each_use_of_a_confirmed_constant_is_changed_alone_to_learn_which_matter() -> None:
+def test_each_use_of_a_confirmed_constant_is_changed_alone_to_find_the_uses_that_matter() -> None:
     search = Using()
     Uses(search, PARTS).learn(WHOLE, ALWAYS, 2.2, 3)
     assert search.tried == [("reaches", one, 2.2, 3, False) for one in (A, B, C)]

@@ -83,7 +83,7 @@ def test_the_steepest_interval_has_the_largest_sum_of_shares() -> None:
     assert _steepest(seen, 0) == (2, 4)
 
 
-def test_a_small_gap_is_included_if_what_follows_outweighs_it() -> None:
+def test_a_small_gap_is_included_if_the_cells_behind_it_outweigh_it() -> None:
     designed = [1] * 8 + [3] * 2
     assert _steepest(along([2, 3, 4], designed, {2: 1.0, 4: 1.0}), 0) == (2, 4)
     designed = [1] * 2 + [3] * 8
@@ -103,7 +103,7 @@ def test_an_interval_of_angles_is_at_most_one_turn() -> None:
     assert {one % 8 for one in range(low, high + 1)} >= {0, 2, 4, 6}
 
 
-def test_no_interval_is_steep_if_nothing_changed_more_than_it_was_visited() -> None:
+def test_no_interval_is_steep_if_no_cell_changed_more_than_it_was_visited() -> None:
     assert _steepest(along([1, 2], [1, 2], {}), 0) is None
 
 
@@ -118,7 +118,7 @@ def test_an_end_is_open_if_nothing_was_seen_beyond_it(bins: tuple[int, int], low
     assert _conjunct(X, bins, SEEN_BINS) == Conjunct(X, low, high)
 
 
-def test_the_ends_of_an_arc_and_of_a_category_stay_closed() -> None:
+def test_the_ends_of_an_interval_of_angles_and_of_a_category_stay_closed() -> None:
     assert _conjunct(ANGLE, (2, 6), SEEN_BINS) == Conjunct(ANGLE, 2.0, 7.0)
     assert _conjunct(WET, (0, 0), {0, 1}) == Conjunct(WET, 0.0, 0.0)
 
@@ -152,7 +152,7 @@ def test_the_bins_of_both_worlds_decide_whether_a_condition_always_holds() -> No
     assert list(_combined([(4, 6)], seen)) == [Guard((Conjunct(X, -inf, 7.0),))]
 
 
-def test_each_drifted_value_of_a_boolean_is_a_guard_and_no_number_is() -> None:
+def test_each_drifted_value_of_a_boolean_is_a_guard_but_no_value_of_a_number_is() -> None:
     cells: list[Cell] = [(x, int(x > 3)) for x in range(6)]
     seen = Evidence((X, WET), world(1, [(0, 0), (1, 2)]), world(2, cells), Region(()), {})
     assert list(_values(seen)) == [Guard((Conjunct(WET, one, one),)) for one in (0, 1)]
@@ -223,7 +223,7 @@ def test_of_two_guards_with_the_same_merit_the_one_with_fewer_conditions_wins() 
 # wider arcs
 
 
-def test_an_arc_is_widened_on_both_sides_and_across_the_end() -> None:
+def test_an_interval_of_angles_is_widened_on_both_sides_and_across_the_end_of_the_range() -> None:
     step = 2 * (2 * pi / 8)
     low, high = widened(HEADING, 0.0, pi / 4)
     assert (low, high) == (pytest.approx(-step), pytest.approx(pi / 4 + step))
@@ -231,7 +231,7 @@ def test_an_arc_is_widened_on_both_sides_and_across_the_end() -> None:
     assert (low, high) == (pytest.approx(0.0), pytest.approx(3 * pi / 4 + step - 2 * pi))
 
 
-def test_an_arc_that_would_close_on_itself_is_open() -> None:
+def test_an_interval_of_angles_that_would_cover_the_circle_has_open_ends() -> None:
     assert widened(ANGLE, 0.0, 3.0) == (6.0, 5.0)
     assert widened(ANGLE, 0.0, 4.0) == (-inf, inf)
     assert widened(ANGLE, 6.0, 2.0) == (-inf, inf)

@@ -70,7 +70,7 @@ def tried(world: World, operands: Sequence[Operand], **given: Any) -> list[str]:
     return [words for words, _ in order(world, operands, **given)]
 
 
-def test_a_world_in_which_nothing_matters_gets_every_step_once() -> None:
+def test_if_no_constant_matters_every_step_is_tried_once() -> None:
     assert order(dead, [A, LITERAL]) == [
         *(("A=2.2", 0), ("A=0.4", 1)),  # named constants first
         *(("3.0=6.6", 1), ("3.0=1.2", 2)),
@@ -120,7 +120,7 @@ def test_constants_that_lose_both_ways_get_steps_between_and_then_finer_ones() -
     assert found[:6] == ["3.0=6.6", "3.0=1.2", "3.0=4.5", "3.0=1.95", "3.0=3.66", "3.0=2.46"]
 
 
-def test_no_finer_steps_follow_if_another_constant_gains_half_of_what_is_wanted() -> None:
+def test_no_finer_steps_follow_if_another_constant_gains_half_of_the_wanted_gain() -> None:
     def world(changes: Changes) -> float:
         if LITERAL in changes:
             return -3.0
@@ -179,7 +179,7 @@ def test_constants_in_no_data_flow_come_after_the_others_failed() -> None:
     assert first["A"] < first["B"] < first["3"]
 
 
-def test_constants_set_aside_come_before_the_steps_of_a_plateau() -> None:
+def test_constants_that_were_set_aside_come_before_the_steps_of_a_plateau() -> None:
     found = tried(lambda changes: -0.5 * float(A in changes), [A], aside=[B])
     assert found.index("A=5") < found.index("B=2.2") < found.index("A=1.22")
 
@@ -223,7 +223,7 @@ def test_a_constant_that_cannot_be_written_is_skipped_and_the_rest_goes_on() -> 
     assert found.count("A=2.2") == 1
 
 
-def test_the_interlude_hears_the_largest_gain_before_each_step() -> None:
+def test_the_interlude_gets_the_largest_gain_before_each_step() -> None:
     heard: list[float] = []
 
     def interlude(gain: float) -> Iterator[Candidate]:
@@ -295,7 +295,7 @@ def test_a_step_announces_nothing_that_was_tried_or_cannot_change() -> None:
     assert all(value != 0 for step in heard[2:] for value, _ in step)
 
 
-def test_a_zero_on_a_scale_of_its_own_has_no_other_steps() -> None:
+def test_a_zero_with_its_own_scale_has_no_other_steps() -> None:
     found = tried(dead, [ZERO], charts={ZERO: SHARE})
     assert len(found) == len(set(found))
     assert all(-1.0 <= float(one.partition("=")[2]) <= 1.0 for one in found)
@@ -332,7 +332,7 @@ def test_a_change_that_misses_the_goal_is_neither_confirmed_nor_tried_again() ->
     assert search.attempts.gains.of(unit, ALWAYS) == {1.0: 0.0, 2.2: 4.0, 1.5: 4.0}
 
 
-def test_a_change_that_changes_nothing_reaches_and_holds_nothing() -> None:
+def test_a_change_without_an_effect_neither_reaches_the_goal_nor_is_confirmed() -> None:
     search, seen = sweeping(lambda changes: 10.0, [LITERAL])
     (unit,) = units([LITERAL])
     assert not search.attempts.reaches(unit, 1.0, ALWAYS, 0)
@@ -341,7 +341,7 @@ def test_a_change_that_changes_nothing_reaches_and_holds_nothing() -> None:
     assert seen == []
 
 
-def test_a_change_that_cannot_be_written_reaches_and_holds_nothing() -> None:
+def test_a_change_that_cannot_be_written_neither_reaches_the_goal_nor_is_confirmed() -> None:
     def world(_: Changes) -> float:
         raise RepairError("no place")
 

@@ -93,7 +93,7 @@ def restoring(
     )
 
 
-def test_a_factor_is_tried_before_an_offset_that_also_holds() -> None:
+def test_a_factor_is_tried_before_an_offset_that_also_succeeds() -> None:
     found = restoring({OFFSET: 2.2, NAMED: 0.42}, window=0.2).candidates()
     assert next(found).mutations[0].operand == NAMED
 
@@ -114,7 +114,7 @@ def test_a_named_constant_of_a_helper_is_tried_without_a_condition_before_a_lite
     assert (second.mutations[0].operand, second.guard) == (INNER, far)
 
 
-def test_an_offset_is_accepted_after_few_runs_if_no_plainer_change_holds() -> None:
+def test_an_offset_is_accepted_after_few_runs_if_no_plainer_change_succeeds() -> None:
     search = restoring({OFFSET: 2.2}, window=0.2)
     assert next(search.candidates()).mutations[0].operand == OFFSET
     assert search.attempts.trials.spent < 30

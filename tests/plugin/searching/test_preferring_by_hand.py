@@ -191,7 +191,7 @@ def test_larger_steps_end_after_twelve_episodes_as_well() -> None:
     assert {factor for _, factor in search.tries} == {5.0}
 
 
-def test_a_constant_in_a_place_without_the_sensor_is_tried_without_a_condition() -> None:
+def test_a_constant_whose_code_cannot_read_the_sensor_is_tried_without_a_condition() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         if candidate.guard == WET and candidate.mutations[0].operand.code == "A":
             raise RepairError("no sensor here")
@@ -250,7 +250,7 @@ def longer(candidate: Candidate, _: int) -> Outcome:
 
 
 @pytest.mark.parametrize(("holds", "near", "tries"), [(True, True, 4), (False, True, 4), (False, False, 0)])
-def test_a_constant_of_nature_has_alternatives_even_if_it_only_nearly_holds(
+def test_a_constant_of_nature_has_alternatives_even_if_it_is_only_nearly_confirmed(
     holds: bool, near: bool, tries: int
 ) -> None:
     search = Scripted([GRAVITY, A, B], proposed=True)
@@ -293,9 +293,7 @@ def window(*good: tuple[Unit, float, float], total: float = 10.0) -> Act:
     return run
 
 
-def test_the_value_halfway_to_the_old_one_comes_first_if_a_nearer_one_reaches_the_goal_on_three_seeds() -> (
-    None
-):
+def test_the_value_halfway_to_the_old_one_comes_first_if_a_closer_one_succeeds_on_three_seeds() -> None:
     search = Scripted([A], window((A, 1.3, 3.0)), [(A, 1.483)])
     assert before(search, A, 2.2) == [change(A, 1.483)]
     assert search.log == [("holding", "A", 1.483, 0)]
@@ -350,7 +348,7 @@ def test_a_small_change_of_another_constant_comes_first_and_is_then_refused() ->
     assert search.refused == {(B, ALWAYS)}
 
 
-def test_a_small_change_at_the_edge_is_replaced_by_a_slightly_larger_one_that_holds() -> None:
+def test_a_small_change_that_barely_succeeds_is_replaced_by_a_slightly_larger_one_that_is_confirmed() -> None:
     search = Scripted([A, B], window((A, 2.0, 9.0), (B, 1.2, 1.4)), [(B, 1.22), (B, 1.264)])
     search.gains.enter((A, ALWAYS), 1.5, 0.0)
     made, found = Preferences(search), change(A, 3.0)
@@ -360,7 +358,7 @@ def test_a_small_change_at_the_edge_is_replaced_by_a_slightly_larger_one_that_ho
     assert list(made.after()) == [change(B, 1.22)]
 
 
-def test_a_small_change_at_the_edge_is_kept_if_no_larger_one_holds() -> None:
+def test_a_small_change_that_barely_succeeds_is_kept_if_no_larger_one_is_confirmed() -> None:
     search = Scripted([A, B], window((A, 2.0, 9.0), (B, 1.2, 1.4)), [(B, 1.22)])
     search.gains.enter((A, ALWAYS), 1.5, 0.0)
     assert before(search, A, 3.0) == [change(B, 1.22)]
@@ -476,7 +474,7 @@ def rivalling(
     return search, made
 
 
-def test_a_change_whose_mission_is_the_designed_one_has_no_rivals() -> None:
+def test_a_change_that_restores_the_designed_mission_exactly_has_no_rivals() -> None:
     search, made = rivalling({"A": 0.0, "B": 0.0, "C": 0.0}, [(B, 0.5)])
     assert list(made.before(change(A, 2.0), A, 2.0, 0, True, True)) == []
     assert search.log == []

@@ -85,14 +85,16 @@ def test_a_gain_is_the_mean_over_the_seeds_that_ran_and_unknown_if_nothing_can_r
     assert end.value.value is None
 
 
-def test_each_of_the_two_near_factors_is_added_better_one_first() -> None:
+def test_each_of_the_two_near_factors_is_added_the_better_one_first() -> None:
     gains = {B: {2.2: -1.0, 0.4: 2.0}, C: {2.2: 1.0}}
     search, _ = selection(lambda by, seed: 0.0, gains=gains)
     found = [one.parts[1] for turn in (0, 1) for one in search._with_another(joint((A, 2.2)), turn)]
     assert found == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
 
 
-def test_the_parts_are_balanced_one_by_one_and_a_smaller_factor_follows_a_larger_one_that_lost() -> None:
+def test_the_parts_are_balanced_one_by_one_and_a_larger_factor_that_loses_is_followed_by_a_smaller_one() -> (
+    None
+):
     def world(by: dict[str, float], _: int) -> float:
         return 8.0 - abs(by["A"] - 3.3) - abs(by["B"] - 0.26)
 
@@ -231,7 +233,7 @@ def test_nothing_is_added_to_a_combination_that_was_confirmed_or_cannot_run() ->
     assert len(seen) == 1
 
 
-def test_the_first_part_is_united_with_the_five_next_ones_and_the_best_pair_with_a_third() -> None:
+def test_the_first_part_is_combined_with_the_next_five_and_the_best_pair_with_a_third_part() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 1.0 * ("A" in by) + 2.0 * ("C" in by) + 1.5 * ("E" in by)
 
@@ -478,7 +480,7 @@ def test_a_ranking_tries_all_factors_only_on_constants_that_matter() -> None:
     assert ranking.certainty("nowhere") is None
 
 
-def test_a_ranking_that_runs_out_of_episodes_is_not_whole() -> None:
+def test_a_ranking_that_runs_out_of_episodes_is_incomplete() -> None:
     ranking = Ranking([A.operands[0]], mutations, ALWAYS, Trials(lambda *_: Outcome(0.0, False), 1), GOAL)
     ranking.run()
     assert not ranking.whole
@@ -512,7 +514,7 @@ def test_units_lead_a_step_by_their_gain_with_the_step_before() -> None:
     assert found.leading(2.2, WET, [A, B, C, D], -1.0) == []
 
 
-def test_units_that_are_tried_twice_without_any_effect_do_not_move() -> None:
+def test_units_that_have_no_effect_in_two_tries_are_not_moved_further() -> None:
     found = table((A, 2.2, 0.0), (A, 0.4, 0.0), (B, 2.2, 0.0), (C, 2.2, 0.0), (C, 0.4, -1.0))
     assert found.moving([A, B, C, D]) == [B, C, D]
     assert [found.moves(one) for one in (A, B, C, D)] == [False, False, True, False]
@@ -546,7 +548,7 @@ def test_a_proposal_is_idle_if_its_own_value_changed_nothing() -> None:
 # acceptance
 
 
-def test_a_world_hears_which_seeds_come_next_and_the_designed_one_only_of_new_ones() -> None:
+def test_a_world_is_told_the_next_seeds_and_the_designed_world_only_new_ones() -> None:
     heard: list[list[int]] = []
 
     def run(seed: int) -> Outcome:

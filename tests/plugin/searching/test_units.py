@@ -70,7 +70,7 @@ def test_a_constant_with_a_second_scale_has_a_unit_for_it_and_a_zero_has_only_th
     assert charted([zero], {}) == (zero,)
 
 
-def test_the_uses_of_a_named_constant_are_united_over_the_statements_of_a_file() -> None:
+def test_the_uses_of_a_named_constant_in_a_file_are_one_unit() -> None:
     elsewhere = replace(SECOND, site=SiteId("node", "run", "t"))
     other_file = replace(SECOND, span=replace(SECOND.span, path="b.py"))
     flag = use("FLAG", True, named=2)

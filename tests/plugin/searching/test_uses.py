@@ -109,7 +109,7 @@ def test_the_uses_of_a_constant_are_moved_and_compared_as_one() -> None:
     assert moved(mixed, 1.1, mutations) is None
 
 
-def test_a_use_runs_on_the_seed_of_the_whole_constant() -> None:
+def test_a_single_use_is_tried_on_the_seed_of_the_whole_constant() -> None:
     ran: dict[tuple[str, float], list[int]] = {}
 
     def run(candidate: Candidate, seed: int) -> Outcome:

@@ -64,7 +64,7 @@ def test_a_repair_moves_the_boundary_and_can_be_applied(
     assert "GAIN = 2.0" not in (tank.path / "keeper.py").read_text("utf-8")
 
 
-def test_a_repair_of_a_boundary_sets_the_drift_of_those_episodes_of_its_test_that_have_no_point() -> None:
+def test_a_boundary_repair_sets_the_drift_of_episodes_without_a_point() -> None:
     simulated = Simulated(lambda point, _: (True, float(point["mud"])))
     placed = Placed(
         simulated, "world", lambda seed: {"mud": float(seed)}, {Path("a.py"): "1", Path("b.py"): "2"}

@@ -81,7 +81,7 @@ def test_a_drift_that_never_fails_ends_when_no_failure_can_be_shown_any_more() -
     assert tests.ran == tests.failed == set()
 
 
-def test_failures_beyond_a_look_do_not_count_for_it() -> None:
+def test_failures_after_a_look_do_not_count_in_that_look() -> None:
     # one failure fewer than needed among the first 16 seeds, and all further seeds pass
     assert not confirmed(lambda row: row < LEAST[0] - 1)[0][0]
     # the missing one follows among the first 32 seeds, which need more failures
@@ -101,7 +101,7 @@ def test_the_next_drift_first_runs_seeds_that_failed_then_new_ones_then_those_th
     assert (tests.ran, tests.failed) == ({*ran[0]}, {*failed})  # those of the last confirmed drift
 
 
-def test_a_drift_that_fails_on_the_same_seeds_is_confirmed_by_these_alone() -> None:
+def test_a_drift_that_fails_on_the_same_seeds_is_confirmed_by_these_seeds_alone() -> None:
     shown, ran, counts, tests = confirmed(even, even, even)
     assert shown == [True] * 3
     failed = [row for row in ran[0] if even(row)]
@@ -123,7 +123,7 @@ def test_the_estimate_extends_the_share_of_seeds_that_failed_before_to_all_of_th
     assert counts[1].episodes == len({*ran[0], *new})
 
 
-def test_episodes_before_the_end_of_the_budget_are_learned_from() -> None:
+def test_the_model_learns_from_episodes_before_the_end_of_the_budget() -> None:
     episodes: Any = Scripted()
     episodes.fails = lambda row: row % 3 == 0
     episodes.stops = BLOCK
@@ -166,13 +166,13 @@ DRIFTS: list[Any] = [{"a": 0.8, "b": 0.6}, {"a": 0.6, "b": 0.45}, {"a": 0.4, "b"
         ((0.9, 0.9, 0.9), (UNLIKELY, 0.0, 0.0), "both"),
     ],
 )
-def test_a_chain_is_about_the_part_of_the_guarantee_that_its_drifts_break(
+def test_a_chain_tests_the_part_of_the_guarantee_that_its_drifts_break(
     by_loss: Sequence[float], by_rate: Sequence[float], expected: str
 ) -> None:
     assert part_of(model_of(by_loss, by_rate), DRIFTS) == expected
 
 
-def test_chains_that_the_model_does_not_cover_are_about_both_parts() -> None:
+def test_chains_that_the_model_does_not_cover_test_both_parts() -> None:
     certain = model_of((0.0,), (1.0,))
     assert part_of(certain, DRIFTS[:1]) == "rate"
     assert part_of(certain, []) == "both"

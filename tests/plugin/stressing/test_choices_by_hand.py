@@ -137,7 +137,7 @@ def test_hypothesis_explores_only_while_no_drift_fails(
     assert trail == ["predict", *["generate", "predict"] * generated, 7]
 
 
-def test_exploring_and_predicting_take_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_exploration_and_prediction_alternate(monkeypatch: pytest.MonkeyPatch) -> None:
     trail: list[str] = []
     search = searching(monkeypatch, Model([]))
     for name in ("predict", "explore", "descend"):
@@ -273,7 +273,7 @@ def test_the_best_of_random_vectors_is_refined_in_smaller_and_smaller_steps() ->
     assert np.linalg.norm(short) <= 0.3 + 1e-9
 
 
-def test_allowing_for_errors_lowers_the_excess_of_losses_and_of_failure_rates() -> None:
+def test_the_allowance_for_errors_lowers_the_excess_of_losses_and_failure_rates() -> None:
     sources = [("search", number) for number in range(8)]
     failing = [
         Sample(np.array([0.9, 0.0]), 0.1, 0.01, 8, sources),
@@ -288,7 +288,7 @@ def test_allowing_for_errors_lowers_the_excess_of_losses_and_of_failure_rates() 
     assert (deviations > 0.0).all()
 
 
-def test_an_evolution_ends_when_its_margin_does(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_evolution_ends_when_the_margin_of_a_vector_is_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
 
     def margin(vector: Any) -> float | None:
@@ -357,7 +357,7 @@ def test_a_test_is_hopeless_once_neither_part_can_be_refuted() -> None:
     assert hopeless(GIVEN, outcomes(*[9.45] * 16), USUAL[:16], 64, 0.01, "rate")
 
 
-def test_enough_passes_and_little_loss_are_shown_with_a_risk() -> None:
+def test_enough_passes_and_a_small_loss_show_the_guarantee_at_a_risk() -> None:
     assert enough_pass(GIVEN, USUAL[:29], 0.05)
     assert not enough_pass(GIVEN, USUAL[:28], 0.05)
     assert little_lost(GIVEN, outcomes(*[9.9] * 16), USUAL[:16], 0.05)
@@ -368,7 +368,7 @@ def test_enough_passes_and_little_loss_are_shown_with_a_risk() -> None:
     )  # 16 episodes bound a range of 20 badly
 
 
-def test_a_nominal_world_is_unlike_the_recorded_one_if_it_fails_or_earns_less() -> None:
+def test_a_nominal_world_that_fails_or_earns_less_differs_from_the_recorded_one() -> None:
     assert not unlike_recorded(GIVEN, outcomes(*[10.0] * 16), 0.01)
     assert unlike_recorded(GIVEN, outcomes(*[10.0] * 16, failed=8), 0.01)
     assert unlike_recorded(GIVEN, outcomes(*[5.0] * 16), 0.01)
@@ -418,7 +418,7 @@ def test_one_failed_episode_is_allowed_in_a_longer_second_test(
     assert sizes == [first, second][:spent]
 
 
-def test_a_loss_that_may_be_too_large_or_a_spent_budget_shows_nothing() -> None:
+def test_nothing_is_shown_if_the_loss_may_be_too_large_or_the_budget_is_spent() -> None:
     def evaluator(total: float, affordable: bool = True) -> Any:
         return SimpleNamespace(
             guarantee=GIVEN,
@@ -463,7 +463,7 @@ def test_only_drifts_of_the_space_are_read_back(value: Any, kept: bool) -> None:
     assert (_as_point(data, SPACE) is not None) is kept
 
 
-def test_a_side_of_margins_without_extent_or_with_other_values_is_refused() -> None:
+def test_a_side_of_margins_that_is_empty_or_has_other_values_is_refused() -> None:
     text = (
         '{"format": 1, "test": "t", "drift": "d", "guarantee": {"success": 0.9, "loss": 1}, "confidence": 0.9, '
         '"directions": [{"name": "a", "nominal": 0, "end": %s, "holds_to": null, "fails_at": 0.5}]}'
@@ -493,7 +493,7 @@ def test_the_report_has_one_label_for_each_block_and_indented_sentences() -> Non
     assert ended[2].startswith("  nominal    The guarantee already fails at the nominal values")
 
 
-def test_the_sides_of_a_range_are_told_together_and_options_one_by_one() -> None:
+def test_both_sides_of_a_range_are_printed_together_and_options_one_by_one() -> None:
     found = dict(directions(stress(curve(FLAT, GOOD), curve(STEEP, {1.0: 1.0}), curve(DOWN, swept=False))))
     assert list(found) == ["slope", "camera"]
     assert len(found["slope"]) == 2
@@ -504,7 +504,7 @@ def test_the_sides_of_a_range_are_told_together_and_options_one_by_one() -> None
     assert calm == {"slope": ["Not affected by slope: no failure found from -1 to 1 (3 values)."]}
 
 
-def test_statements_are_looked_for_unless_the_run_was_interrupted_or_records_none(
+def test_statements_are_searched_unless_the_run_was_interrupted_or_records_none(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from pytest_tarl.stressing import search
@@ -542,7 +542,7 @@ def test_a_search_along_one_ray_has_at_most_the_risk_of_a_far_end(monkeypatch: p
         asked.clear()
 
 
-def test_a_guarantee_is_told_with_its_rate_and_tolerance() -> None:
+def test_a_guarantee_is_printed_with_its_rate_and_tolerance() -> None:
     (told,) = [
         one for one in lines(stress(guarantee=Guarantee(0.9543, 0.12345, (1.0,), 1.0))) if "guarantee " in one
     ][:1]

@@ -61,7 +61,7 @@ def seeds(pool: str, count: int) -> list[int]:
 # which seeds run
 
 
-def test_a_glance_runs_two_episodes_and_their_nominal_counterparts_first() -> None:
+def test_a_quick_look_first_runs_two_episodes_and_their_nominal_counterparts() -> None:
     made, ran = evaluator(constant(9.8))
     found = made.glance(UP)
     assert (found.episodes, found.passed, made.spent) == (2, 2, 4)
@@ -71,7 +71,7 @@ def test_a_glance_runs_two_episodes_and_their_nominal_counterparts_first() -> No
     assert found.margin == pytest.approx(0.6)
 
 
-def test_a_glance_at_a_later_turn_needs_all_nominal_episodes_up_to_its_seeds() -> None:
+def test_a_quick_look_in_a_later_turn_needs_all_nominal_episodes_up_to_its_seeds() -> None:
     made, ran = evaluator(constant(9.8))
     made.glance(UP, 2)
     assert [plan.seed for plan in ran.plans] == seeds(SEARCH, 6) + seeds(SEARCH, 6)[4:]
@@ -106,7 +106,7 @@ def test_an_undecided_drift_gets_at_most_the_given_number_of_episodes() -> None:
         assert made.examine(UP, most).episodes == episodes
 
 
-def test_what_is_known_of_a_drift_is_about_all_its_episodes() -> None:
+def test_the_evidence_on_a_drift_covers_all_its_episodes() -> None:
     made, _ = evaluator(constant(9.5))
     made.examine(UP, 8)
     spent = made.spent
@@ -183,7 +183,7 @@ def test_the_budget_covers_its_last_episode_and_no_further_one() -> None:
     assert made.spent == 4
 
 
-def test_a_limit_is_a_share_of_the_whole_budget_and_ends_without_an_error() -> None:
+def test_a_phase_limit_is_a_share_of_the_whole_budget_and_reaching_it_is_not_an_error() -> None:
     made, _ = evaluator(constant(9.5), budget=20)
     with made.limited(0.5):
         assert made.budget == 10
@@ -196,7 +196,7 @@ def test_a_limit_is_a_share_of_the_whole_budget_and_ends_without_an_error() -> N
         assert made.budget == 20
 
 
-def test_a_limit_shortens_the_time_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_phase_limit_also_shortens_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
     made, _ = evaluator(constant(9.5), seconds=8.0, begun=0.0)
     with made.limited(0.25):
         assert made.seconds == 2.0
@@ -228,14 +228,14 @@ def test_episodes_run_until_the_time_limit_itself(monkeypatch: pytest.MonkeyPatc
     assert len(made.common(UP, 2)) == 2
 
 
-def test_each_episode_is_counted_and_told() -> None:
+def test_each_episode_is_counted_and_reported_to_the_progress() -> None:
     told: list[tuple[int, int, str]] = []
     made, _ = evaluator(constant(9.5), budget=7, progress=lambda *one: told.append(one))
     made.common(UP, 3)
     assert told == [(1, 7, "world stress"), (2, 7, "world stress"), (3, 7, "world stress")]
 
 
-def test_only_missing_fresh_episodes_have_to_be_affordable() -> None:
+def test_the_budget_must_cover_only_the_missing_fresh_episodes() -> None:
     made, _ = evaluator(constant(9.5), budget=20)
     assert made.affords(UP, 12, 8)
     assert not made.short
@@ -279,7 +279,7 @@ def test_without_a_tolerance_any_loss_counts_twice_the_tolerated_one() -> None:
     assert equal.losses(UP)[0] == [0.0, 0.0]
 
 
-def test_fresh_episodes_are_learned_from_once_their_pool_is_released() -> None:
+def test_the_model_learns_from_fresh_episodes_once_their_pool_is_released() -> None:
     made, _ = evaluator(constant(9.5))
     made.glance(UP)
     made.confirm(UP, "chain 3", 0.01)
@@ -343,7 +343,7 @@ def test_an_episode_without_a_nominal_counterpart_failed_only_if_it_did_not_pass
     assert [one for _, one in made.recalled(RAYS, UP)] == [False, False]
 
 
-def test_a_broken_test_is_reported_with_its_values_and_a_stuck_one_fails() -> None:
+def test_a_test_that_raises_is_reported_with_its_values_and_one_that_hangs_fails() -> None:
     def run(**given: Any) -> Any:
         plan = SimpleNamespace(point={"a": 0.5, "b": -1.0}, seed=7)
         trace = SimpleNamespace(reward=np.array([1.5, 2.0]))

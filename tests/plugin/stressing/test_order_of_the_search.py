@@ -104,7 +104,7 @@ def test_a_nominal_failure_ends_the_search_at_once(trail: list[Any], monkeypatch
 @pytest.mark.parametrize(
     ("error", "ended"), [(BudgetSpentError(), "budget"), (KeyboardInterrupt(), "interrupted")]
 )
-def test_an_early_end_is_named_and_what_is_known_is_drawn(
+def test_after_an_early_end_a_note_says_so_and_the_known_results_are_drawn(
     error: BaseException, ended: str, trail: list[Any]
 ) -> None:
     Several.fail = {"end": error}
@@ -112,7 +112,7 @@ def test_an_early_end_is_named_and_what_is_known_is_drawn(
     assert trail == [*ORDER[:6], "draw"]
 
 
-def test_a_result_that_the_budget_did_not_cover_is_named(trail: list[Any]) -> None:
+def test_a_note_names_the_results_that_the_budget_did_not_cover(trail: list[Any]) -> None:
     assert explored(short=True) == "budget"
 
 
@@ -149,7 +149,7 @@ def test_half_of_the_risk_is_for_combinations_and_the_rest_for_the_nominal_drift
 # the map
 
 
-def test_a_map_is_about_the_two_ranges_that_lose_most() -> None:
+def test_the_map_shows_the_two_ranges_that_lose_most() -> None:
     ends = [
         Curve(ray, {1.0: seen(margin)}) for ray, margin in zip(rays(CUBE, {}), (0.5, -1.0, 0.0), strict=True)
     ]
@@ -200,7 +200,7 @@ def drift(**changes: float) -> Point:
         ([0.9, 0.9], [0.05, 0.04], "both"),
     ],
 )
-def test_a_chain_is_about_the_part_that_its_nearest_drift_breaks(
+def test_a_chain_tests_the_part_of_the_guarantee_that_its_nearest_drift_breaks(
     by_loss: list[float], by_rate: list[float], part: str
 ) -> None:
     chain = [drift(a=1.0, b=1.0), drift(a=0.5, b=0.5)]
@@ -351,7 +351,7 @@ def made(space: Any, budget: int = 1000) -> Combined:
     return Combined(evaluator, Together(0.1, [Curve(ray) for ray in rays(space, {})]))
 
 
-def test_a_search_begins_with_a_glance_at_each_place_of_the_rays(
+def test_a_search_begins_with_a_quick_look_at_each_place_of_the_rays(
     leading: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plans: list[Any] = []
@@ -463,7 +463,7 @@ def test_small_components_are_dropped_if_the_vector_still_fails() -> None:
     assert _without_trifles(np.array([0.8, 0.11]), needs, 0.0).tolist() == [0.8, 0.11]
 
 
-def test_what_fresh_episodes_show_lies_between_its_limits() -> None:
+def test_the_rate_that_fresh_episodes_show_lies_between_its_limits() -> None:
     nearest = Nearest(evaluator_of(lambda *_: (True, 10.0), CUBE), [])
     assert nearest._shown(0.0).depth == 0.03
     assert nearest._shown(1.0).depth == pytest.approx(3.8 / 8)

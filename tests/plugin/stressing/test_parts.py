@@ -59,7 +59,7 @@ def at(a: float, b: float = 0.0) -> Point:
         ((1.0, 0.6), (0.04, 0.01), "loss"),
     ],
 )
-def test_the_model_tells_which_part_of_the_guarantee_a_chain_tests(
+def test_the_model_decides_which_part_of_the_guarantee_a_chain_tests(
     by_loss: tuple[float, float], by_rate: tuple[float, float], part: str
 ) -> None:
     nearest: Any = Told(
@@ -69,7 +69,7 @@ def test_the_model_tells_which_part_of_the_guarantee_a_chain_tests(
     assert chains.part_of(nearest, []) == "both"
 
 
-def test_a_chain_of_failures_goes_on_towards_nominal_in_short_steps_if_seeds_share_their_luck() -> None:
+def test_a_chain_of_failures_continues_towards_nominal_in_short_steps_if_the_same_seeds_fail() -> None:
     alike: Any = Told({}, {}, luck=1.0)
     found = [point["a"] for point in chains.finer(alike, [at(0.8), at(0.5)], "rate")]
     assert found[:5] == [0.8, *(pytest.approx(0.5 * share) for share in chains.OUTWARD), 0.5]

@@ -126,7 +126,7 @@ NOMINAL = Coordinates(SPACE, SPACE.nominal)
 OTHER = Coordinates(SPACE, point(camera=2.0))
 
 
-def test_the_vector_of_a_drift_is_in_units_of_the_ranges_and_back() -> None:
+def test_drifts_are_converted_to_vectors_in_units_of_the_ranges_and_back() -> None:
     assert NOMINAL.vector(point(mud=1.0, slope=-0.5)).tolist() == [-0.75, -0.25]
     assert NOMINAL.point(np.array([-0.75, -0.25])) == point(mud=1.0, slope=-0.5)
     assert OTHER.point(np.array([0.0, 0.0])) == point(camera=2.0)
@@ -198,7 +198,7 @@ def test_the_normal_distribution_is_approximated_within_a_hundredth() -> None:
     assert _normal(np.array([1e9, -1e9])) == pytest.approx([1.0, 0.0], abs=1e-20)
 
 
-def test_a_direction_is_irrelevant_only_if_that_increases_the_evidence() -> None:
+def test_a_direction_counts_as_irrelevant_only_if_that_increases_the_evidence() -> None:
     vectors = np.array([[1.0, 0.0], [0.0, 1.0]])
 
     def field(prior: np.ndarray) -> Any:
@@ -363,7 +363,7 @@ def test_columns_count_characters_and_not_bytes() -> None:
     assert list(places_in('é = "ü"; b = 2')) == [(1, 1), (1, 10)]
 
 
-def test_a_statement_that_ran_elsewhere_is_no_statement_of_failures() -> None:
+def test_a_statement_that_also_ran_in_passing_episodes_is_no_statement_of_failures() -> None:
     places = [("a.py", 1, "x"), ("a.py", 2, "y"), ("a.py", 3, "z")]
     found = only_in_failures(places, [{0, 1}, {1, 2}, {0}], [{0}])
     assert found == (Executed("a.py", 2, "y", 2), Executed("a.py", 3, "z", 1))
@@ -408,12 +408,12 @@ def test_a_limit_is_below_or_above_by_the_side_of_nominal() -> None:
     assert _sign(up) == "≤"
 
 
-def test_a_point_is_told_by_its_changed_values() -> None:
+def test_a_point_is_printed_with_its_changed_values() -> None:
     assert of_point(SPACE, point(mud=1.23456, camera=1.0)) == "mud=1.23 and camera='down'"
     assert of_point(SPACE, SPACE.nominal) == ""
 
 
-def test_a_repair_is_told_with_its_boundaries_draws_and_reason_to_withhold_it() -> None:
+def test_a_repair_is_printed_with_its_boundaries_draws_and_the_reason_why_it_is_withheld() -> None:
     moved = (
         Moved("slope to 1", "more robust", "0.5 to 0.6", "beyond 1", 0.5, 0.6, 1.0, None),
         Moved("mud to 0", "no significant change", "beyond 1", "beyond 1", 1.0, None, 1.0, None),
@@ -441,13 +441,13 @@ def executed(count: int) -> Statements:
 @pytest.mark.parametrize(
     ("count", "more"), [(5, []), (6, ["1 more statements that ran only in failures are in the JSON result."])]
 )
-def test_at_most_five_statements_are_told(count: int, more: list[str]) -> None:
+def test_at_most_five_statements_are_printed(count: int, more: list[str]) -> None:
     found = list(statement_words(stress(statements=executed(count))))
     assert found[0] == "n.py:3 ran in 6 of 6 failing episodes and in none of 12 others: x = 1"
     assert found[5:] == more
 
 
-def test_a_promise_about_a_single_direction_is_told_with_its_limits() -> None:
+def test_a_promise_about_a_single_direction_is_printed_with_its_limits() -> None:
     found = stress(
         curve(STEEP, {0.5: -1.0}, confirmed=0.5),
         curve(DOWN, {1.0: -1.0}, confirmed=1.0),
@@ -459,7 +459,7 @@ def test_a_promise_about_a_single_direction_is_told_with_its_limits() -> None:
     ]
 
 
-def test_a_share_below_zero_is_told_as_none() -> None:
+def test_a_negative_share_is_printed_as_none() -> None:
     shares = (Share("mud", -0.01, 0.0, 0.2, 0.05), Share("slope", 0.6, 0.1, 0.9, 0.1))
     assert list(sobol_words(stress(sobol=Sobol(1280, shares)))) == [
         (
@@ -590,7 +590,7 @@ def test_a_run_that_ended_early_keeps_the_failures_that_it_found(tmp_path: Any) 
     assert kept == [found.failures]
 
 
-def test_a_file_that_cannot_be_written_is_told_and_the_page_is_not_named(tmp_path: Any) -> None:
+def test_a_file_that_cannot_be_written_is_reported_and_the_page_is_not_named(tmp_path: Any) -> None:
     (tmp_path / ".tarl").mkdir()
     (tmp_path / ".tarl" / "report").write_text("")
     memory: Any = SimpleNamespace(folder=tmp_path / "kept", write=lambda _: None)

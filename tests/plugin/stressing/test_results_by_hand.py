@@ -167,7 +167,7 @@ def test_the_standard_error_of_a_margin_equals_the_formula() -> None:
     assert margin_of(replace(GIVEN, tolerance=0.0), [FINE] * 4, [FINE] * 4) == (1.0, 1.0)
 
 
-def test_the_numbers_of_passed_episodes_that_prove_or_refute_the_guarantee_are_known() -> None:
+def test_the_numbers_of_passed_episodes_that_prove_or_refute_the_guarantee_are_computed() -> None:
     """At a rate of 0.9, 8 episodes all pass with probability 0.9⁸ = 0.43 and show nothing; 44 passes suffice at 1 %."""
     assert not enough_pass(GIVEN, [FINE] * 43, 0.01)
     assert enough_pass(GIVEN, [FINE] * 44, 0.01)  # 0.9⁴⁴ = 0.0097

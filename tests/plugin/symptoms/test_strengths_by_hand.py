@@ -77,7 +77,7 @@ def test_the_scale_is_the_range_of_all_designed_values_without_two_percent_on_ea
 
 
 @pytest.mark.parametrize(("number", "expected"), [(0, 0.0), (1, 0.25), (3, 0.75), (4, 1.0), (5, 1.0)])
-def test_spikes_are_as_strong_as_their_share_has_grown(number: int, expected: float) -> None:
+def test_the_strength_of_spikes_is_the_growth_of_their_share(number: int, expected: float) -> None:
     spiky = step(102)
     spiky[4 : 4 + 3 * number : 3] = 0.5
     assert strength("spikes", pair(step(102), spiky)) == pytest.approx(expected)
@@ -135,12 +135,12 @@ def zigzag(size: int, height: float) -> Floats:
 @pytest.mark.parametrize(
     ("rough", "expected"), [(0.0, 0.0), (0.005, 0.0), (0.02, 0.5), (0.05, 1.0), (0.5, 1.0)]
 )
-def test_noise_is_as_strong_as_the_roughness_has_grown(rough: float, expected: float) -> None:
+def test_the_strength_of_noise_is_the_growth_of_the_roughness(rough: float, expected: float) -> None:
     found = strength("noise", pair(step(60), zigzag(60, rough / 2)))  # 1 % of the scale is added to both
     assert found == pytest.approx(expected, abs=1e-9)
 
 
-def test_the_roughness_by_design_is_compared_with_that_in_the_drift() -> None:
+def test_the_roughness_in_the_designed_world_is_compared_with_that_under_the_drift() -> None:
     designed = step(60) + zigzag(60, 0.005)
     least = 0.01 * 1.005
     rough = 3.0 * (0.01 + least) - least
@@ -154,7 +154,7 @@ def test_noise_needs_six_values_and_a_scale() -> None:
     assert strength("noise", pair(np.zeros(60), zigzag(60, 1.0))) == 0.0
 
 
-def test_a_single_rough_place_is_no_noise() -> None:
+def test_a_single_rough_place_does_not_count_as_noise() -> None:
     assert strength("noise", pair(step(60), with_values(step(60), at7=9.0, at20=9.0))) == 0.0
 
 
@@ -168,7 +168,7 @@ def switching(number: int, low: float = 0.0, high: float = 1.0, size: int = 101)
 
 
 @pytest.mark.parametrize(("number", "expected"), [(1, 0.0), (2, 0.1), (6, 0.5), (11, 1.0), (60, 1.0)])
-def test_chatter_is_as_strong_as_the_share_of_switches_has_grown(number: int, expected: float) -> None:
+def test_the_strength_of_chatter_is_the_growth_of_the_share_of_switches(number: int, expected: float) -> None:
     assert strength("chatter", pair(switching(1), switching(number))) == pytest.approx(expected)
     assert strength("chatter", pair(switching(number), switching(1))) == 0.0
 
@@ -211,7 +211,7 @@ def test_a_loss_exceeds_every_designed_one_by_two_percent_of_the_reward(
     assert found == ([1] if lost else [])
 
 
-def test_nothing_is_lost_where_no_step_was_designed() -> None:
+def test_steps_without_a_designed_counterpart_lose_nothing() -> None:
     assert losses(Pair(EMPTY, series(np.zeros(3), array(-1.0, -1.0, -1.0)))) == []
 
 
@@ -222,7 +222,9 @@ def lost_at(size: int, *steps: int) -> Floats:
 
 
 @pytest.mark.parametrize(("loss", "expected"), [(29, 0.0), (30, 0.95), (35, 0.95), (36, 0.0)])
-def test_a_loss_in_the_step_of_a_jump_or_in_the_next_five_is_due_to_it(loss: int, expected: float) -> None:
+def test_a_loss_in_the_step_of_a_jump_or_in_the_next_five_steps_is_due_to_the_jump(
+    loss: int, expected: float
+) -> None:
     jumping = step(60)
     found = Pair(
         series(step(120)), series(jumping, lost_at(60, loss))
@@ -230,7 +232,7 @@ def test_a_loss_in_the_step_of_a_jump_or_in_the_next_five_is_due_to_it(loss: int
     assert strength("jumps", found) == pytest.approx(expected)
 
 
-def test_the_share_of_the_losses_that_follow_a_jump_counts() -> None:
+def test_the_strength_is_the_share_of_the_losses_that_follow_a_jump() -> None:
     assert strength("jumps", Pair(series(step(120)), series(step(60), lost_at(60, 5, 32)))) == pytest.approx(
         0.45
     )
@@ -274,17 +276,17 @@ def ends(start: float, end: float | Sequence[float], size: int = 20) -> Floats:
 @pytest.mark.parametrize(
     ("end", "expected"), [(0.0, 0.0), (1.0, 0.5), (-1.0, 0.5), (2.0, 1.0), (4.0, 1.0), (-4.0, 1.0)]
 )
-def test_an_offset_is_as_strong_as_the_mean_at_the_end_has_grown(end: float, expected: float) -> None:
+def test_the_strength_of_an_offset_is_the_growth_of_the_mean_at_the_end(end: float, expected: float) -> None:
     assert strength("offset", pair(ends(4.0, 0.0), ends(4.0, end))) == pytest.approx(expected)
 
 
-def test_an_offset_is_weaker_the_further_the_value_stays_from_zero_by_design() -> None:
+def test_an_offset_is_weaker_if_the_designed_value_is_also_far_from_zero() -> None:
     # the range is 3; a quarter of the largest value is left by design
     assert strength("offset", pair(ends(4.0, 1.0), ends(4.0, 1.75))) == pytest.approx(0.75 * 0.5)
     assert strength("offset", pair(ends(4.0, 1.0), ends(4.0, 0.5))) == 0.0
 
 
-def test_an_offset_is_weaker_if_the_value_changes_its_sign() -> None:
+def test_an_offset_is_weaker_if_the_value_changes_sign() -> None:
     found = strength("offset", pair(ends(4.0, 0.0), ends(4.0, [3.0, -1.0] * 5)))
     assert found == pytest.approx(0.5 / np.sqrt(5.0))
 
@@ -333,13 +335,15 @@ SMOOTH = 37 / 59  # of the 59 pairs of neighbours in twelve fives, 11 differ in 
 
 
 @pytest.mark.parametrize(("growth", "expected"), [(2.0, 0.0), (12.0**0.5, 0.5), (6.0, 1.0), (20.0, 1.0)])
-def test_a_swing_is_as_strong_as_the_deviation_at_the_end_has_grown(growth: float, expected: float) -> None:
+def test_the_strength_of_a_swing_is_the_growth_of_the_deviation_at_the_end(
+    growth: float, expected: float
+) -> None:
     height = growth * 0.02
     drifted = array(np.zeros(60), square(height, *[5] * 12))
     assert strength("swing", pair(at_rest(60), drifted)) == pytest.approx(expected * SMOOTH)
 
 
-def test_a_swing_by_design_is_compared_with_the_one_in_the_drift() -> None:
+def test_a_swing_in_the_designed_world_is_compared_with_the_swing_under_the_drift() -> None:
     designed = array(step(60), square(0.01, *[5] * 12))
     least = 0.02 * scale([pair(designed, designed)])
     drifted = array(np.zeros(60), square(12.0**0.5 * (0.01 + least), *[5] * 12))
@@ -384,13 +388,15 @@ FLAT = thirds(1.0, 1.0, 1.0)
     ("start", "end", "expected"),
     [(1.0, 1.2, 0.2 / 2.2 / 0.2), (1.0, 1.0, 0.0), (1.2, 1.0, 0.0), (2.0, 3.0, 1.0), (1.0, 9.0, 1.0)],
 )
-def test_a_value_runs_away_by_the_growth_of_its_size(start: float, end: float, expected: float) -> None:
+def test_the_strength_of_running_away_is_the_growth_of_the_size(
+    start: float, end: float, expected: float
+) -> None:
     middle = end  # the second half has one value, then, and is on one side
     assert strength("runaway", pair(FLAT, thirds(start, middle, end))) == pytest.approx(expected)
     assert strength("runaway", pair(FLAT, -thirds(start, middle, end))) == pytest.approx(expected)
 
 
-def test_growth_by_design_is_subtracted_and_shrinking_is_not() -> None:
+def test_growth_in_the_designed_world_is_subtracted_but_shrinking_is_not() -> None:
     drifted = thirds(1.0, 1.2, 1.2)
     assert strength("runaway", pair(thirds(1.0, 1.1, 1.1), drifted)) == pytest.approx(
         (0.2 / 2.2 - 0.1 / 2.1) / 0.2
@@ -398,7 +404,7 @@ def test_growth_by_design_is_subtracted_and_shrinking_is_not() -> None:
     assert strength("runaway", pair(thirds(9.0, 1.0, 0.0), drifted)) == pytest.approx(0.2 / 2.2 / 0.2)
 
 
-def test_a_value_that_changes_its_sign_runs_away_less() -> None:
+def test_a_value_that_changes_sign_has_a_weaker_runaway_symptom() -> None:
     drifted = array([1.0] * 3, [9.0, 3.0], [-1.0, 3.0, -1.0, 3.0])
     assert strength("runaway", pair(FLAT, drifted)) == pytest.approx(1.4 / np.sqrt(29 / 5))
 
@@ -408,7 +414,7 @@ def test_only_the_outer_thirds_are_compared() -> None:
     assert strength("runaway", pair(np.ones(11), grown)) == pytest.approx(0.2 / 2.2 / 0.2)
 
 
-def test_running_away_needs_six_values_of_which_some_are_not_zero() -> None:
+def test_running_away_needs_six_values_some_of_them_not_zero() -> None:
     assert strength("runaway", pair(np.ones(6), thirds(1.0, 9.0, 9.0, part=2))) == 1.0
     assert strength("runaway", pair(np.ones(5), array(1.0, 1.0, 9.0, 9.0, 9.0))) == 0.0
     assert strength("runaway", pair(FLAT, np.zeros(9))) == 0.0

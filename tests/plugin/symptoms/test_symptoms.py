@@ -61,7 +61,7 @@ def test_a_symptom_is_strong_where_its_cause_is(name: str) -> None:
 
 @pytest.mark.parametrize("name", SYMPTOMS)
 @pytest.mark.parametrize("case", CASES)
-def test_a_program_that_is_so_by_design_has_no_symptom(name: str, case: str) -> None:
+def test_behaviour_that_also_occurs_in_the_designed_world_is_no_symptom(name: str, case: str) -> None:
     both = series(CASES[case][1])
     assert SYMPTOMS[name]([Pair(both, both)]) == 0.0
 
@@ -94,7 +94,7 @@ def failing(steps: int, at: int) -> Floats:
     return reward
 
 
-def test_losses_soon_after_jumps_are_told_from_losses_at_any_time() -> None:
+def test_losses_soon_after_jumps_are_distinguished_from_losses_at_any_time() -> None:
     speed = np.zeros(STEPS)
     speed[30:] = 1.0
     designed = series(speed)
@@ -116,7 +116,7 @@ def test_a_value_that_jumps_all_the_time_by_design_causes_no_loss() -> None:
     assert SYMPTOMS["jumps"]([pair]) < 0.1
 
 
-def test_an_error_that_ends_early_is_no_offset() -> None:
+def test_an_error_that_vanishes_early_is_no_offset() -> None:
     assert SYMPTOMS["offset"]([Pair(series(NEARING), series(NEARING[:20], failing(20, 19)))]) < 0.1
 
 
@@ -136,7 +136,7 @@ Change = Callable[[Floats], Floats]
 
 
 @given(NUMBERS, NUMBERS, st.sampled_from(sorted(SYMPTOMS)))
-def test_every_strength_is_between_nothing_and_one(one: list[float], other: list[float], name: str) -> None:
+def test_every_strength_is_between_zero_and_one(one: list[float], other: list[float], name: str) -> None:
     pair = Pair(series(np.array(one)), series(np.array(other), -np.arange(float(len(other)))))
     assert 0.0 <= SYMPTOMS[name]([pair]) <= 1.0
 
