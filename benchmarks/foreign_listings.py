@@ -1,4 +1,4 @@
-"""Write the Python listings of a package's documentation that make a node as scripts, for `foreign_nodes.py`.
+"""Extract Python listings that create a node from documentation, as scripts for `foreign_nodes.py`.
 
     python benchmarks/foreign_listings.py FOLDER OUT      # FOLDER: one folder per unpacked package
 
@@ -29,7 +29,7 @@ INDENTED = re.compile(
 
 
 def listings(package: Path) -> Iterator[tuple[str, str]]:
-    """Yield page and text of each listing that makes a node when it is run; each text once."""
+    """Yield the page and text of each listing that creates a node when it is run; each text once."""
     seen: set[str] = set()
     for page in sorted(package.rglob("*")):
         if not page.is_file() or page.is_symlink() or not (page.suffix in PAGES or page.name in METADATA):

@@ -105,7 +105,7 @@ def script(repository: Path, path: Path, entry: str | None) -> Script | None:
     except (SyntaxError, ValueError) as error:
         return Script(repository, path, apart=f"Python 2 only ({error})")
     if entry is None and not MADE_BY.search(without_texts(tree)):
-        return Script(repository, path, apart="mentions a node only in a text")
+        return Script(repository, path, apart="mentions a node only in a string")
     if needs_arguments(tree):
         return Script(repository, path, apart="a command line tool that needs arguments")
     imported = set(imports(tree))
@@ -127,7 +127,7 @@ def without_texts(tree: ast.AST) -> str:
 
 
 class _Blank(ast.NodeTransformer):
-    """Replace each text by an empty one."""
+    """Replace each string by an empty one."""
 
     def visit_Constant(self, node: ast.Constant) -> ast.Constant:
         return ast.Constant("") if isinstance(node.value, str) else node
@@ -137,7 +137,7 @@ class _Blank(ast.NodeTransformer):
 
 
 def needs_arguments(tree: ast.AST) -> bool:
-    """Return whether a file defines a command line with arguments that must be given, by `argparse`."""
+    """Return whether a file defines a command line with required arguments, by `argparse`."""
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not ast.unparse(node.func).endswith(".add_argument"):
             continue

@@ -1,11 +1,11 @@
-"""Compare how TARL interprets random Python programs, executing nothing, with what Python computes.
+"""Compare the results of random Python programs that TARL interprets with those that Python computes.
 
     python benchmarks/interpreted_programs.py [--count 2000] [--seed 0] [--show 3]
 
 Each program uses the parts of Python that launch files compute values with: regular expressions, collections,
 itertools, data classes, enumerations, classes with special methods, generators, patterns of `match`, exceptions,
-paths. All of its values are constant, so each result has to be known and equal to Python's. Python executes only
-programs that this script makes.
+paths. All values of a program are constant, so TARL must know each result, and it must equal that of Python.
+Python executes only programs that this script makes.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Programs(Expressions):
 def compared(text: str, folder: Path) -> tuple[int, list[str]]:
     """Return the number of results of a program, and a line for each that TARL reads differently from Python.
 
-    Raises SyntaxError and what the program raises.
+    Raises SyntaxError, and any exception that the program raises.
     """
     real: dict[str, Any] = {"__name__": "__main__"}
     exec(compile(text, "program", "exec"), real)  # noqa: S102 - only programs of this script

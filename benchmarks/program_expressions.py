@@ -16,7 +16,7 @@ class Expressions(Objects):
         self.depth = 0
 
     def one(self, simple: Sequence[Callable[[], str]], more: Sequence[Callable[[], str]]) -> str:
-        """Return an expression of one of several forms; a simple one where it is nested deeply."""
+        """Return an expression of one of several forms; deeply nested ones are simple."""
         self.depth += 1
         try:
             return self.random.choice(simple if self.depth > 3 else [*simple[:1], *more])()

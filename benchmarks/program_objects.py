@@ -11,7 +11,7 @@ NAMES = ("scan", "arm_left", "arm_right", "base-2", "Wheel7", "lidar", "tilt pan
 
 
 class Objects:
-    """Writes definitions, and returns expressions for what they define. Subclasses write expressions of a type."""
+    """Writes definitions, and returns expressions that use them. Subclasses write expressions of a type."""
 
     def __init__(self, source: random.Random) -> None:
         self.random = source
@@ -224,7 +224,7 @@ class Objects:
         return self.random.choice((f"{name}.A", f"{name}(('a', 2.5))", f"{name}.B.next()"))
 
     def configured(self) -> str:
-        """Return an object of a data class with arguments that are no fields."""
+        """Return an object of a data class that has arguments besides its fields."""
         name = self.define(
             "Configured",
             DEFINITIONS["Configured"],

@@ -1,4 +1,4 @@
-"""Six more machines with drifts in physical units, written without a look at the search or at its results.
+"""Six more machines with drifts in physical units, written without knowledge of the search and its results.
 
 The form is that of stress_worlds_8.py, with short simulations in four directions each. In `palletiser` one direction is
 a choice; in `skimmer` the reward is noisy; in `matlander` failures are rare; in `walkway` the failing region is small
@@ -45,8 +45,8 @@ def skimmer(
     """Collect litter on a lake for a day with a solar boat.
 
     `wind` is in m/s, `weed` the share of the lake that is overgrown, `sun` the energy of the day in kWh, and `drag`
-    that of the fouled hull, 1 when clean. How much litter lies on the lake varies much. The day passes if the boat
-    comes home with energy left. The reward is the litter in kg.
+    that of the fouled hull, 1 when clean. The amount of litter on the lake varies widely. The day passes if
+    the boat comes home with energy left. The reward is the litter in kg.
     """
     litter = 18.0 * float(rng.lognormal(0.0, 0.45))
     clouds, squall = float(rng.normal(1.0, 0.08)), float(rng.gumbel(0.0, 0.5))

@@ -15,7 +15,7 @@ Parameters = Mapping[str, Any] | str | os.PathLike[str]
 def parameters_of(given: Parameters | None, folder: Path, function: str) -> Mapping[str, Any]:
     """Return the parameters that a test passes to a function; a path is relative to the test's folder.
 
-    Raise SettingsError for another type, and for a file that cannot be read as a mapping.
+    Raise SettingsError for any other type, or if the file cannot be read as a mapping.
     """
     if given is None:
         return {}

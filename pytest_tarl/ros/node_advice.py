@@ -38,7 +38,8 @@ _ARGUMENTS: Final = re.compile(r"\bargv\b|\bmyargv\b|\bparse_(known_)?args\b")
 def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str:
     """Return one sentence of advice about a node's error; empty if the error's own text is enough.
 
-    `given` holds what launch files give the node, and `unset` the parameters without a value that it asked for.
+    `given` contains what launch files pass to the node; `unset` contains the parameters without a value that
+    it asked for.
     """
     if isinstance(error, SyntaxError):
         return PYTHON_2 if _PYTHON_2_SYNTAX.search(str(error)) or isinstance(error, TabError) else ""

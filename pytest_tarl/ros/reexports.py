@@ -1,4 +1,4 @@
-"""Names that a module of rclpy, rospy, tf2_ros or actionlib has only because it imports them from another module.
+"""Names that a module of rclpy, rospy, tf2_ros or actionlib only imports from another module.
 
 Editors that complete names offer them, so nodes import them from there. The names are those of rclpy 9.1, rospy 1.15,
 tf2_ros 0.7 and actionlib 1.14.
@@ -242,7 +242,7 @@ def _homes(module: str) -> Mapping[str, tuple[str, str]]:
 
 
 def is_reexported(module: str, name: str) -> bool:
-    """Return whether a module has a name only because it imports it from another module."""
+    """Return whether a module only imports a name from another module."""
     return name in _homes(module)
 
 

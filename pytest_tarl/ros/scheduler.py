@@ -221,7 +221,7 @@ class Scheduler:
             self.time = max(self.time, until)
 
     def _run_tasks(self, until: int) -> None:
-        """Run the tasks that fall due up to `until`, but only those before the next alarm, which they may set."""
+        """Run the tasks that are due up to `until` and before the next alarm, which the tasks themselves may set."""
         if self._ready:
             self.settle()
         sleeping, alarms = self._sleeping, self._alarms

@@ -64,8 +64,8 @@ def _importer(frame: FrameType | None) -> FrameType | None:
 def _nearest(name: str, importer: Path) -> Path | None:
     """Return the only module with that name in the importer's package, or else the only one in its workspace.
 
-    Of several, take the only one that is not inside another Python package, or else the only one that a Python
-    project installs.
+    If there are several, choose the only one that is not inside another Python package, or else the only one
+    that a Python project installs.
     """
     for workspace in workspaces():
         if importer.is_relative_to(workspace.root):
@@ -80,7 +80,7 @@ def _nearest(name: str, importer: Path) -> Path | None:
 
 
 def _is_top_level(place: Path) -> bool:
-    """Return whether no Python package contains a module, so that `import NAME` can mean it."""
+    """Return whether a module is in no Python package, so that `import NAME` can refer to it."""
     return not (place.parent / "__init__.py").is_file()
 
 

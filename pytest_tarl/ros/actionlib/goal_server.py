@@ -13,7 +13,7 @@ from pytest_tarl.ros.rospy.node import this_node
 from pytest_tarl.ros.rospy.timing import Duration, Time, get_rostime
 from pytest_tarl.ros.rospy.timing import Timer as PeriodicTimer
 
-_PERIOD: Final = 0.2  # between two publications of all states (s), as with actionlib_status_frequency 5
+_PERIOD: Final = 0.2  # time between two publications of all states (s), as with actionlib_status_frequency 5
 _KEPT: Final = 5.0  # time for which the state of an ended goal is published (s), as with status_list_timeout
 _TOO_OLD: Final = (
     "This goal handle was canceled by the action server because its timestamp is before the timestamp of the last "
@@ -24,7 +24,7 @@ _RUNNING: Final = (protocol.ACTIVE, protocol.PREEMPTING)
 
 
 class ServerGoalHandle:
-    """A goal of the server: its state, and the transitions that the node decides on."""
+    """A goal of the server: its state, and the transitions that the node makes."""
 
     def __init__(self, server: ActionServer, message: Any) -> None:
         self.action_server = server
@@ -81,7 +81,7 @@ class ServerGoalHandle:
         self._end(after, "a succeeded", "active or preempting", result, text)
 
     def set_cancel_requested(self) -> bool:
-        """Note a cancel request; return whether the goal is waiting or running, so that the request counts."""
+        """Note a cancel request. Return whether it has an effect, because the goal is waiting or running."""
         after = {protocol.PENDING: protocol.RECALLING, protocol.ACTIVE: protocol.PREEMPTING}.get(self._status)
         if after is None:
             return False
@@ -112,7 +112,7 @@ class ServerGoalHandle:
 
 
 class ActionServer:
-    """Announces goals and cancel requests by callbacks, each with the handle of the goal."""
+    """Passes goals and cancel requests to callbacks, each with the handle of the goal."""
 
     def __init__(
         self,
@@ -187,7 +187,7 @@ class ActionServer:
         self.feedback_pub.publish(message)
 
     def publish_status(self) -> None:
-        """Publish the states of all goals that have not ended more than five seconds ago."""
+        """Publish the states of all goals except those that ended more than five seconds ago."""
         if not self.started:
             return
         now = get_rostime()

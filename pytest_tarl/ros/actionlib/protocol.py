@@ -56,7 +56,7 @@ class GoalIDGenerator:
         self.name = name
 
     def generate_ID(self) -> Any:  # noqa: N802 (actionlib's name)
-        """Return an actionlib_msgs/GoalID with the present time."""
+        """Return an actionlib_msgs/GoalID with the current time."""
         servers = self._node.process.ros.part(ActionServers)
         servers.goals += 1
         now = get_rostime()
@@ -83,7 +83,7 @@ class ActionTypes:
 def wait_until(process: Process, condition: Callable[[], bool], timeout: Any, *, poll: bool = False) -> bool:
     """Wait until a condition holds; return whether it holds in time. There is no limit for None or zero.
 
-    Without `poll`, the caller's task must be woken when the condition can have changed.
+    Without `poll`, something must wake the caller's task whenever the condition may have changed.
     """
     clock = process.scheduler
     span = 0 if timeout is None else timeout.to_nsec()

@@ -165,7 +165,7 @@ class Buffer(BufferInterface):
         return (not reason, reason) if return_debug_tuple else not reason
 
     def _wait(self, problem: Callable[[], str], timeout: Any) -> str:
-        """Wait until there is no problem, at most for `timeout`; return the problem that remains."""
+        """Wait until there is no problem, for at most `timeout`. Return the remaining problem."""
         clock = self.process.scheduler
         until = clock.time + (nanoseconds_of(timeout) if timeout is not None else 0)
         reason = problem()
