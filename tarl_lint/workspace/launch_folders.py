@@ -1,4 +1,4 @@
-"""What Python launch files find in folders of the workspace: `os.listdir`, `glob.glob` and `Path.glob`, sorted."""
+"""Listings of workspace folders for Python launch files: `os.listdir`, `glob.glob` and `Path.glob`, sorted."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ENTRIES: Final = 1_000  # maximum number of entries of a folder that are listed
 def listings(inside: Callable[[Any], Path | None]) -> dict[str, Callable[..., Any]]:
     """Return models of the functions that list folders; `inside` returns a path if it is in the workspace.
 
-    The models raise OpaqueError for folders outside of the workspace.
+    The models raise OpaqueError for folders outside the workspace.
     """
 
     def folder(path: Any) -> Path:
@@ -45,7 +45,7 @@ def listings(inside: Callable[[Any], Path | None]) -> dict[str, Callable[..., An
 
 
 def _below(folder: Path, pattern: str, *, hidden: bool = False) -> list[Path]:
-    """Return what a pattern without `**` and with at most one folder matches, sorted.
+    """Return the sorted matches of a pattern that has no `**` and at most one folder.
 
     Raises OpaqueError for other patterns.
     """

@@ -17,7 +17,7 @@ LARGEST = 100_000  # maximum size of a file (bytes)
 class IniFile:
     """The result of `ConfigParser()`.
 
-    Its methods raise OpaqueError for files that are not in the workspace or are not INI files.
+    Its methods raise OpaqueError for files outside the workspace and files that are not INI files.
     """
 
     readable: ClassVar = frozenset({
@@ -30,7 +30,7 @@ class IniFile:
         self._parsed = configparser.ConfigParser(interpolation=None)
 
     def read(self, names: Any, *_: Any, **__: Any) -> list[str]:
-        """Read files; return the names of those that exist."""
+        """Read files and return the names of those that exist."""
         found = []
         for name in [names] if not isinstance(names, list | tuple) else names:
             place = self._inside(name)
@@ -42,7 +42,7 @@ class IniFile:
         return found
 
     def read_string(self, text: Any, *_: Any) -> None:
-        """Read a text."""
+        """Read a string."""
         try:
             self._parsed.read_string(text)
         except configparser.Error as error:

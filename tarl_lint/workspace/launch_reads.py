@@ -1,4 +1,4 @@
-"""What Python launch files read from files of the workspace: texts, YAML, JSON, and whether a file exists."""
+"""Models of the functions with which Python launch files read workspace files: text, YAML, JSON, and existence."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class OpenFile:
 
 
 def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
-    """Return models of the functions that read files; they return Unknown for files outside of the workspace."""
+    """Return models of the functions that read files. The models return Unknown for files outside the workspace."""
 
     def inside(path: Any) -> Path | None:
         place = normal(str(path)) if isinstance(path, str | FilePath) else ""
@@ -97,7 +97,7 @@ def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
 
 
 class OpenText:
-    """The result of `io.StringIO`: a text that is read as a file."""
+    """The result of `io.StringIO`: a string that is read as a file."""
 
     readable: ClassVar = frozenset({"read", "readlines", "getvalue", "close"})
 
@@ -149,7 +149,7 @@ def _yaml(source: Any, *_: Any, **__: Any) -> Any:
     if text is None:
         return Unknown(0, "yaml.load")
     try:
-        # a copy, since the file may change what it reads, and the content of a text is kept
+        # a copy, because the launch file may change the value, and the parsed content is cached
         return copy.deepcopy(_kept(content(Setting("", Path(), yaml=text))))
     except (NoYamlError, UnreadableError):
         return Unknown(0, "yaml.load")

@@ -108,7 +108,7 @@ def _of_class(run: Evaluation, base: Made | Class | Above, name: str, node: ast.
 
 
 def _found(base: Made | Class | Above, name: str) -> tuple[tuple[Any, Class] | None, Any]:
-    """Return where an attribute is defined, and the object that it belongs to."""
+    """Return the definition of an attribute, and the object to which it belongs."""
     if not isinstance(base, Above):
         kind = base if isinstance(base, Class) else base.kind
         return kind.find(name), None if isinstance(base, Class) else base
@@ -133,7 +133,7 @@ def _fallback(base: Made | Class | Above, name: str) -> tuple[Any] | None:
 
 
 def _of_super(base: Above, name: str) -> tuple[Any] | None:
-    """Return a tuple with a method that Python's own base classes have."""
+    """Return a tuple with a method of a built-in base class, for `super()`."""
     if name in ("__init__", "__init_subclass__", "__post_init__"):
         return (Partial(functools.partial(_initialised, base.of)),)
     if name == "__new__":
@@ -148,7 +148,7 @@ def _of_super(base: Above, name: str) -> tuple[Any] | None:
 
 
 def _of_every_object(base: Made | Class | Above, name: str) -> tuple[Any] | None:
-    """Return a tuple with an attribute that classes and objects have without stating it."""
+    """Return a tuple with an attribute that all classes and objects have, such as `__class__`."""
     if isinstance(base, Above):
         return _of_super(base, name)
     if isinstance(base, Made):
@@ -174,14 +174,14 @@ _ITEMS: Final[Mapping[str, Callable[..., Any]]] = {
 
 
 def _of_held(held: Any, name: str) -> tuple[Any] | None:
-    """Return a tuple with a method of the list, dict or other value of Python that an object is."""
+    """Return a tuple with a method that an object inherits from list, dict or another built-in type."""
     if name in METHODS.get(type(held), ()):
         return (Bound(held, name),)
     return (Partial(functools.partial(_ITEMS[name], held)),) if name in _ITEMS else None
 
 
 def _initialised(of: Any, *args: Any, **keywords: Any) -> None:
-    """Do what the first `__init__` of an exception or a container does: keep the arguments."""
+    """Initialise an exception or a container as its built-in `__init__` does: store the arguments."""
     if isinstance(of, Made) and isinstance(of.held, list):
         of.held[:] = listed(*args) if args else []
     if isinstance(of, Made) and isinstance(of.held, dict):

@@ -1,7 +1,7 @@
 """Python's built-in functions for constant values, within limits on the size of their results.
 
-A function of `STRUCTURE` uses only the structure of its arguments, whose elements may be unknown; all others need
-constants.
+Functions in `STRUCTURE` use only the structure of their arguments, so elements may be unknown; all other
+functions need constants.
 """
 
 from __future__ import annotations
@@ -87,14 +87,14 @@ def _tested(name: str) -> Callable[..., Any]:
 
 
 def streamed(value: Any) -> Iterator[Any]:
-    """Return an iterator over a value; one over a stream that is not used up at once. Raises OpaqueError."""
+    """Return an iterator over a value; a stream is read step by step. Raises OpaqueError."""
     if not whole(value):
         raise OpaqueError("an unknown number of elements")
     return value.values if isinstance(value, Stream) else iter(listed(value))
 
 
 def _combined(make: Callable[..., Iterator[Any]], *values: Any) -> Stream:
-    """Return the elements that an iterator over other iterators has; endless if all of those are."""
+    """Return an iterator that combines others, such as `zip`; it is endless if all of them are."""
     parts = [streamed(one) for one in values]
     endless = bool(values) and all(isinstance(one, Stream) and one.endless for one in values)
     return Stream(make(*parts), endless=endless)
@@ -117,7 +117,7 @@ def _filter(function: Any, values: Any) -> Stream:
 
 
 def filtered(function: Any, values: Iterable[Any], *, wanted: bool = True) -> Iterator[Any]:
-    """Yield the elements for which a function holds. Raises OpaqueError if that is not known."""
+    """Yield the elements for which a function is true. Raises OpaqueError if its result is not known."""
     for one in values:
         kept = one if function is None else function(one)
         if isinstance(kept, Unknown | Library):
@@ -258,7 +258,7 @@ BUILTINS: Final[Mapping[str, Any]] = {
 
 
 def limits(made: Any, args: list[Any]) -> None:
-    """Raise OpaqueError if a call of a built-in function would make too large a value."""
+    """Raise OpaqueError if the result of a built-in function would be too large."""
     if made is bytes and args and isinstance(args[0], int):
         raise OpaqueError("bytes")
     if made in (int, float) and args and isinstance(args[0], str):

@@ -1,4 +1,4 @@
-"""Calls of functions of interpreted files: their nesting, and where the values go that generators yield."""
+"""The stack of calls of interpreted functions, and the destinations of the values that generators yield."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ DEEPEST: Final = 30  # maximum nesting of calls of the file's own functions
 YIELDED: Final = 1_000  # maximum number of values that are read from a generator
 OWN: Final = "__class__"  # name under which the class of a method is stored, for `super()`
 
-Taking = list[Any] | Callable[[Any], None]  # what takes the values that a function yields
+Taking = list[Any] | Callable[[Any], None]  # receives the values that the function yields
 
 
 @dataclass(frozen=True)
 class _Frame:
-    """A call: the file of the function, and what takes the values that it yields."""
+    """A call: the file of the function, and the function that receives the values that it yields."""
 
     file: Path
     taking: Taking
@@ -43,7 +43,7 @@ class CallStack:
         return self._frames[-1].file
 
     def is_full(self) -> bool:
-        """Return whether no further call is interpreted."""
+        """Return whether the limit of nested calls is reached."""
         return len(self._frames) > DEEPEST
 
     def push(self, file: Path) -> None:
@@ -55,7 +55,7 @@ class CallStack:
         self._frames.pop()
 
     def give(self, values: list[Any]) -> None:
-        """Add what the current generator yields. Raises Enough if it may be endless."""
+        """Add values that the current generator yields. Raises Enough if the generator may be endless."""
         frame = self._frames[-1]
         if isinstance(frame.taking, list):
             frame.taking.extend(values)

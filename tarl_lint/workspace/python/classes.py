@@ -72,7 +72,7 @@ def defined(
 
 
 def _announce(made: Class, keywords: dict[str, Any]) -> None:
-    """Call what a new class has to be told: `__set_name__` of its attributes, `__init_subclass__` of its bases."""
+    """Call the hooks for a new class: `__set_name__` of its attributes, `__init_subclass__` of its bases."""
     for name, value in list(made.names.items()):
         if isinstance(value, Made) and value.has("__set_name__"):
             value.run("__set_name__", made, name)
@@ -114,7 +114,7 @@ def _equal(one: Any, other: Any) -> bool:
 
 
 class _Numbered(dict[str, Any]):
-    """The names in the body of an enumeration, where `auto()` becomes a value at once."""
+    """The names in the body of an enumeration; `auto()` is replaced with its value immediately."""
 
     def __init__(self, kinds: set[str]) -> None:
         super().__init__()
@@ -152,7 +152,7 @@ def instance(run: Evaluation, kind: Class, args: list[Any], keywords: dict[str, 
 
 
 def _new(kind: Class, args: list[Any], keywords: dict[str, Any]) -> Any:
-    """Return a new object, without its attributes, or what `__new__` of the class returns."""
+    """Return a new object without attributes, or the result of the class's own `__new__`."""
     made = kind.find("__new__")
     if made is not None and isinstance(made[0], Function):
         return made[0].run(made[0], [kind, *args], keywords, made[1])
@@ -160,14 +160,14 @@ def _new(kind: Class, args: list[Any], keywords: dict[str, Any]) -> Any:
 
 
 def blank(kind: Class, args: list[Any], keywords: dict[str, Any]) -> Made:
-    """Return a new object; if its class is derived from a list, number or the like, with this value."""
+    """Return a new object; if its class is derived from list, int or the like, with the value of that type."""
     container = kind.container()
     if container is None or kind.unpacked:
         return Made(kind, {})
     start = kind.find("__init__")
     own = start is not None and isinstance(start[0], Function)
     if own and container not in (str, int, float, BUILTINS["tuple"]):
-        args, keywords = [], {}  # its `__init__` fills the container
+        args, keywords = [], {}  # the `__init__` of the container fills it
     elif not settled(args) and container in (str, int, float):
         raise OpaqueError("not a constant")
     return Made(kind, {}, container(*args, **keywords))
@@ -181,7 +181,7 @@ def _fill(
     keywords: dict[str, Any],
     node: ast.Call,
 ) -> None:
-    """Set the fields of a data class or named tuple, and run what follows."""
+    """Set the fields of a data class or named tuple, and call `__post_init__`."""
     kind = made.kind
     positional = [name for name in fields if _takes(kind, name)]
     given = {**dict(zip(positional, args, strict=False)), **keywords}
@@ -200,12 +200,12 @@ def _fill(
 
 
 def _passed(kind: Class) -> list[str]:
-    """Return the names of the arguments that only `__post_init__` receives."""
+    """Return the names of the arguments that are passed to `__post_init__` instead of being stored."""
     return [name for one in reversed(kind.order()) for name in one.options.get("passed", ())]
 
 
 def _is_set_later(kind: Class, name: str) -> bool:
-    """Return whether `__init__` of a data class does not set a field."""
+    """Return whether a field of a data class is not set by `__init__`."""
     found = kind.find(name)
     value = found[0] if found is not None else None
     return (
@@ -250,14 +250,14 @@ def _member(run: Evaluation, kind: Class, args: list[Any], node: ast.Call) -> An
 
 
 def as_mapping(value: Any, **keywords: Any) -> Any:
-    """Return `dataclasses.asdict`: the fields of an object, with the data classes inside, as new dicts."""
+    """Return the result of `dataclasses.asdict`: a new dict of the fields, with nested data classes as dicts."""
     if keywords:
         raise OpaqueError("a function makes the dict")
     return _converted(value, dict, 0)
 
 
 def as_values(value: Any, **keywords: Any) -> Any:
-    """Return `dataclasses.astuple`."""
+    """Return the result of `dataclasses.astuple`."""
     if keywords:
         raise OpaqueError("a function makes the tuple")
     return _converted(value, tuple, 0)
@@ -282,7 +282,7 @@ def _converted(value: Any, make: Any, depth: int) -> Any:
 
 
 def replaced(value: Any, **changes: Any) -> Any:
-    """Return `dataclasses.replace`: a copy of an object with other values of some fields."""
+    """Return the result of `dataclasses.replace`: a copy of an object in which some fields have new values."""
     if not isinstance(value, Made) or value.kind.all_fields() is None:
         raise OpaqueError("no data class")
     made = Made(
@@ -295,7 +295,7 @@ def replaced(value: Any, **changes: Any) -> Any:
 
 
 def field_names(value: Any) -> list[Made]:
-    """Return `dataclasses.fields`: objects with the names of the fields."""
+    """Return the result of `dataclasses.fields`: objects with the names of the fields."""
     kind = value.kind if isinstance(value, Made) else value
     if not isinstance(kind, Class):
         raise OpaqueError("no data class")

@@ -1,4 +1,4 @@
-"""Python's containers, made as interpreted files make them: lists, sets, dicts and those of `collections`."""
+"""Constructors of Python's containers for interpreted files: lists, sets, dicts and those of `collections`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tarl_lint.workspace.python.values import OpaqueError
 
 
 def make_list(values: Any = ()) -> list[Any]:
-    """Return `list(…)`. Raises OpaqueError, as all functions here, if the elements are not known."""
+    """Return `list(…)`. Like all functions here, raises OpaqueError if the elements are not known."""
     return listed(values)
 
 
@@ -72,7 +72,7 @@ def make_chain(*maps: Any) -> ChainMap[Any, Any]:
     return ChainMap(*maps)
 
 
-# The types of values, by the form that their names have in interpreted files
+# types of values, by the values of their names in interpreted files
 TYPES: Final[Mapping[Any, type]] = {
     str: str, int: int, float: float, bool: bool, bytes: bytes, object: object, slice: slice, FilePath: FilePath,
     make_list: list, make_tuple: tuple, make_dict: dict, make_set: Unique, make_frozen: Unique, make_queue: deque,
@@ -81,8 +81,8 @@ TYPES: Final[Mapping[Any, type]] = {
 
 
 def type_of(value: Any) -> type | None:
-    """Return the type that a name of Python's library stands for; None if it stands for something else."""
+    """Return the type that a name of Python's library refers to; None if it refers to something else."""
     try:
         return TYPES.get(value)
-    except TypeError:  # it has no hash
+    except TypeError:  # a dict has no hash
         return None

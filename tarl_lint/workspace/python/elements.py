@@ -22,7 +22,7 @@ VIEWS: Final = frozenset({
 class Unique(MutableSet[Any]):
     """A set. Its elements have the order in which they were added, so that results are the same in each run.
 
-    Raises OpaqueError for an unknown element, which may equal another one.
+    Raises OpaqueError for an unknown element, because it may equal another element.
     """
 
     def __init__(self, values: Iterable[Any] = ()) -> None:
@@ -81,12 +81,12 @@ class Unique(MutableSet[Any]):
         return Unique(one for one in self if one not in gone)
 
     def symmetric_difference(self, other: Iterable[Any]) -> Unique:
-        """Return the elements that are in one of both sets."""
+        """Return the elements that are in exactly one of the two sets."""
         right = Unique(other)
         return self.difference(right).union(right.difference(self))
 
     def issubset(self, other: Iterable[Any]) -> bool:
-        """Return whether another set has all elements."""
+        """Return whether another set has all elements of this one."""
         right = Unique(other)
         return all(one in right for one in self)
 
@@ -96,14 +96,14 @@ class Unique(MutableSet[Any]):
 
 
 def _identity(value: Any) -> Any:
-    """Return what makes an element of a set unique; objects such as substitutions are equal only to themselves."""
+    """Return a key that identifies an element of a set; objects such as substitutions are equal only to themselves."""
     if isinstance(value, Unknown | Library):
         raise OpaqueError("an unknown element")
     return value if isinstance(value, Made | Class | Unique) or settled(value) else ("identity", id(value))
 
 
 def items(value: Any) -> list[Any] | None:
-    """Return what a loop over a value yields; None if it is not known. An iterator is used up."""
+    """Return the elements over which a loop iterates; None if they are not known. This exhausts an iterator."""
     if isinstance(value, list | tuple | dict | str | bytes | Unique | deque | ChainMap):
         return list(value)
     if isinstance(value, Stream):
@@ -128,7 +128,7 @@ def items(value: Any) -> list[Any] | None:
 
 
 def listed(value: Any) -> list[Any]:
-    """Return what a loop over a value yields. Raises OpaqueError if it is not known."""
+    """Return the elements over which a loop iterates. Raises OpaqueError if they are not known."""
     found = items(value)
     if found is None:
         raise OpaqueError("unknown elements")
@@ -141,7 +141,7 @@ def whole(value: Any) -> bool:
 
 
 def elements_if_known(value: Any) -> list[Any] | None:
-    """Return what a loop over a value yields; None if it is not known, or if that fails."""
+    """Return the elements over which a loop iterates; None if they are not known, or if the iteration fails."""
     try:
         return items(value)
     except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError, OSError):
@@ -154,7 +154,7 @@ def plain(value: Any, most: int = LARGEST) -> bool:
 
 
 def settled(value: Any, most: int = LARGEST) -> bool:
-    """Return whether a value consists of constants and objects of the file, so that it can be compared and written."""
+    """Return whether a value consists of constants and objects of the file and can be compared and formatted."""
     return all(isinstance(one, _SETTLED) for one in _leaves(value, most))
 
 
@@ -208,9 +208,9 @@ def _leaves(value: Any, most: int) -> Iterator[Any]:
 
 
 def as_data(value: Any, depth: int = 0) -> Any:
-    """Return a value in the form in which functions of other libraries take it: lists, tuples and dicts.
+    """Convert a value to lists, tuples and dicts, as functions of other libraries expect it.
 
-    A list without iterators, sets and the like inside is returned as it is, so that what is added to it later counts.
+    A list that needs no conversion is returned itself, so that elements that are added later are included.
     """
     if isinstance(value, Stream | Unique | deque) and not (isinstance(value, Stream) and value.endless):
         return [as_data(one, depth + 1) for one in listed(value)]

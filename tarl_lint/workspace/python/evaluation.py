@@ -1,4 +1,4 @@
-"""What the parts of the interpreter need of each other, and the value of an expression that is not constant."""
+"""The interfaces between the parts of the interpreter, and the value of an expression that is not constant."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class Evaluation(Protocol):
         """Return the value of a call."""
 
     def imported(self, module: str) -> Namespace | None:
-        """Return an imported module that is interpreted too."""
+        """Return an imported module that is interpreted, too."""
 
     def kept(self, container: Any, value: Any) -> Any:
-        """Return the form in which a container keeps a value that is stored in it."""
+        """Return the form in which a container stores a value."""
 
     def operated(self, kind: type[ast.operator], left: Any, right: Any) -> Any:
         """Return the result of an operator."""
@@ -56,5 +56,5 @@ def unknown(node: ast.AST) -> Unknown:
 
 
 def call_of(name: str, line: int) -> ast.Call:
-    """Return a call without arguments, for what is called without a call in the file."""
+    """Return a call without arguments, for functions that Python calls implicitly."""
     return ast.Call(ast.Name(name, ast.Load(), lineno=line, col_offset=0), [], [], lineno=line, col_offset=0)

@@ -42,7 +42,7 @@ __all__ = ["Evaluator", "Library", "Unknown", "constant", "unknown"]
 
 STEPS: Final = 300_000  # maximum number of expressions and statements that are evaluated for one file
 FAILURES: Final = (ArithmeticError, LookupError, TypeError, ValueError, AttributeError, StopIteration)
-# exceptions of constant operations that a `try` of the file may catch
+# exceptions that constant operations may raise and a `try` of the file may catch
 _CAUGHT: Final = (KeyError, IndexError, ZeroDivisionError, ValueError, StopIteration, AttributeError, OSError)
 
 
@@ -97,11 +97,11 @@ class Evaluator:
         return FilePath(found) if isinstance(found, PurePosixPath) else found
 
     def imported(self, module: str) -> Namespace | None:  # noqa: ARG002 - for subclasses
-        """Return an imported module that is interpreted too; None if it is not."""
+        """Return an imported module that is interpreted, too; None if it is not interpreted."""
         return None
 
     def kept(self, container: Any, value: Any) -> Any:  # noqa: ARG002 - for subclasses
-        """Return the form in which a list or dict keeps a value that is stored in it."""
+        """Return the form in which a list or dict stores a value."""
         return value
 
     def bind(self, target: ast.expr, value: Any, names: Scope) -> None:
@@ -202,7 +202,7 @@ class Evaluator:
         return COMPARE[kind](left, right if many is None or isinstance(right, dict) else many)
 
     def _unsure(self, kind: type[ast.cmpop], left: Any, many: list[Any] | None) -> Any:
-        """Return whether a list with unknown elements has an element for certain; Unknown if not."""
+        """Return whether a list with unknown elements certainly has an element; Unknown if this is not certain."""
         for one in many or ():
             if one is left or (settled([left, one]) and one == left):
                 return kind is ast.In

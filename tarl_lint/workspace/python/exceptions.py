@@ -43,12 +43,12 @@ def _catches_one(kind: Any, error: Any) -> bool | None:
         return own is not None and issubclass(own, kind) if isinstance(kind, type) else None
     if isinstance(kind, type):
         return isinstance(error, kind)
-    # an exception of a library is none of Python's own
+    # the exception is from another library, not one of Python's own
     return None if isinstance(kind, Unknown) else False
 
 
 def handler(run: Evaluation, statement: ast.Try, error: Any, names: Scope) -> ast.ExceptHandler | None:
-    """Return the handler of a `try` statement for an exception; the first possible one if that is not known."""
+    """Return the handler of a `try` statement for an exception; if this is uncertain, the first possible handler."""
     for one in statement.handlers:
         found = True if one.type is None else catches(run.value(one.type, names), error)
         if found is not False:
@@ -114,7 +114,7 @@ def run_with(run: Execution, statement: ast.With, names: Scope) -> None:
 def _inside(
     run: Execution, manager: Suspended, target: ast.expr | None, rest: ast.With, names: Scope
 ) -> None:
-    """Interpret a block where the function of a context manager yields, and the rest of this function after it."""
+    """Interpret a `with` block at the `yield` of its context manager, and then the rest of that function."""
     left: list[Exception] = []
 
     def entered(value: Any) -> None:

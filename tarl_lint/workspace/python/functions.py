@@ -1,4 +1,4 @@
-"""Functions of an interpreted file: what their parameters are bound to, and what decorators make of them."""
+"""Functions of an interpreted file: the values of their parameters, and the effect of decorators."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def lambda_of(node: ast.Lambda) -> ast.FunctionDef:
 
 
 def arguments(function: Function, args: list[Any], keywords: dict[str, Any]) -> dict[str, Any]:
-    """Return the names inside a function when it is called."""
+    """Return the names in the scope of a function when it is called."""
     spec, line = function.node.args, function.node.lineno
     positional = [one.arg for one in (*spec.posonlyargs, *spec.args)]
     stated = [*positional, *(one.arg for one in spec.kwonlyargs)]
@@ -64,7 +64,7 @@ def yields(node: ast.AST) -> bool:
 
 
 def decorated(run: Evaluation, function: Function, names: Scope) -> Any:
-    """Return what the decorators of a function make of it; decorators of other libraries change nothing."""
+    """Apply the decorators of a function and return the result; decorators of other libraries have no effect."""
     made: Any = function
     for node in reversed(function.node.decorator_list):
         if isinstance(node, ast.Attribute) and node.attr in ("setter", "deleter", "getter"):

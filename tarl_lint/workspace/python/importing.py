@@ -12,7 +12,7 @@ from tarl_lint.workspace.python.values import Library, Scope
 
 
 class Modules:
-    """Finds the files of imported modules. Those of which a name is modelled are not interpreted."""
+    """Finds the files of imported modules. Modules that have a modelled name are not interpreted."""
 
     def __init__(self, models: Mapping[str, Any], found: Callable[[str], Path | None]) -> None:
         self._found = found
@@ -20,7 +20,7 @@ class Modules:
         self._modelled = {".".join(parts[:n]) for parts in names for n in range(len(parts))}
 
     def file(self, module: str) -> Path | None:
-        """Return the file of a module that is to be interpreted; None if there is none."""
+        """Return the file of a module to interpret; None if there is none."""
         return None if module in self._modelled else self._found(module)
 
 
@@ -51,7 +51,7 @@ def bind_names(run: Evaluation, statement: ast.ImportFrom, names: Scope) -> None
 
 
 def bind_outside(statement: ast.Nonlocal, names: Scope) -> None:
-    """Let names of a `nonlocal` statement refer to the scope around the function that has them."""
+    """Bind the names of a `nonlocal` statement to the enclosing scope that has them."""
     for name in statement.names:
         scope = names.around
         while scope is not None and name not in scope.names:

@@ -1,7 +1,7 @@
 """Objects of classes that an interpreted file defines.
 
-They have the special methods of their class, such as `__str__` and `__lt__`, so that Python's own operations apply to
-them: these methods interpret the functions of the file, and never execute them.
+They have the special methods of their class, such as `__str__` and `__lt__`, so Python's own operations apply
+to them. These methods interpret the functions of the file and never execute them.
 """
 
 from __future__ import annotations
@@ -21,7 +21,9 @@ class Made:
 
     def __init__(self, kind: Class, attributes: dict[str, Any], held: Any = None) -> None:
         self.kind, self.attributes = kind, attributes
-        self.held = held  # the list, dict or other value of Python that the object is, if its class is derived from one
+        self.held = (
+            held  # the built-in value of the object, if its class is derived from list, dict or the like
+        )
 
     def has(self, name: str) -> bool:
         """Return whether the class defines a method."""
@@ -29,7 +31,10 @@ class Made:
         return found is not None and isinstance(found[0], Function)
 
     def run(self, name: str, *args: Any) -> Any:
-        """Return the result of a method. Raises OpaqueError if the class has no such method, or it is not known."""
+        """Return the result of a method.
+
+        Raises OpaqueError if the class has no such method, or the result is not known.
+        """
         found = self.kind.find(name)
         if found is None or not isinstance(found[0], Function):
             raise OpaqueError(f"{self.kind.name} has no {name}")
@@ -49,7 +54,7 @@ class Made:
         return found[0].run(found[0], [self, *args], keywords, found[1])
 
     def plain(self) -> Any:
-        """Return the object as a value of Python if it is one: a tuple, a list, a number or a text."""
+        """Return the object as a built-in value if its class is derived from tuple, list, a number or str."""
         if self.held is not None:
             return self.held
         if self.kind.unpacked:
@@ -142,7 +147,7 @@ class Made:
         return self.kind.fields is not None and bool(self.kind.options.get(option, default))
 
     def _marked(self, option: str) -> set[str]:
-        """Return the fields of a data class that an option names."""
+        """Return the fields of a data class for which an option is set."""
         return {name for one in self.kind.order() for name in one.options.get(option, ())}
 
     def _values(self) -> tuple[Any, ...]:
@@ -167,7 +172,10 @@ class Made:
         return len(self._sized())
 
     def _sized(self) -> Any:
-        """Return the value of Python that the object is. Raises OpaqueError if it is no container."""
+        """Return the built-in container from which the object is derived.
+
+        Raises OpaqueError if it is not a container.
+        """
         plain = self.plain()
         if plain is self or isinstance(plain, int | float):
             raise OpaqueError(f"{self.kind.name} is no container")

@@ -28,7 +28,7 @@ class _Chain:
         return Stream(itertools.chain(*lists))
 
     def from_iterable(self, values: Any) -> Stream:
-        """Return the elements of the lists of a list."""
+        """Return the elements of all lists in a list."""
         return self(*listed(values))
 
 

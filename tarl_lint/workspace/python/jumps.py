@@ -24,7 +24,7 @@ class Enough(Exception):  # noqa: N818 - control flow, never an error
 
 
 class Raised(Exception):  # noqa: N818 - control flow of the file
-    """A `raise` of the file, or an exception of a constant operation; `error` is None if it is not known."""
+    """A `raise` of the file, or an exception that a constant operation raises; `error` is None if it is unknown."""
 
     def __init__(self, line: int, error: Any = None) -> None:
         self.line, self.error = line, error

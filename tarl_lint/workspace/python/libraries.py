@@ -1,6 +1,6 @@
 """Functions and constants of Python's standard library that interpreted files may use, by full name.
 
-None of them reads files or the environment, and all have limits on the size of their results.
+None of them reads files or the environment, and the size of their results is limited.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def _copied(value: Any) -> Any:
 
 
 def _copy(value: Any, made: dict[int, Any], depth: int) -> Any:
-    """Return a deep copy of lists, dicts and objects; what is shared inside stays shared."""
+    """Return a deep copy of lists, dicts and objects; values that are shared stay shared."""
     if depth > 50:
         raise OpaqueError("too deep")
     if id(value) in made:
@@ -123,7 +123,7 @@ def _loaded(text: Any, **given: Any) -> Any:
 
 
 def _words(text: Any, **given: Any) -> list[str]:
-    """Return `shlex.split`, which reads the standard input in place of a text that is None."""
+    """Return the result of `shlex.split`, and refuse None, for which it reads the standard input."""
     if not isinstance(text, str):
         raise OpaqueError("not a text")
     return shlex.split(text, **given)
@@ -153,7 +153,7 @@ class Formatter:
 
     @staticmethod
     def format(text: str, *args: Any, **keywords: Any) -> str:
-        """Return a text with its fields replaced."""
+        """Return a format string with its fields replaced."""
         return format_text(text, list(args), keywords)
 
 
@@ -286,14 +286,14 @@ _OF_OBJECTS: Final = frozenset(map(id, (copy.copy, _copied, _shallow)))
 
 
 def is_builtin(made: Any) -> bool:
-    """Return whether a callable is one of Python's library that calls the functions that it receives."""
+    """Return whether a callable of Python's library calls the functions that it receives."""
     return (id(made) in _PLAIN or id(made) in _OF_STRUCTURE) and id(made) not in _TESTING | _OF_OBJECTS
 
 
 def function(made: Any, args: list[Any], keywords: dict[str, Any]) -> Any:
     """Return the result of a built-in function, or of another callable, which may receive unknown values.
 
-    Raises OpaqueError if the result is not constant or too large, and what the function raises.
+    Raises OpaqueError if the result is not constant or is too large, and any exception of the function.
     """
     if id(made) in _PLAIN:
         args = [_listed(one) for one in args]

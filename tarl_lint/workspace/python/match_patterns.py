@@ -51,7 +51,7 @@ def _any(evaluator: Evaluator, pattern: ast.MatchOr, subject: Any, names: Scope)
 
 
 def _all(evaluator: Evaluator, parts: list[tuple[ast.pattern, Any]], names: Scope) -> Any:
-    """Return whether all parts fit. The first part that does not decides."""
+    """Return whether all parts fit; the first part that does not fit, or is unknown, determines the result."""
     unsure: Any = True
     for pattern, value in parts:
         fit = fits(evaluator, pattern, value, names)
@@ -124,7 +124,7 @@ def _object(evaluator: Evaluator, pattern: ast.MatchClass, subject: Any, names: 
 
 
 def _positions(kind: Any) -> tuple[str, ...] | None:
-    """Return the attributes that positional patterns of a class stand for."""
+    """Return the names of the attributes for the positional patterns of a class."""
     if not isinstance(kind, Class):
         return None
     stated = kind.find("__match_args__")

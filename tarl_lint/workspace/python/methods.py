@@ -57,14 +57,15 @@ READ: Final[Mapping[type, frozenset[str]]] = {
 _OF_ELEMENTS: Final = frozenset(["index", "count", "remove"])  # methods that compare elements
 _OF_ONE: Final = frozenset(
     ["add", "copy", "clear", "pop", "discard", "remove"]
-)  # methods of sets for one element
+)  # methods of sets that take one element
 _ADDING: Final = frozenset(["append", "appendleft", "insert", "extend", "extendleft"])
 
 
 def method(bound: Bound, args: list[Any], keywords: dict[str, Any]) -> Any:
-    """Return the result of a method of a text, list, dict or other value of Python's library.
+    """Return the result of a method of a string, list, dict or other value of Python's library.
 
-    Raises OpaqueError if the result depends on unknown values or is too large, and what the method raises.
+    Raises OpaqueError if the result depends on unknown values or is too large, and any exception of the
+    method.
     """
     of, name = bound.of, bound.name
     if isinstance(of, str):
@@ -143,7 +144,7 @@ def ordered(values: Any, *, key: Any = None, reverse: Any = False) -> list[Any]:
 
 
 def _of_text(of: str, name: str, args: list[Any], keywords: dict[str, Any]) -> Any:
-    """Return the result of a method of a text."""
+    """Return the result of a method of a string."""
     if name == "join":
         parts = listed(args[0])
         checked(parts, {})

@@ -13,7 +13,7 @@ from tarl_lint.workspace.python.values import Library, Partial, Scope
 FLAGS: Final = frozenset({"enum.Flag", "enum.IntFlag"})
 ENUMERATIONS: Final = frozenset({"enum.Enum", "enum.IntEnum", "enum.StrEnum", *FLAGS})
 TUPLES: Final = "typing.NamedTuple"
-# modules that define what the names of built-in containers and values stand for
+# modules that define the names of built-in containers and values
 _HOMES: Final = frozenset({"tarl_lint.workspace.python.containers", "builtins"})
 _MIXED: Final = {"enum.IntEnum": int, "enum.IntFlag": int, "enum.StrEnum": str}
 
@@ -48,7 +48,7 @@ class Class:
     unpacked: bool = False  # whether objects of the class are tuples
     options: dict[str, Any] = field(
         default_factory=dict
-    )  # arguments of the decorator `dataclass`, and others
+    )  # arguments of the decorator `dataclass` and of others
 
     def find(self, name: str) -> tuple[Any, Class] | None:
         """Return an attribute of the class or its bases, and the class that has it."""
@@ -77,7 +77,7 @@ class Class:
         return other in self.order()
 
     def library_bases(self) -> list[Any]:
-        """Return the bases that the file does not define: names of libraries, and built-in classes."""
+        """Return the bases that the file does not define: library names and built-in classes."""
         return [base for one in self.order() for base in one.bases if not isinstance(base, Class)]
 
     def is_enumeration(self) -> bool:
@@ -90,7 +90,7 @@ class Class:
         return any(isinstance(base, Library) and base.name in FLAGS for base in self.library_bases())
 
     def mixed(self) -> type | None:
-        """Return the type of the members of an enumeration whose members are numbers or texts."""
+        """Return the type of the members of an enumeration whose members are numbers or strings."""
         if not self.is_enumeration():
             return None
         for base in self.library_bases():
@@ -103,24 +103,24 @@ class Class:
     def members(self) -> list[Any]:
         """Return the members of an enumeration."""
         found = [one for one in self.names.values() if getattr(one, "kind", None) is self]
-        if self.is_flag():  # neither combinations nor zero, as since Python 3.11
+        if self.is_flag():  # neither combinations nor zero, as in Python 3.11 and later
             found = [one for one in found if _is_single(one.attributes["value"])]
         return list({id(one): one for one in found}.values())
 
     def with_value(self, value: Any) -> Any:
-        """Return the member of an enumeration with a value, also a combination of flags; None if there is none."""
+        """Return the member of an enumeration, or the combination of flags, with a value; None if there is none."""
         found = [one for one in self.names.values() if getattr(one, "kind", None) is self]
         return next((one for one in found if one.attributes["value"] == value), None)
 
     def container(self) -> Any:
-        """Return the built-in container that the class is derived from, by its name in a file; None if it is none."""
+        """Return the type of the built-in container from which the class is derived; None if there is none."""
         known = [
             one for one in self.library_bases() if callable(one) and getattr(one, "__module__", "") in _HOMES
         ]
         return None if self.is_enumeration() else next(iter(known), None)
 
     def error(self) -> type[BaseException] | None:
-        """Return the built-in exception that the class is derived from; None if it is no exception."""
+        """Return the built-in exception from which the class is derived; None if it is not an exception."""
         known = [one for one in self.library_bases() if isinstance(one, type)]
         return next((one for one in known if issubclass(one, BaseException)), None)
 

@@ -38,7 +38,7 @@ _SPECIAL: Final[Mapping[type[ast.operator], str]] = {
 
 
 def binary(kind: type[ast.operator], left: Any, right: Any) -> Any:
-    """Return the result of an operator. Raises OpaqueError if the result is too large, and what the operator raises."""
+    """Return the result of an operator. Raises OpaqueError if it is too large, and any exception of the operator."""
     if isinstance(left, Made) or isinstance(right, Made):
         return _of_objects(kind, left, right)
     if kind is ast.Mod and isinstance(left, str):
@@ -60,7 +60,7 @@ def binary(kind: type[ast.operator], left: Any, right: Any) -> Any:
 
 
 def _of_objects(kind: type[ast.operator], left: Any, right: Any) -> Any:
-    """Return the result of an operator of an object of the file."""
+    """Return the result of an operator that a class of the file defines."""
     name = _SPECIAL[kind]
     if isinstance(left, Made) and left.has(f"__{name}__"):
         return left.run(f"__{name}__", right)
@@ -114,7 +114,7 @@ def formatted(value: Any, spec: str, conversion: int = -1) -> str:
 
 
 def written(value: Any) -> str:
-    """Return the text of a value. Raises OpaqueError if it is not known."""
+    """Return the result of `str`. Raises OpaqueError if it is not known."""
     return formatted(value, "", ord("s"))
 
 
@@ -123,7 +123,7 @@ def _has_address(value: Any) -> bool:
 
 
 def for_text(text: str, places: int, given: Any) -> Any:
-    """Return what is inserted into a text at some places. Raises OpaqueError if that may be too large."""
+    """Return the values to insert into a string. Raises OpaqueError if they may be too large."""
     if _WIDTH.search(text) or not settled(given, 1_000):
         raise OpaqueError("not a constant")
     longest = sum(len(one) if isinstance(one, str) else 40 for one in _flat(given))

@@ -1,4 +1,4 @@
-"""Functions that look at objects and classes of an interpreted file: `getattr`, `vars`, `dataclasses.asdict`."""
+"""Functions that inspect objects and classes of an interpreted file: `getattr`, `vars`, `dataclasses.asdict`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _WITH_KNOWN_ATTRIBUTES: Final = (Made, Class, str, int, float, list, dict, type(
 
 
 def reflection(run: Evaluator) -> dict[str, Any]:
-    """Return models of functions that look at attributes, by full name."""
+    """Return models of the functions that inspect attributes, by full name."""
     attribute = functools.partial(_attribute, run)
     return {
         "builtins.getattr": attribute, "builtins.hasattr": functools.partial(_has, run), "builtins.vars": _variables,
@@ -44,7 +44,7 @@ def reflection(run: Evaluator) -> dict[str, Any]:
 
 
 def _attribute(run: Evaluator, of: Any, name: Any, *default: Any) -> Any:
-    """Return `getattr`. Raises OpaqueError if the value of the attribute is not known."""
+    """Return the result of `getattr`. Raises OpaqueError if the value of the attribute is not known."""
     if not isinstance(name, str) or isinstance(of, Unknown):
         raise OpaqueError("an unknown attribute")
     found: Any = of
@@ -86,7 +86,7 @@ def _element(of: Any, key: Any) -> Any:
 
 
 def _several(get: Callable[[Any, Any], Any], keys: tuple[Any, ...]) -> Partial:
-    """Return a function that returns an element or attribute of a value, or a tuple of several ones."""
+    """Return a function that returns one element or attribute of a value, or a tuple of several."""
     return Partial(lambda of: get(of, keys[0]) if len(keys) == 1 else tuple(get(of, one) for one in keys))
 
 

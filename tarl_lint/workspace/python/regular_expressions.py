@@ -19,7 +19,7 @@ try:  # the parser of `re`, under its name since Python 3.11 and its name before
 except ImportError:
     import sre_parse as _patterns
 
-MOST: Final = 20_000_000  # maximum number of ways to match that are tried
+MOST: Final = 20_000_000  # maximum number of ways to match that a search may try
 LONGEST: Final = 2_000  # maximum length of a pattern (characters)
 # number of positional arguments of a function after the pattern, before the flags
 _POSITIONS: Final = {"sub": 3, "subn": 3, "split": 2}
@@ -39,9 +39,9 @@ def compiled(pattern: Any, flags: Any = 0) -> re.Pattern[str]:
 
 
 def of_pattern(pattern: re.Pattern[str], name: str, args: list[Any], keywords: dict[str, Any]) -> Any:
-    """Return the result of a method of a pattern: a match, a list of texts, a text.
+    """Return the result of a method of a pattern: a match, a list of strings, or a string.
 
-    Raises OpaqueError if the arguments are not constant, or the search might take long.
+    Raises OpaqueError if the arguments are not constant, or if the search might take long.
     """
     text = keywords.get("string", args[1] if name in ("sub", "subn") and len(args) > 1 else args[0])
     replaced = args[0] if name in ("sub", "subn") else ""
@@ -63,7 +63,7 @@ def of_pattern(pattern: re.Pattern[str], name: str, args: list[Any], keywords: d
 
 
 def _ways(pattern: re.Pattern[str], length: int) -> float:
-    """Estimate how many ways to match a text of a length the search tries: exponential for nested repeats."""
+    """Estimate in how many ways a search tries to match a string of a length: exponentially many for nested repeats."""
     try:
         parsed = _patterns.parse(pattern.pattern, pattern.flags)
     except RecursionError:

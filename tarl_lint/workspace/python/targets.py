@@ -26,7 +26,7 @@ def bind(run: Evaluation, target: ast.expr, value: Any, names: Scope) -> None:
 
 
 def _taken(value: Any, target: ast.Tuple | ast.List) -> list[Any] | None:
-    """Return the elements of a value that is unpacked; of an endless iterator only as many as there are targets."""
+    """Return the elements of an unpacked value; of an endless iterator, return only as many as there are targets."""
     if isinstance(value, Stream) and value.endless:
         return [next(value.values, unknown(target)) for _ in target.elts]
     return elements_if_known(value)
@@ -110,5 +110,5 @@ def _remove(run: Evaluation, base: Any, index: ast.expr, names: Scope) -> None:
 
 
 def read_target(target: ast.expr) -> ast.expr:
-    """Return the target of an assignment as an expression that is read."""
+    """Return the target of an assignment as an expression that reads it."""
     return ast.copy_location(ast.parse(ast.unparse(target), mode="eval").body, target)

@@ -1,4 +1,4 @@
-"""Values of interpreted Python files that are no data: unknown values, names of libraries, scopes, streams."""
+"""Values of interpreted Python files that are not data: unknown values, names of libraries, scopes, streams."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ LARGEST: Final = 100_000  # maximum size of a value: characters of a text, eleme
 
 
 class SpentError(Exception):
-    """An interpretation has used up its limit of steps. The message says so."""
+    """An interpretation has reached its limit of steps. The message says so."""
 
 
 class OpaqueError(ValueError):
-    """The result of an operation is not constant, or too large. It is no exception of the interpreted file."""
+    """The result of an operation is not constant, or too large. This is not an exception of the interpreted file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class Scope:
         return scope
 
     def seen(self) -> Scope:
-        """Return the scope that functions defined here see around them: not that of a class."""
+        """Return the scope that encloses functions defined here; a class is skipped."""
         scope = self
         while scope.of_class and scope.around is not None:
             scope = scope.around
@@ -96,7 +96,7 @@ class Scope:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bound:
-    """A method of a text, list, dict, match or other value of Python's library."""
+    """A method of a string, list, dict, match or other value of Python's library."""
 
     of: Any
     name: str
@@ -155,7 +155,7 @@ class Suppressed:
 class Suspended:
     """A call of a generator function that `contextlib.contextmanager` decorates.
 
-    `run` interprets the function, and calls its argument with what the function yields.
+    `run` interprets the function, and calls its argument with the value that the function yields.
     """
 
     run: Callable[[Callable[[Any], None]], Any]
