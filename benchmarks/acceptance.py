@@ -24,7 +24,7 @@ FAILING = (0.0, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)
 
 @dataclass(frozen=True)
 class Drawn:
-    """Random total rewards of missions: as designed and, with the same seeds, with a repair."""
+    """Random total rewards of missions: without and, with the same seeds, with a repair."""
 
     seed: int
     spread: float

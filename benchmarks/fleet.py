@@ -72,7 +72,7 @@ class World:
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot and the true changes of its missions. Missions are numbered from 0; -1 stands for never."""
+    """A robot and the true changes of its missions. Missions are numbered from 0; -1 means never."""
 
     number: int
     site: int

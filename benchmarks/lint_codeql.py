@@ -142,7 +142,7 @@ def _sinks(function: ast.AST) -> bool:
 
 
 def _anything(function: ast.FunctionDef | ast.AsyncFunctionDef, receivers: int) -> str:
-    """Return unknown arguments, also for parameters with defaults."""
+    """Return unknown arguments, including those for parameters with defaults."""
     return ", ".join(["ANY"] * (len(function.args.args) - receivers))
 
 

@@ -60,7 +60,7 @@ def check_writable(path: Path) -> None:
 
 
 def slug(text: str) -> str:
-    """Return a text as a valid part of a file name."""
+    """Return a string as a valid part of a file name."""
     return re.sub(r"[^A-Za-z0-9]+", "-", text.replace(".py", "")).strip("-")[:60]
 
 

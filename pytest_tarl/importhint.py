@@ -12,7 +12,7 @@ def package_hint(error: BaseException | None) -> str | None:
         return None
     return (
         "The test is in a Python package whose __init__.py imports ROS. pytest imports this file before the test, when "
-        "TARL provides no ROS yet: move the test to a folder outside of the package."
+        "TARL provides no ROS yet: move the test to a folder outside the package."
     )
 
 

@@ -68,7 +68,7 @@ def changes(before: Digests, after: Digests) -> Iterator[str]:
 
 
 def remark(before: Digests, after: Digests) -> Iterator[str]:
-    """Yield a sentence about what changed since the recording, if anything did."""
+    """Yield a sentence about the changes since the recording, if there are any."""
     found = list(changes(before, after))
     if found:
         more = f" and {len(found) - SHOWN} more files" if len(found) > SHOWN else ""

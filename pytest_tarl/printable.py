@@ -13,12 +13,12 @@ _SURROGATES = re.compile("[\ud800-\udfff]")
 
 
 def printable(text: str) -> str:
-    """Escape a text of one or more lines; undecodable bytes become question marks."""
+    """Escape a string of one or more lines; undecodable bytes become question marks."""
     return _SURROGATES.sub("\ufffd", _COMMANDS.sub(_escaped, text.replace("\r\n", "\n")))
 
 
 def printable_line(text: str) -> str:
-    """Escape a text including its line breaks, so that a name cannot forge lines of output."""
+    """Escape a string including its line breaks, so that a name cannot forge lines of output."""
     return printable(text).replace("\n", "\\n")
 
 

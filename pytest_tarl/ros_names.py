@@ -18,7 +18,7 @@ _NAMESPACE_LENGTH = 245  # leaves room for a topic of one character
 
 
 def objection(name: object) -> str:
-    """Return why no node of either ROS can have a topic or service of that name, or an empty text.
+    """Return why no node of either ROS can have a topic or service of that name, or an empty string.
 
     The sentence begins with "must". Names that rospy accepts with a warning, such as `/cam-1`, are accepted.
     """

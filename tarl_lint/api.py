@@ -56,7 +56,7 @@ class Analysis:
 
     @property
     def configuring(self) -> Mapping[SiteId, tuple[Step, tuple[SiteId, ...]]]:
-        """Return the statements outside of the flows that fill an object with constants, and the sites that use it.
+        """Return the statements outside the flows that fill an object with constants, and the sites that use it.
 
         Examples are `self.pid = PID(1.0, 0.1, 0.0)` if a statement of a flow calls `self.pid(…)`, and
         `GAINS = [0.5, 2.0]` if a statement of a flow iterates over GAINS.
@@ -65,7 +65,7 @@ class Analysis:
 
     @property
     def making(self) -> Mapping[SiteId, tuple[Step, tuple[SiteId, ...]]]:
-        """Return the statements outside of the flows that pass constants to objects of the program's own classes.
+        """Return the statements outside the flows that pass constants to objects of the program's own classes.
 
         An example is `self.left = Wheel(0.16)`. Each statement comes with the sites that use the object.
         """

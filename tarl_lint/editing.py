@@ -108,7 +108,7 @@ class _Memory(Cache):
         return self._analyses.adapted(scripts)
 
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
-        """Keep a report with what its analysis has read."""
+        """Store a report, and the parts of files that its analysis has read."""
         self._analyses.keep(scripts, readings, report)
 
     def edited(self, digests: Mapping[str, str]) -> frozenset[str]:

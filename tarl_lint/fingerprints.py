@@ -33,7 +33,7 @@ class OfFlow:
         return CODES[self.kind]
 
     def texts(self) -> tuple[str, ...]:
-        """Return the texts that identify the flow: package, class, source, callback, sink, place, kind."""
+        """Return the strings that identify the flow: package, class, source, callback, sink, place, kind."""
         return (self.package, self.owner, self.source, self.callback, self.sink, self.place, self.kind)
 
     def digest(self) -> str:
@@ -56,7 +56,7 @@ class OfHazard:
         return self.rule
 
     def texts(self) -> tuple[str, ...]:
-        """Return the texts that identify the hazard: package, rule, subject, place."""
+        """Return the strings that identify the hazard: package, rule, subject, place."""
         return (self.package, self.rule, self.about, self.place)
 
     def digest(self) -> str:
@@ -68,7 +68,7 @@ Fingerprint = OfFlow | OfHazard
 
 
 def digest(texts: Sequence[str]) -> str:
-    """Return a digest of texts as 16 hexadecimal digits."""
+    """Return a digest of strings as 16 hexadecimal digits."""
     import hashlib  # slow to import because it loads OpenSSL, and needed only if there are findings
 
     return hashlib.sha256("\0".join(texts).encode("utf-8", "surrogatepass")).hexdigest()[:16]

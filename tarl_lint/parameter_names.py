@@ -1,4 +1,4 @@
-"""Parts of topic names that only the launch determines. In a text, marks stand for parameters and node names."""
+"""Parts of topic names that only the launch determines. In a string, marks stand for parameters and node names."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class ParameterName:
 class Launched:
     """A launched node: its absolute name, and the parameters that it can see, sorted by their absolute names.
 
-    A value is a text, number, truth value, list, mapping or None, or ELSEWHERE.
+    A value is a string, number, truth value, list, mapping or None, or ELSEWHERE.
     """
 
     name: str
@@ -80,7 +80,7 @@ def places(name: str, node: str) -> tuple[str, ...]:
 
 
 def substituted(text: str, value: Callable[[int], str | None]) -> str | None:
-    """Return a text with each mark replaced by the value of its parameter; None if a parameter has no value."""
+    """Return a string with each mark replaced by the value of its parameter; None if a parameter has no value."""
     found = {number: value(int(number)) for number in _MARKED.findall(text)}
     if None in found.values():
         return None

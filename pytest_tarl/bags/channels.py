@@ -8,8 +8,9 @@ from typing import NamedTuple
 class Channel(NamedTuple):
     """A recorded topic.
 
-    `type` has the form of ROS 2, such as `std_msgs/msg/Bool`, also for bags of ROS 1. `definition` is the text of the
-    type, or empty if the bag has none. `latched` is true if the publisher kept its last message for late subscribers.
+    `type` has the form of ROS 2, such as `std_msgs/msg/Bool`, even for bags of ROS 1. `definition` is the
+    text of the type, or empty if the bag has none. `latched` is true if the publisher kept its last message
+    for late subscribers.
     """
 
     topic: str

@@ -51,7 +51,7 @@ def table(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def plain(text: str) -> str:
-    """Return a text without the characters that end a table cell or a code span."""
+    """Return a string without the characters that end a table cell or a code span."""
     return text.translate(_HARMLESS)
 
 

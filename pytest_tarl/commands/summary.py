@@ -126,7 +126,7 @@ def _picture(document: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _plain(text: object) -> str:
-    """Return a text without the characters that end a table cell, a code span or a title."""
+    """Return a string without the characters that end a table cell, a code span or a title."""
     return str(text).translate(_HARMLESS)
 
 

@@ -11,7 +11,7 @@ from tarl_lint.model import Span
 
 
 def units(text: str) -> int:
-    """Return the length of a text in UTF-16 code units."""
+    """Return the length of a string in UTF-16 code units."""
     return len(text) + sum(ord(character) > 0xFFFF for character in text)
 
 

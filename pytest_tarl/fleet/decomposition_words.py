@@ -27,7 +27,7 @@ def name(one: Component, parts: Decomposition) -> str:
 
 
 def problem(one: Component) -> str:
-    """Return why a component or its interval is unknown, or an empty text."""
+    """Return why a component or its interval is unknown, or an empty string."""
     if one.levels == 1:
         return "only one"
     if isnan(one.variance):

@@ -117,7 +117,7 @@ def _result(future: Future[Result]) -> Result:
 
 @contextmanager
 def local(workers: int) -> Iterator[Engine]:
-    """Return an engine for this process; linear algebra outside of tasks uses one thread, too."""
+    """Return an engine for this process; linear algebra outside tasks uses one thread, too."""
     with threadpool_limits(1, user_api="blas"):
         if workers == 1:
             yield Local(1, None)

@@ -48,7 +48,7 @@ _PLACE = re.compile(r"^(?:RTAMT Exception: )?\d+:(?P<column>\d+): Syntax ERROR, 
 
 
 class ReadingError(Exception):
-    """A text is not a formula; the message is the reason, without a full stop."""
+    """A string is not a formula; the message is the reason, without a full stop."""
 
 
 class _Strict(ErrorListener):  # type: ignore[misc]
@@ -61,7 +61,7 @@ class _Strict(ErrorListener):  # type: ignore[misc]
 
 
 def words(text: str) -> tuple[list[str], list[str]]:
-    """Return the names in a text and its other tokens. Raise ReadingError for characters not in the grammar."""
+    """Return the names in a string and its other tokens. Raise ReadingError for characters not in the grammar."""
     lexer = LtlLexer(InputStream(text))
     lexer.removeErrorListeners()
     lexer.addErrorListener(_Strict())

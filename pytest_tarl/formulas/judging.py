@@ -62,7 +62,7 @@ class Judge:
         return tuple(self._judged(one, end) for one in self.formulas)
 
     def unjudged(self, end: int) -> str:
-        """Return a sentence about a formula for which the episode was too short, or an empty text."""
+        """Return a sentence about a formula for which the episode was too short, or an empty string."""
         from pytest_tarl.formulas.reach import unjudged
 
         for one in self.formulas:
@@ -93,7 +93,7 @@ class Judge:
         return [after - before for before, after in zip([0.0, *capped], capped, strict=False)]
 
     def violation(self, judged: Sequence[Judged]) -> str:
-        """Describe the violated formulas, with the earliest violation first; return an empty text if all hold."""
+        """Describe the violated formulas, with the earliest violation first; return an empty string if all hold."""
         broken = sorted((one for one in judged if one.violated), key=lambda one: one.lost)
         return "\n".join(self._sentence(one) for one in broken)
 

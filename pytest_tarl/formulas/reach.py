@@ -12,7 +12,7 @@ Span = tuple[float, float]  # first and last instant in ns, both included
 
 
 def unjudged(tree: Any, end: float = math.inf) -> str:
-    """Return why a formula can never be judged in an episode that ends at `end` (ns), or an empty text.
+    """Return why a formula can never be judged in an episode that ends at `end` (ns), or an empty string.
 
     A formula is evaluated at the beginning of the episode, and its operands are evaluated at the instants that its
     operators reach from there. The reason has no full stop.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Said:
-    """The literal names in calls of `tarl.observe`, and the literal texts in calls of `tarl.require`.
+    """The literal names in calls of `tarl.observe`, and the literal strings in calls of `tarl.require`.
 
     `computed` says whether the test computes some observed name, `requires` whether it calls tarl.require.
     """

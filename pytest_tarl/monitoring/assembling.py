@@ -32,7 +32,7 @@ class Expected:
     number: Mapping[Cell, int]
 
     def problem(self, start: Record, path: Path) -> str:
-        """Return why missions after this `start` record are not comparable, or an empty text if they are."""
+        """Return why missions after this `start` record are not comparable, or an empty string if they are."""
         names = start.get("sensors", [])
         if [*names] != [*self.sensors]:
             return (

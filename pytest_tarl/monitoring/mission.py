@@ -78,7 +78,7 @@ def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int)
 
 
 def mark(spot: Spot) -> str:
-    """Return a text that identifies a record: its length and checksum."""
+    """Return a string that identifies a record: its length and checksum."""
     _, length, checksum = spot
     return f"{length}:{checksum}"
 

@@ -141,7 +141,7 @@ def _target(source: Document, node: ast.expr) -> str:
 
 
 def computed_at(name: str, files: Mapping[str, str]) -> str:
-    """Return where a Python launch file computes a parameter in a way that cannot be changed, as a text, or ""."""
+    """Return where a Python launch file computes a parameter in a way that cannot be changed, as a string, or ""."""
     key = re.split(r"[/.~]", name)[-1]
     for path, text in files.items():
         source = _python(path, text) if _kind(Path(path)) == "launch.py" else None
@@ -196,7 +196,7 @@ def _written(node: ast.expr | None) -> ast.expr | None:
 
 
 def _number(node: ast.expr | None) -> bool | int | float | None:
-    """Return the value of a literal number, with its sign, or of a text that is one; None for other expressions."""
+    """Return the value of a literal number, with its sign, or of a string that is one; None for other expressions."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str) and re.fullmatch(_NUMERAL, node.value):
         return int(node.value) if _PLAIN.fullmatch(node.value) else float(node.value)
     sign = 1

@@ -180,7 +180,7 @@ def _operated(operator: ast.operator, left: float, right: float) -> float:
 
 
 def _written(node: ast.expr) -> bool | int | float | None:
-    """Return the number that a constant is, also as a text; None for other expressions."""
+    """Return the number that a constant is, also as a string; None for other expressions."""
     sign, inner = 1, node
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         sign, inner = -1, node.operand

@@ -1,7 +1,7 @@
 """Patches of rclpy: its waits, clocks and context, and hooks for sent messages.
 
 Executors, callbacks, parameters, profiles, messages and the middleware stay unchanged. Every replacement checks the
-running task; outside of nodes, it calls the original.
+running task; outside nodes, it calls the original.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ def conditions(
 
 
 def changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
-    """Return in words what differs between two runs, or an empty text."""
+    """Return in words what differs between two runs, or an empty string."""
     found = list(_changes(before, now))
     more = f" and {len(found) - NAMED} more" if len(found) > NAMED else ""
     return "; ".join(found[:NAMED]) + more

@@ -117,7 +117,7 @@ class _Begun:
 
 
 def scope_of(instruments: Instruments, sensors: tuple[Sensor, ...]) -> bytes:
-    """Return a digest of what a rollout observes in its episodes."""
+    """Return a digest of the sites, publishers and sensors that a rollout observes."""
     positions = {
         str(path): sorted([*place, number] for place, number in places.items())
         for path, places in sorted(instruments.positions.items())

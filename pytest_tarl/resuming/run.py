@@ -48,7 +48,7 @@ class ResumableTest:
         return KeptRollout(rollout, self.journal, scope, self._shown, checked=checked)
 
     def interrupted(self) -> str:
-        """Return a sentence about the episodes that an interrupted run kept, or an empty text."""
+        """Return a sentence about the episodes that an interrupted run kept, or an empty string."""
         if self.journal is None:
             return ""
         if self.journal.problem is not None:

@@ -1,4 +1,4 @@
-"""Find the user code that caused an event: the innermost frame outside of libraries."""
+"""Find the user code that caused an event: the innermost frame outside libraries."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class Subscription(Protocol):
         """The process that subscribes."""
 
     def deliver(self, message: Any, origin: Publication | None = None) -> None:
-        """Receive a message. `origin` is None if the world sent the message. Call this outside of all tasks.
+        """Receive a message. `origin` is None if the world sent the message. Call this outside all tasks.
 
         The caller keeps no reference to the message.
         """

@@ -73,9 +73,9 @@ class Terminal(io.TextIOBase):
         return self._take(min(self._typed.find("\n") + 1 or limit, limit))
 
     def key(self, patience: int | None) -> str:
-        """Return the next typed character, as a window gets it; an empty text after `patience` (ns; None: no limit).
+        """Return the next typed character, as a window gets it; an empty string after `patience` (ns; None: no limit).
 
-        At the end of the episode return an empty text at once.
+        At the end of the episode return an empty string at once.
         """
         scheduler = self._process.scheduler
         until = None if patience is None else scheduler.time + patience
@@ -196,7 +196,7 @@ class _StandardInput:
 
 
 def own_terminal() -> Terminal | None:
-    """Return the terminal of the running node, or None outside of nodes."""
+    """Return the terminal of the running node, or None outside nodes."""
     process = running_process()
     return process.part(Terminal) if process is not None else None
 

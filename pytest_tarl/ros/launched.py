@@ -82,7 +82,7 @@ def _starts(workspace: Workspace, script: Path) -> list[tuple[Launch, LaunchedNo
 
 
 def _source(workspace: Workspace, launch: Launch, node: LaunchedNode) -> Source:
-    """Return a launch file as the source of what it gives a node."""
+    """Return a launch file as the source of the settings that it gives a node."""
     package = workspace.package_of(launch.file)
     name = f"{package.name}/{launch.file.name}" if package is not None else launch.file.name
     own = node.name if node.name and "$(" not in node.name else node.executable

@@ -92,7 +92,7 @@ def get_pkg_dir(package: str, required: bool = True) -> str | None:
 
 
 def get_package_name(path: str) -> str | None:
-    """Return the name of the package that contains a path, or None outside of packages."""
+    """Return the name of the package that contains a path, or None outside packages."""
     place = Path(path).resolve()
     around = [
         (len(folder.parts), name)
@@ -103,7 +103,7 @@ def get_package_name(path: str) -> str | None:
 
 
 def get_dir_pkg(d: str) -> tuple[str | None, str | None]:
-    """Return folder and name of the package that contains a path; (None, None) outside of packages."""
+    """Return folder and name of the package that contains a path; (None, None) outside packages."""
     name = get_package_name(d)
     return (None, None) if name is None else (str(_folder(name)), name)
 

@@ -137,7 +137,7 @@ class Process:
             self.scheduler.later(self.end)
 
     def end(self) -> None:
-        """End the process: call hooks, let every task return, then kill the rest. Called outside of tasks."""
+        """End the process: call hooks, let every task return, then kill the rest. Called outside tasks."""
         if self._closing:
             return
         self._closing = True
@@ -156,7 +156,7 @@ class Process:
         self.bus.disconnect(self)
 
     def kill(self) -> None:
-        """End the process immediately without running its hooks, as SIGKILL does. Call this outside of tasks."""
+        """End the process immediately without running its hooks, as SIGKILL does. Call this outside tasks."""
         self._closing = self.ending = True
         for _ in range(_ROUNDS):
             for task in tuple(self.tasks):
@@ -207,7 +207,7 @@ class Process:
 
 
 def _status(error: SystemExit) -> str:
-    """Return the exit status; for an exit with a text, return 1 (as Python does) and the first line of the text."""
+    """Return the exit status; for an exit with a string, return 1 (as Python does) and the first line of the string."""
     if isinstance(error.code, int):
         return str(error.code)
     first = next((one.strip() for one in str(error.code).splitlines() if one.strip()), "")
@@ -220,18 +220,18 @@ def _of_pytest(error: BaseException) -> bool:
 
 
 def running_process() -> Process | None:
-    """Return the process of the running task, or None outside of nodes."""
+    """Return the process of the running task, or None outside nodes."""
     task = running_task()
     return task.process if task is not None and isinstance(task.process, Process) else None
 
 
 def current_process(api: str) -> Process:
-    """Return the process of the running task. Raise UnsupportedApiError outside of nodes."""
+    """Return the process of the running task. Raise UnsupportedApiError outside nodes."""
     process = running_process()
     if process is not None:
         return process
     raise UnsupportedApiError(
-        f"{api} was called outside of a node, or from a thread that the node started: the in-process ROS "
+        f"{api} was called outside a node, or from a thread that the node started: the in-process ROS "
         "serves only programs started by tarl.start(…), and each only in the thread in which it was "
         "started. In the test itself use "
         "tarl.bus and tarl.step."

@@ -114,7 +114,7 @@ class Worker(greenlet):
 def hand_over() -> Any:
     """Switch to the greenlet that resumed the running one; return the value passed at the next resumption.
 
-    Raise RuntimeError outside of tasks.
+    Raise RuntimeError outside tasks.
     """
     parent = getcurrent().parent
     if parent is None:
@@ -123,13 +123,13 @@ def hand_over() -> Any:
 
 
 def running_task() -> Task | None:
-    """Return the running task, or None outside of tasks."""
+    """Return the running task, or None outside tasks."""
     worker = getcurrent()
     return worker.task if isinstance(worker, Worker) else None
 
 
 def current_task() -> Task:
-    """Return the running task. Raise RuntimeError outside of tasks."""
+    """Return the running task. Raise RuntimeError outside tasks."""
     task = running_task()
     if task is None:
         raise RuntimeError("only a task has a current task")
@@ -155,7 +155,7 @@ class Scheduler:
     def wait(self, until: int | None = None) -> bool:
         """Suspend the running task until the instant `until` or until woken; return whether it was woken.
 
-        Raise RuntimeError outside of tasks.
+        Raise RuntimeError outside tasks.
         """
         worker = getcurrent()
         task = worker.task if isinstance(worker, Worker) else None
@@ -184,7 +184,7 @@ class Scheduler:
             self._ready.append(partial(self._resume, task, True))
 
     def spawn(self, process: Program, function: Callable[..., Any], *args: Any) -> Task:
-        """Start a task: at once if called outside of tasks, else as soon as the running task waits."""
+        """Start a task: at once if called outside tasks, else as soon as the running task waits."""
         task = Task(process, function, args)
         process.tasks.append(task)
         if running_task() is not None:
@@ -194,11 +194,11 @@ class Scheduler:
         return task
 
     def later(self, job: Callable[[], None]) -> None:
-        """Call a function outside of tasks, as soon as the running task waits."""
+        """Call a function outside tasks, as soon as the running task waits."""
         self._ready.append(job)
 
     def at(self, instant: int, job: Callable[[], None]) -> None:
-        """Call a function outside of tasks at a virtual time (ns), before the tasks that wake at this time."""
+        """Call a function outside tasks at a virtual time (ns), before the tasks that wake at this time."""
         self._sequence += 1
         heappush(self._alarms, (instant, self._sequence, job))
 

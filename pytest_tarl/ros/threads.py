@@ -30,7 +30,7 @@ _PASSED_THROUGH = (
 
 @contextmanager
 def threads_as_tasks() -> Iterator[None]:
-    """Replace the threads and locks of `threading` while nodes run; code outside of nodes gets the real ones."""
+    """Replace the threads and locks of `threading` while nodes run; code outside nodes gets the real ones."""
     replaced = [
         (threading, "Lock", _instead(threading.Lock, Lock)),
         (threading, "RLock", _instead(threading.RLock, ReentrantLock)),

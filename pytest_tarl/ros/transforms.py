@@ -26,7 +26,7 @@ class ConnectivityException(TransformException):
 
 
 class ExtrapolationException(TransformException):
-    """An instant lies outside of the received transforms."""
+    """An instant lies outside the received transforms."""
 
 
 class InvalidArgumentException(TransformException):
@@ -107,7 +107,7 @@ class Edge:
     def at(self, time: int, child: str) -> Rigid:
         """Return the interpolated pose at an instant (0: the latest).
 
-        Raise ExtrapolationException outside of the received data.
+        Raise ExtrapolationException outside the received data.
         """
         if self.static or time == 0:
             return self.poses[self.times[-1]]
@@ -166,7 +166,7 @@ class TransformTree:
         """Return the pose of `source` in `target`, and its instant (0 requests the latest common one).
 
         Raise LookupException for an unknown frame, ConnectivityException if the frames are in different trees, and
-        ExtrapolationException outside of the received data.
+        ExtrapolationException outside the received data.
         """
         target, source = self._known(target), self._known(source)
         up, down = self._way_up(source), self._way_up(target)

@@ -258,7 +258,7 @@ def _fold_text(values: list[Value]) -> frozenset[object] | None:
 
 
 def _symbolic(results: frozenset[object]) -> frozenset[object] | None:
-    """Mark the results of an operator on texts that the launch determines; None if a result is not a text."""
+    """Mark the results of an operator on strings that the launch determines; None if a result is not a string."""
     if not all(isinstance(one, str) for one in results):
         return None
     return frozenset(Symbolic(one) for one in results)

@@ -71,7 +71,7 @@ class _Exits:
     ] = ()  # (what a handler catches, its first statement), inner ones first
 
     def of(self, name: str, types: ExceptionTypes) -> list[int]:
-        """Return where an exception may continue: at handlers, or outside of the function."""
+        """Return where an exception may continue: at handlers, or outside the function."""
         targets: list[int] = []
         for handled, entry in self.handlers:
             caught = types.catches(handled, name)

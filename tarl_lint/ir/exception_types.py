@@ -58,7 +58,7 @@ _SAME: Final[Mapping[str, str]] = {
 class ExceptionTypes:
     """The classes of the analysed files that may be exceptions: name → names of the base classes.
 
-    `several` are the names that stand for more than one class.
+    `several` are the names that refer to more than one class.
     """
 
     bases: Mapping[str, frozenset[str]] = field(default_factory=dict)
@@ -115,7 +115,7 @@ NO_CLASSES: Final = ExceptionTypes()
 
 
 def exception_types(trees: Iterable[ast.Module]) -> ExceptionTypes:
-    """Return the classes that the files define outside of functions."""
+    """Return the classes that the files define outside functions."""
     bases: dict[str, frozenset[str]] = {}
     several: set[str] = set()
     for tree in trees:
@@ -142,7 +142,7 @@ def handled_by(types: ir.Expr | None) -> Handled:
 
 
 def _called(expr: ir.Expr | None) -> str:
-    """Return the name of a class; a library's class is told apart from the builtin class of that name."""
+    """Return the name of a class; a library's class is distinguished from the builtin class of that name."""
     if isinstance(expr, ir.Attribute):
         return f".{expr.name}" if expr.name in BUILTIN else expr.name
     return _SAME.get(expr.name, expr.name) if isinstance(expr, ir.Name) else UNKNOWN

@@ -61,7 +61,7 @@ class Slice:
 
 @dataclass(slots=True, eq=False)
 class Call:
-    """A call; keyword None stands for `**`."""
+    """A call; keyword None means `**`."""
 
     function: Expr
     arguments: Sequence[Expr]
@@ -104,7 +104,7 @@ class SequenceDisplay:
 
 @dataclass(slots=True, eq=False)
 class MappingDisplay:
-    """A dict literal; key None stands for `**`."""
+    """A dict literal; key None means `**`."""
 
     items: Sequence[tuple[Expr | None, Expr]]
     pos: Pos

@@ -87,7 +87,7 @@ def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
 
 
 def defined(ctx: Interpreter, obj: Obj) -> str:
-    """Return the name of a message's definition, also for a nested message; empty if unknown."""
+    """Return the name of the definition of a message, which may be nested; empty if unknown."""
     if obj.parent is None or not obj.whole.defined:
         return obj.whole.defined
     outer = FIELDS.get(defined(ctx, obj.parent), {})

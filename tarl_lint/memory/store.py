@@ -52,7 +52,7 @@ class Store:
     hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
     insides: dict[object, Inside] = field(default_factory=dict)  # cached results of `deep`
     wide: set[frozenset[Obj]] = field(default_factory=set)  # few objects from which `deep` visits many
-    tick: int = 0  # number of changes so far of the state outside of frames
+    tick: int = 0  # number of changes so far of the state outside frames
     split: dict[frozenset[Obj], Split] = field(default_factory=dict)
     versions: dict[Obj, int] = field(
         default_factory=dict

@@ -1,7 +1,7 @@
-"""Texts that stand for parameters in the names of topics, until the launch of a node gives their values.
+"""Strings that stand for parameters in the names of topics, until the launch of a node gives their values.
 
 The topic of `rospy.Subscriber(rospy.get_param("~scan", "scan") + "/front", …)` is known only at launch. In a run that
-follows such names, `get_param` returns a text with a mark, which string operations keep.
+follows such names, `get_param` returns a string with a mark, which string operations keep.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def text_of_parameter(known: list[ParameterName] | None, name: str, default: Val
 
 
 def with_default(default: Value) -> Consts:
-    """Return the texts of a value that only the robot gives, with a default; None if the default is not a string."""
+    """Return the strings of a value that only the robot gives, with a default; None if the default is not a string."""
     if default.pts or not default.names():
         return None
     return frozenset([GIVEN, *(default.consts or ())])

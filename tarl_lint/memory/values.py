@@ -144,7 +144,7 @@ Key = tuple[Obj, str]
 
 
 class Symbolic(str):
-    """A text that contains a parameter's value, which only the launch of the node determines."""
+    """A string that contains a parameter's value, which only the launch of the node determines."""
 
     __slots__ = ()
 
@@ -192,7 +192,7 @@ class Value:
         return self.constant()[0]
 
     def keys(self) -> Consts:
-        """Return its constants; None if it may be anything else, such as a text that the launch determines."""
+        """Return its constants; None if it may be anything else, such as a string that the launch determines."""
         return None if self.consts and any(type(c) is Symbolic for c in self.consts) else self.consts
 
     def consts_in(self, other: Value) -> bool:
@@ -206,7 +206,7 @@ class Value:
     def names(self) -> tuple[str, ...]:
         """Return its possible strings, sorted, including those that the launch of the node determines.
 
-        A text that only the robot gives is left out; the other strings are then defaults.
+        A string that only the robot gives is left out; the other strings are then defaults.
         """
         if self.consts is None or not all(isinstance(c, str) for c in self.consts):
             return ()
@@ -289,13 +289,13 @@ class ClassInfo:
 
     @property
     def opaque(self) -> bool:
-        """Return whether code outside of the files can access its instances' attributes and call its methods."""
+        """Return whether code outside the files can access its instances' attributes and call its methods."""
         inherited = any(isinstance(b.info, ClassInfo) and b.info.opaque for b in self.bases)
         return inherited or any(not _plain(e) for e in self.external)
 
 
 def inherited_from(value: Value) -> set[str]:
-    """Return the base classes outside of the files, which may define a missing method."""
+    """Return the base classes outside the files, which may define a missing method."""
     classes = {o.info for o in value.pts if o.kind == "instance" and isinstance(o.info, Obj)}
     infos = [c.info for cls in classes for c in lineage(cls)]
     return {e for i in infos if isinstance(i, ClassInfo) for e in i.external if "." in e and not _plain(e)}

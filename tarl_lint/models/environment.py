@@ -37,7 +37,7 @@ def text_of(base: Value) -> Value | None:
 
 
 def option(ctx: Interpreter, it: Invocation) -> None:
-    """Record the default of an option that `add_argument` declares, if it is a text."""
+    """Record the default of an option that `add_argument` declares, if it is a string."""
     plain, named = it.arguments
     consts = with_default(named.get("default", BOTTOM))
     flags = [text for value in plain for text in value.texts()]

@@ -68,7 +68,7 @@ def asked(ctx: Interpreter, it: Invocation) -> Value | None:
 
 
 def _parsed(text: str) -> object:
-    """Parse a text as lists, mappings, texts and numbers; nothing is executed."""
+    """Parse a string as lists, mappings, strings and numbers; nothing is executed."""
     for read in (ast.literal_eval, json.loads) if len(text) <= MAX_TEXT else ():
         try:
             found = read(text)

@@ -1,4 +1,4 @@
-"""Remove elements of containers, and reorder them: the conditions of a removal decide about all that is left."""
+"""Remove and reorder elements of containers: the remaining ones depend on the conditions of a removal."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Decision:
 def decision(
     ctx: Interpreter, frame: Frame, slot: Hashable, decides: Nodes = NONE, *, counts: Nodes = NONE
 ) -> Decision:
-    """Return the decision about a removal: its conditions, and `decides`; `counts` also decides about the length."""
+    """Return the nodes that decide a removal: its conditions, and `decides`; the length also depends on `counts`."""
     left = ctx.node(frame, ("moved", slot), "call")
     ctx.graph.flow(decides | counts, left)
     length = ctx.node(frame, ("taken", slot), "call")

@@ -48,7 +48,7 @@ def text_of(ctx: Interpreter, base: Value, name: str, arguments: Arguments) -> C
 
 
 def pieces(ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value | None:
-    """Return the list that `split` makes of a text; None if the text or an argument is not known."""
+    """Return the list that `split` makes of a string; None if the string or an argument is not known."""
     known, text = base.constant()
     given = [value.constant() for value in arguments[0]]
     if not known or not isinstance(text, str) or arguments[1] or not all(found for found, _ in given):

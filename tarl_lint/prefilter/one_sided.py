@@ -68,7 +68,7 @@ def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) 
     if hears and any(
         _inherits_from_elsewhere(m.tree, {m.name.partition(".")[0] for m in modules}) for m in modules
     ):
-        # a base class outside of the files may receive the messages; the report then has a note that names the class
+        # a base class outside the files may receive the messages; the report then has a note that names the class
         return False
     side = Side(modules, texts, hears, says)
     return all(_ruled_out(rule, side) for rule in rules if config.enabled(rule.CODE))

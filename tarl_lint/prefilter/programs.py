@@ -1,7 +1,7 @@
 """Split a group of modules into programs, which run in separate processes.
 
 A program is a file that is run, with its imports. Since programs run in separate processes, no value reaches one from
-another through a module that both import. Programs are analysed separately, also after an edit. Programs are
+another through a module that both import. Programs are analysed separately, even after an edit. Programs are
 analysed together only if a flow may begin or end in a common module. The flow is then reported once, with the
 statements of all programs.
 """

@@ -1,4 +1,4 @@
-"""Modules that record what an analysis reads of them: bodies of functions, and answers about the text.
+"""Modules that record which function bodies an analysis reads, and which answers about the text it gets.
 
 A run that has read neither a function's body nor the whole text does not depend on that body. Reads are recorded where
 they happen, so the reads of new code are recorded, too. Looking up statements for a report is not recorded, since a
@@ -91,7 +91,7 @@ class Watched(Module):
 
 
 def watched(module: Module) -> Watched:
-    """Return a module that records from now on what is read of it; it shares the syntax tree with the given one."""
+    """Return a module with the same syntax tree that records which of its parts are read from now on."""
     for function in [*_functions(module.tree.body)]:
         function.body = Body(unwatched(function.body))
     return Watched(

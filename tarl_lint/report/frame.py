@@ -26,7 +26,7 @@ def frame(source: Sequence[str], span: Span, style: Style, view: View) -> Iterat
 
 
 def lines_of(text: str) -> list[str]:
-    """Split a text into lines as Python counts them; a form feed does not end a line."""
+    """Split a string into lines as Python counts them; a form feed does not end a line."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 

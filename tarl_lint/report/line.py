@@ -67,7 +67,7 @@ def one_line(path: str) -> str:
 
 
 def columns(text: str) -> int:
-    """Return the width of a text in terminal columns."""
+    """Return the width of a string in terminal columns."""
     if text.isascii():
         return len(text)
     return sum(_columns(character) for character in text)
@@ -87,7 +87,7 @@ def tabs(text: str) -> str:
 
 
 def crop(text: str, width: int, dots: str) -> str:
-    """Return a text shortened to a width in columns; a width of 0 or less leaves it whole."""
+    """Return a string shortened to a width in columns; a width of 0 or less leaves it whole."""
     if width <= 0 or columns(text) <= width:
         return text
     while text and columns(text) > width - len(dots):

@@ -47,6 +47,6 @@ def _edges(part: Part, name: str, numbers: dict[str, str]) -> Iterator[str]:
 
 
 def quoted(text: str) -> str:
-    """Return a text quoted, so that nothing in it is read as syntax or markup."""
+    """Return a string quoted, so that nothing in it is read as syntax or markup."""
     escaped = text.replace("#", "#35;").replace('"', "#quot;").replace("<", "#lt;").replace(">", "#gt;")
     return '"' + escaped.replace("`", "#96;").replace("\n", "<br/>") + '"'

@@ -29,7 +29,7 @@ _CONTROLS: Final = {
 
 
 def harmless(text: str) -> str:
-    """Return a text with control characters and direction marks escaped, for a terminal."""
+    """Return a string with control characters and direction marks escaped, for a terminal."""
     return text.translate(_CONTROLS)
 
 

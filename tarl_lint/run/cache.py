@@ -108,7 +108,7 @@ class Cache:
         return found
 
     def put_entry(self, key: str, entry: object) -> None:
-        """Store lists, texts and numbers under a key."""
+        """Store lists, strings and numbers under a key."""
         if self._file is not None:
             self._used[key] = entry
 
@@ -159,7 +159,7 @@ def opened(paths: Sequence[Path], config: Config, of: str = "", spare: int = 0) 
 
 
 def digest(texts: Iterable[str]) -> str:
-    """Return a digest of a sequence of texts."""
+    """Return a digest of a sequence of strings."""
     made = blake2b(digest_size=16)
     for text in texts:
         data = text.encode("utf-8", "surrogatepass")

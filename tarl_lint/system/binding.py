@@ -87,7 +87,7 @@ def whole(values: Mapping[str, Any], full_name: str) -> Mapping[str, object]:
 
 
 def _plain(value: object) -> bool:
-    """Return whether a value consists of texts, numbers, lists and mappings that the launch determines."""
+    """Return whether a value consists of strings, numbers, lists and mappings that the launch determines."""
     if isinstance(value, list):
         return all(map(_plain, value))
     if isinstance(value, dict):
@@ -214,7 +214,7 @@ class _Namer:
         return None if one.default is None else self._deeper(one.default)
 
     def _deeper(self, text: str) -> str | None:
-        """Return a text with the values of its parts, which may contain parts themselves."""
+        """Return a string with the values of its parts, which may contain parts themselves."""
         if self._depth >= DEEPEST:
             return None
         self._depth += 1

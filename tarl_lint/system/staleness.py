@@ -78,7 +78,7 @@ def _reset(value: ast.expr) -> bool:
 
 
 def _repeated(flow: Flow, texts: Mapping[str, str], every: Set[str]) -> bool:
-    """Return whether the publish call of a flow runs outside of all callbacks of messages."""
+    """Return whether the publish call of a flow runs outside all callbacks of messages."""
     if flow.kind != "explicit" or flow.sink.type not in COMMANDS or "ubscri" not in flow.source.api:
         return False
     callbacks = {name.strip() for name in flow.source.callback.split(",")}

@@ -96,7 +96,7 @@ def _stripped(text: str) -> tuple[str, bool]:
 
 
 def _conjuncts(text: str) -> Iterator[str]:
-    """Split a condition at each `and` outside of parentheses."""
+    """Split a condition at each `and` outside parentheses."""
     depth = start = 0
     for index, letter in enumerate(text):
         depth += {"(": 1, ")": -1}.get(letter, 0)

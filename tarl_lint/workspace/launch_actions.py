@@ -48,7 +48,7 @@ class Condition:
 
 @dataclass(frozen=True)
 class Quoted:
-    """A parameter value with its type: `str` keeps a text unchanged, other types parse it as YAML."""
+    """A parameter value with its type: `str` keeps a string unchanged, other types parse it as YAML."""
 
     value: Any
     kind: str = ""

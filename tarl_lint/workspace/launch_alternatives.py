@@ -106,7 +106,7 @@ def _one_of_two(one: Any, other: Any, text: str, other_text: str, line: int) -> 
 
 
 def _remaps(value: Any) -> bool:
-    """Return whether a value is a list of pairs that begin with a text."""
+    """Return whether a value is a list of pairs that begin with a string."""
     return isinstance(value, list) and all(
         isinstance(one, tuple) and len(one) == 2 and isinstance(one[0], str) for one in value
     )

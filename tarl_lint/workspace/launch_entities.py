@@ -152,7 +152,7 @@ def _value(entity: Entity) -> Any:
 
 
 def _separated(parts: list[str], texts: bool) -> list[Any]:
-    """Return the list of an attribute with a separator: numbers or truth values if all parts are, otherwise texts."""
+    """Return the list of an attribute with a separator: numbers or truth values if all parts are, otherwise strings."""
     if any("$(" in one for one in parts):
         return [[substitutions(one)] for one in parts]
     for kind in () if texts else (int, float, _TRUTHS.__getitem__):
@@ -169,7 +169,7 @@ def _condition(entity: Entity) -> dict[str, Condition]:
 
 
 def substitutions(text: str) -> Any:
-    """Parse the substitutions `$(…)` in a text; a text without substitutions is returned unchanged."""
+    """Parse the substitutions `$(…)` in a string; a string without substitutions is returned unchanged."""
     parts: list[Any] = []
     place = 0
     while (start := text.find("$(", place)) >= 0:

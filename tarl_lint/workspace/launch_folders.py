@@ -23,7 +23,7 @@ def listings(inside: Callable[[Any], Path | None]) -> dict[str, Callable[..., An
     def folder(path: Any) -> Path:
         place = inside(path)
         if place is None:
-            raise OpaqueError("a folder outside of the workspace")
+            raise OpaqueError("a folder outside the workspace")
         return place
 
     def entries(path: Any) -> list[str]:

@@ -35,7 +35,7 @@ class IniFile:
         for name in [names] if not isinstance(names, list | tuple) else names:
             place = self._inside(name)
             if place is None:
-                raise OpaqueError("a file outside of the workspace")
+                raise OpaqueError("a file outside the workspace")
             if place.is_file():
                 self.read_string(_text(place))
                 found.append(str(name))

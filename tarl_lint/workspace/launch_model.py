@@ -59,7 +59,7 @@ class LaunchedNode:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """A launch file with its included files. `settings` are the parameters outside of nodes.
+    """A launch file with its included files. `settings` are the parameters outside nodes.
 
     `arguments` are the names of its launch arguments, and `required` those without a value or default; `ros2` says
     whether it is for ROS 2.

@@ -1,6 +1,6 @@
-"""Substitutions of ROS 2 launch files, and their texts.
+"""Substitutions of ROS 2 launch files, and their strings.
 
-A text known only on the robot stays symbolic: it contains what it depends on as `$(…)`, as in `/$(var robot)/odom`.
+A string known only on the robot stays symbolic: it contains what it depends on as `$(…)`, as in `/$(var robot)/odom`.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class Context:
         return known(performed(value, self))
 
     def inside(self) -> Context:
-        """Return the context of a group; its settings do not apply outside of the group."""
+        """Return the context of a group; its settings do not apply outside the group."""
         return Context(
             self.workspace,
             self.file,
@@ -114,7 +114,7 @@ class _Configurations(dict[str, Any]):
 
 
 class Substitution:
-    """A text that depends on the context. Launch files call `perform` in an OpaqueFunction."""
+    """A string that depends on the context. Launch files call `perform` in an OpaqueFunction."""
 
     readable: ClassVar = frozenset({"perform"})
 
@@ -286,7 +286,7 @@ class Content(Substitution):
 
 @dataclass(frozen=True)
 class OnRobot(Substitution):
-    """A text known only on the robot: a command's output, an environment variable without a default."""
+    """A string known only on the robot: a command's output, an environment variable without a default."""
 
     what: str
     default: Any = None
@@ -319,16 +319,16 @@ def performed(value: Any, context: Context, depth: int = 0) -> str:
 
 
 def symbolic(text: str) -> bool:
-    """Return whether a text depends on values known only on the robot."""
+    """Return whether a string depends on values known only on the robot."""
     return "$(" in text
 
 
 def known(text: str) -> Any:
-    """Return a text; Unknown if it is symbolic."""
+    """Return a string; Unknown if it is symbolic."""
     return Unknown(0, text.removeprefix("$(").removesuffix(")")) if symbolic(text) else text
 
 
 def truth(text: str) -> bool | None:
-    """Return the boolean that a text represents; None if it is symbolic or not a boolean."""
+    """Return the boolean that a string represents; None if it is symbolic or not a boolean."""
     plain = text.strip().lower()
     return True if plain in TRUE else False if plain in FALSE else None

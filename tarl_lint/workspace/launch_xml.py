@@ -274,7 +274,7 @@ def read_xml(path: Path, workspace: Workspace, arguments: Mapping[str, str] | No
 
 
 def _overridden(node: LaunchedNode, later: Iterable[Setting]) -> LaunchedNode:
-    """Return a node with the private parameters that the launch file sets after the node, outside of it."""
+    """Return a node with the private parameters that the launch file sets after the node, outside it."""
     full = joined(node.namespace, node.name)
     within = (one for one in later if node.name and f"{one.name}/".startswith(f"{full}/"))
     own = (replace(one, name=f"~{one.name[len(full) :].lstrip('/')}") for one in within)
@@ -282,7 +282,7 @@ def _overridden(node: LaunchedNode, later: Iterable[Setting]) -> LaunchedNode:
 
 
 def _perhaps(text: str, condition: str) -> str:
-    """Return a text that counts under a condition; it is symbolic unless the condition is ""."""
+    """Return a string that counts under a condition; it is symbolic unless the condition is ""."""
     return f"$({text} {condition})" if condition else text
 
 

@@ -101,7 +101,7 @@ def _package(found: _Found) -> Package:
     problems: list[Problem] = []
     if found.declared:
         declared, problems = manifest(found.folder)
-    else:  # definitions outside of packages get the folder's name as package name
+    else:  # definitions outside packages get the folder's name as package name
         declared = Manifest(found.folder.name, "unknown")
     executables, modules, more = installed(found.folder, declared, found.scripts)
     return Package(

@@ -76,7 +76,7 @@ def first_of_each(remaps: Iterable[tuple[str, str]], namespace: str, node: str) 
 
 
 def _is_name(text: str) -> bool:
-    """Return whether a text can be the name of a topic; nodes also get values in this form, as in `debug:=false`."""
+    """Return whether a string can be the name of a topic; nodes also get values in this form, as in `debug:=false`."""
     return _NAME.fullmatch(text) is not None and text not in ("true", "false", "True", "False")
 
 

@@ -22,9 +22,10 @@ _TRUTH: Final = {"true": True, "false": False}
 
 
 class SymbolicError(Exception):
-    """A text depends on values that are known only on the robot.
+    """A string depends on values that are known only on the robot.
 
-    The message is the reason. `text` is what stands for the text, such as `$(env ROBOT)`; "" if it stands for itself.
+    The message is the reason. `text` represents the value, such as `$(env ROBOT)`; if it is empty, the
+    original text does.
     """
 
     def __init__(self, reason: str, text: str = "") -> None:
@@ -45,7 +46,7 @@ class Scope:
     arguments: Mapping[str, str | None]
 
     def text(self, text: str) -> str:
-        """Return a text with its substitutions replaced. Raises SymbolicError if a substitution has no value."""
+        """Return a string with its substitutions replaced. Raises SymbolicError if a substitution has no value."""
         if text.startswith(_EVAL) and text.endswith(")"):
             return str(self._evaluated(text[len(_EVAL) : -1]))
         replaced = _ARGUMENT.sub(lambda found: self._replaced(found[1].split()), text)
@@ -54,7 +55,7 @@ class Scope:
         return replaced
 
     def symbolic(self, text: str) -> tuple[str, list[str]]:
-        """Return a text with parts known only on the robot as `$(arg robot)`, and the reasons for them."""
+        """Return a string with parts known only on the robot as `$(arg robot)`, and the reasons for them."""
         reasons: list[str] = []
 
         def replaced(found: re.Match[str]) -> str:

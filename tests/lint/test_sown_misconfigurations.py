@@ -58,7 +58,7 @@ SOWN: dict[str, tuple[str, str, list[Edit]]] = {
         "TARL301", "/scout/planner subscribes to /scout/obstacle ",
         [(PLANNER, '"obstacles"', '"obstacle"')],
     ),
-    "one part is launched outside of the namespace": (
+    "one part is launched outside the namespace": (
         "TARL301", "/scout/planner subscribes to /scout/obstacles",
         [(BRINGUP, INCLUDE, ""),
          (BRINGUP, "Description([Declare", "Description([IncludeLaunchDescription(perception), Declare")],

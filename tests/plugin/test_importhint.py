@@ -46,7 +46,7 @@ def test_the_error_of_a_test_inside_a_package_that_imports_ros_advises_moving_th
     )
     result = tank.runpytest(str(tests))
     result.stdout.fnmatch_lines(
-        ["*whose __init__.py imports ROS*move the test to a folder outside of the package*"]
+        ["*whose __init__.py imports ROS*move the test to a folder outside the package*"]
     )
 
 

@@ -40,7 +40,7 @@ def list_to_pose(pose_list: Sequence[float]) -> Any:
 
 
 def list_to_pose_stamped(pose_list: Sequence[float], target_frame: str) -> Any:
-    """Return the pose of a list, in a frame at the present time."""
+    """Return the pose of a list, in a frame at the current time."""
     from pytest_tarl.ros.rospy.timing import Time
 
     stamped: Any = class_of("ros1", "geometry_msgs/PoseStamped")()

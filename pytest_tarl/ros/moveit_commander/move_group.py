@@ -151,13 +151,13 @@ class MoveGroupCommander(Targets):
         return SUCCESS, {name: self._goal[name] for name in self._group.joints}
 
     def set_max_velocity_scaling_factor(self, value: float) -> None:
-        """Set the share of the speed limits. Raise MoveItCommanderException outside of (0, 1]."""
+        """Set the share of the speed limits. Raise MoveItCommanderException outside (0, 1]."""
         if not 0 < value <= 1:
             raise MoveItCommanderException("Expected value in the range from 0 to 1 for scaling factor")
         self._share = value
 
     def set_max_acceleration_scaling_factor(self, value: float) -> None:
-        """Raise MoveItCommanderException outside of (0, 1]; accelerations are not considered."""
+        """Raise MoveItCommanderException outside (0, 1]; accelerations are not considered."""
         if not 0 < value <= 1:
             raise MoveItCommanderException("Expected value in the range from 0 to 1 for scaling factor")
 

@@ -47,7 +47,7 @@ class RobotCommander:
         return min(owners, key=lambda one: len(one.joints)).name if owners else None
 
     def get_current_state(self) -> Any:
-        """Return the present joint values as a RobotState."""
+        """Return the current joint values as a RobotState."""
         state: Any = class_of("ros1", "moveit_msgs/RobotState")()
         now = self._motions.state(self._model)
         state.joint_state.header.frame_id = self.get_planning_frame()
@@ -55,7 +55,7 @@ class RobotCommander:
         return state
 
     def get_current_variable_values(self) -> dict[str, float]:
-        """Return the present joint values by name."""
+        """Return the current joint values by name."""
         return self._motions.state(self._model)
 
     def get_joint_names(self, group: str | None = None) -> list[str]:

@@ -79,11 +79,11 @@ class Targets:
         self._frame = reference_frame
 
     def get_current_joint_values(self) -> list[float]:
-        """Return the present joint values."""
+        """Return the current joint values."""
         return self._values(self._now())
 
     def get_current_state(self) -> Any:
-        """Return the present joint values of the whole robot as a RobotState."""
+        """Return the current joint values of the whole robot as a RobotState."""
         state: Any = class_of("ros1", "moveit_msgs/RobotState")()
         now = self._motions.state(self._model)
         state.joint_state.header.frame_id = self.get_planning_frame()
@@ -91,7 +91,7 @@ class Targets:
         return state
 
     def get_current_pose(self, end_effector_link: str = "") -> Any:
-        """Return the present pose of a link. Raise MoveItCommanderException without a link."""
+        """Return the current pose of a link. Raise MoveItCommanderException without a link."""
         return self._stamped(self._link(end_effector_link), self._now())
 
     def get_current_rpy(self, end_effector_link: str = "") -> list[float]:
@@ -109,7 +109,7 @@ class Targets:
         return self._stamped(self._link(end_effector_link), {**self._now(), **values})
 
     def set_start_state_to_current_state(self) -> None:
-        """Plan from the present state."""
+        """Plan from the current state."""
         self._start = None
 
     def set_start_state(self, msg: Any) -> None:
@@ -187,7 +187,7 @@ class Targets:
         return dict(self._group.states.get(target, {}))
 
     def remember_joint_values(self, name: str, values: Sequence[float] | None = None) -> None:
-        """Remember joint values, by default the present ones, as a named target."""
+        """Remember joint values, by default the current ones, as a named target."""
         self._kept[name] = list(values) if values is not None else self.get_current_joint_values()
 
     def get_remembered_joint_values(self) -> dict[str, list[float]]:
@@ -229,7 +229,7 @@ class Targets:
         self.set_orientation_target(Rotation.RPY(*rpy).GetQuaternion(), end_effector_link)
 
     def shift_pose_target(self, axis: int, value: float, end_effector_link: str = "") -> None:
-        """Set the present pose as the target, with one of x, y, z, roll, pitch and yaw (0 to 5) changed."""
+        """Set the current pose as the target, with one of x, y, z, roll, pitch and yaw (0 to 5) changed."""
         pose = self.get_current_pose(end_effector_link)
         numbers = [*fromMsg(pose.pose).p, *rpy_of(pose.pose)]
         numbers[axis] += value

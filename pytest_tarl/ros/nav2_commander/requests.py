@@ -25,7 +25,7 @@ class Requests(Node):
         self._services: dict[str, Any] = {}
 
     def info(self, msg: str) -> None:
-        """Log a text."""
+        """Log a string."""
         self.get_logger().info(msg)
 
     def warn(self, msg: str) -> None:
@@ -37,7 +37,7 @@ class Requests(Node):
         self.get_logger().error(msg)
 
     def debug(self, msg: str) -> None:
-        """Log a text for developers."""
+        """Log a string for developers."""
         self.get_logger().debug(msg)
 
     def destroyNode(self) -> None:

@@ -1,4 +1,4 @@
-"""The check of what a callback of a node returns."""
+"""Check the values that a node's callbacks return."""
 
 from __future__ import annotations
 

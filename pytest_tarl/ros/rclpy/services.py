@@ -128,7 +128,8 @@ class Client(Introspected):
     def answer(self, future: Future, response: Any) -> None:
         """Handle a response. A waiting `call` returns it immediately; a future is completed by the executor.
 
-        A ROS 2 client never hears of the refusal of a ROS 1 node: the bridge between them only logs it.
+        A ROS 2 client never learns that a ROS 1 node refused its request: the bridge between them only logs
+        the refusal.
         """
         if isinstance(response, Refusal):
             self.node.get_logger().error(f"{self.srv_name} gave no response: {response.reason}")

@@ -51,7 +51,7 @@ class Timer:
         self.canceled = True
 
     def reset(self) -> None:
-        """Start a new period now, also after `cancel`."""
+        """Start a new period now, even after `cancel`."""
         self.canceled = False
         self.due = self._clock.time + self.timer_period_ns
         self.node.notify()

@@ -116,7 +116,7 @@ def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
 
 
 def _record(ctx: Interpreter, info: Publisher, it: Invocation, channel: str) -> SourceRecord | None:
-    """Return the source of the answers to a call, or of the feedback; None outside of statements."""
+    """Return the source of the answers to a call, or of the feedback; None outside statements."""
     frame, place = it.frame, (it.frame.program.path, it.call.pos)
     key = (*ctx.end_key(*place, frame), *([channel] if channel else []))
     record = ctx.sources.get(key)

@@ -27,7 +27,7 @@ def note(
 
 
 def inherit(ctx: Interpreter, obj: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-    """Record an instance whose base class, outside of the files, got a topic name as first argument."""
+    """Record an instance whose base class, outside the files, got a topic name as first argument."""
     if isinstance(obj.info, Obj) and isinstance(obj.info.info, ClassInfo) and obj.info.info.opaque:
         note(ctx, f"{obj.name}.publish", pointer(obj), arguments, frame, call)
 

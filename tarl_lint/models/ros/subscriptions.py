@@ -74,7 +74,7 @@ def subscribe(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _of_library(ctx: Interpreter, target: Obj) -> bool:
-    """Return whether a callback is a library's method, such as `other.publish`, also in a `functools.partial`."""
+    """Return whether a callback is a library's method, such as `other.publish`, even inside a `functools.partial`."""
     if target.kind == "partial" and isinstance(target.info, tuple):
         ctx.store.reads.look(target)
         inner: frozenset[Obj] = target.info[0].pts

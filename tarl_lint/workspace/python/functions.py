@@ -30,7 +30,7 @@ def made_function(run: Evaluation, node: ast.FunctionDef, names: Scope, file: Pa
 
 
 def lambda_of(node: ast.Lambda) -> ast.FunctionDef:
-    """Return the function that a `lambda` stands for."""
+    """Return the function that a `lambda` defines."""
     body: list[ast.stmt] = [ast.copy_location(ast.Return(node.body), node.body)]
     made = ast.FunctionDef(name="lambda", args=node.args, body=body, decorator_list=[])
     return ast.copy_location(made, node)

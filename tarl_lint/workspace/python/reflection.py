@@ -61,7 +61,7 @@ def _attribute(run: Evaluator, of: Any, name: Any, *default: Any) -> Any:
 
 
 def _descriptor(kind: str, of: Any, setter: Any = None, *_: Any, **__: Any) -> Function:
-    """Return `property(…)` and the like of a function of the file."""
+    """Return the result of `property(…)` or a similar decorator for a function of the file."""
     if not isinstance(of, Function):
         raise OpaqueError("an unknown function")
     return dataclasses.replace(of, kind=kind, setter=setter if isinstance(setter, Function) else None)

@@ -1,4 +1,4 @@
-"""A base class outside of the files publishes on the topic in its first argument."""
+"""A base class outside the files publishes on the topic in its first argument."""
 
 import rospy
 from panels import Panel

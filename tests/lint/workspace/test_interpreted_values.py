@@ -510,7 +510,7 @@ OPEN = {
     "negating an unknown value": "r = not absent",
     "an order of texts and numbers": "r = 'a' < 1",
     "an order of objects": "class A:\n  pass\nr = A() < A()",
-    "super outside of a class": "r = super().x",
+    "super outside a class": "r = super().x",
     "the length of a list with unknown elements": "r = len([1, *absent])",
     "the length of a list that unknown elements were added to": "l = [1]\nl += absent\nr = len(l)",
     "the length of a list that an unknown comprehension was added to": "l = [1]\nl.extend(absent(x) for x in absent)\n"

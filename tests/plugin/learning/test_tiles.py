@@ -57,7 +57,7 @@ def test_an_unvisited_cell_takes_its_value_from_tiles_of_its_neighbours() -> Non
     tiles = tiled(cells, [replace(PLACE, bins=WALK + 3)])
     learned = tiled_chain(chain, len(cells), tiles, gamma=0.9)
     assert not np.isnan(learned[:WALK]).any()
-    assert np.isnan(learned[-1])  # outside of all visited tiles
+    assert np.isnan(learned[-1])  # outside all visited tiles
     apart = chain.cell != 2
     gap = Chain(*(column[apart & (chain.next_cell != 2)] for column in vars(chain).values()))
     assert np.isnan(chain_utility(gap, WALK)[2])

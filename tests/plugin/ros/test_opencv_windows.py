@@ -124,7 +124,7 @@ def test_the_library_is_as_before_after_the_episode(imported_before: bool, start
     with ros.installed():
         start(NODE.format(body="cv2.imshow('view', cv2.cvtColor(1, 2))"), ros=ros)
         ros.step(0.1)
-        library().imshow("by the test")  # outside of nodes, the function is the library's
+        library().imshow("by the test")  # outside nodes, the function is the library's
     ros.close()
     assert library().drawn == ["by the test"]
     library().imshow("later")

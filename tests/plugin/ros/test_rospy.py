@@ -568,7 +568,7 @@ def test_rospy_outside_of_a_node_is_an_error() -> None:
     with ros.installed():
         import rospy
 
-        with pytest.raises(UnsupportedApiError, match=r"rospy\.sleep was called outside of a node"):
+        with pytest.raises(UnsupportedApiError, match=r"rospy\.sleep was called outside a node"):
             rospy.sleep(1)
 
 

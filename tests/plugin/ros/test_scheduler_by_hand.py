@@ -343,7 +343,7 @@ def test_a_program_that_ends_refuses_to_wait(clock: Scheduler, program: Program)
     program.ending = True
     assert polls(clock, program, PATIENCE + AGAIN) == 0
     assert program.refused == 2
-    asked()  # outside of tasks, nothing happens
+    asked()  # outside tasks, nothing happens
 
 
 def test_seconds_are_rounded_to_whole_nanoseconds() -> None:

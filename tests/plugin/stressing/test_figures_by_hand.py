@@ -179,7 +179,7 @@ def test_a_map_is_drawn_with_its_first_row_at_the_bottom() -> None:
     assert crosses[0] == "M285.0 107.0l10 10m0 -10l-10 10"
     assert (
         len(crosses) == 2
-    )  # the failure with another option lies outside of the plane; the second mark belongs to the legend
+    )  # the failure with another option lies outside the plane; the second mark belongs to the legend
     assert "holds in 50 % of the area, fails in 25 %, and is undecided in 25 %" in drawn
 
 
