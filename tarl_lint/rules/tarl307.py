@@ -8,9 +8,10 @@ In a parameter file of ROS 2, a section `gate:` is for the node `/gate` and not 
 started in a namespace gets none of the values. The rule reports this if the section has the node's name
 without a namespace, and no other section of the file gives the node these parameters.
 
-A parameter of a node is reported only if the node's program and all its imports could be read, and the program reads
-parameters only by literal names. If a group sets a parameter for all its nodes, the rule reports the
-parameter only if none of the nodes has it.
+A parameter of a node is reported only if the node's program and all its imports could be read, and the program states
+the names of all parameters that it reads: as literals, in tables and lists, as arguments of its functions, or as fields
+of its classes. If a group sets a parameter for all its nodes, the rule reports the parameter only if none of the nodes
+has it.
 """
 
 from __future__ import annotations
@@ -137,10 +138,10 @@ def findings(system: System) -> Iterator[Finding]:
         for setting in instance.node.settings:
             carriers.setdefault(setting, []).append(instance)
     for setting, instances in carriers.items():
-        names = list(_names(setting, instances))
-        for name in names if setting.name.startswith("~") else ():
-            if all(_lacks(instance, name) for instance in instances):
-                first = instances[0]
+        given = _given(setting, instances) if setting.name.startswith("~") else ()
+        for name, receivers in dict.fromkeys(given):
+            if all(_lacks(instance, name) for instance in receivers):
+                first = receivers[0]
                 message = f"{first.name} has no parameter {name}: the launch file sets it without effect"
                 yield at_node(CODE, first, message, name)
         yield from _elsewhere(setting, instances)
@@ -173,7 +174,7 @@ def _lacks(instance: Instance, name: str) -> bool:
     interface = instance.interface
     if interface is None or not interface.parameters or name.partition(".")[0] in _OF_ROS:
         return False
-    parts = {name, name.replace(".", "/"), *name.replace("/", ".").split(".")}
+    parts = {name, name.replace(".", "/"), name.replace("/", "."), *name.replace("/", ".").split(".")}
     return parts.isdisjoint(interface.words)
 
 
@@ -185,17 +186,18 @@ def _parsed(setting: Setting) -> Any:
         return None  # another part of the report states the problem
 
 
-def _names(setting: Setting, instances: list[Instance]) -> Iterator[str]:
-    """Yield the names of the parameters that a setting gives to one node only."""
+def _given(setting: Setting, instances: list[Instance]) -> Iterator[tuple[str, tuple[Instance, ...]]]:
+    """Yield the names of the parameters in a setting, each with the nodes that it is meant for."""
     above = setting.name.lstrip("~").strip("/")
     if setting.yaml is None or above:
-        yield above
+        yield above, tuple(instances)
         return
     parsed = _parsed(setting)
     named = list(sections(parsed))
     if not named and isinstance(parsed, dict):
-        yield from map(str, parsed)
+        yield from ((one.replace(".", "/"), tuple(instances)) for one in dotted(parsed))
     for pattern, values in named:
+        receivers = tuple(one for one in instances if matches(pattern, one.name))
         # a section for all nodes is meant for the nodes that have the parameter
-        if not is_wildcard(pattern) and any(matches(pattern, one.name) for one in instances):
-            yield from dotted(values)
+        if receivers and not is_wildcard(pattern):
+            yield from ((one, receivers) for one in dotted(values))

@@ -7,8 +7,10 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from tarl_lint.evidence import Outline
 from tarl_lint.parameter_names import ARGUMENTS
 from tarl_lint.read.source import Module
+from tarl_lint.system.own_strings import OwnStrings
 from tarl_lint.trees import last_name
 
 READERS: Final = frozenset(
@@ -27,24 +29,64 @@ COPYING: Final = frozenset(
 
 
 def words(modules: Sequence[Module]) -> frozenset[str]:
-    """Return every string of a program, as a name without `~` and slashes around it."""
+    """Return every string of a program, as a name without `~`, dots and slashes around it.
+
+    Names of fields of classes and of keywords of `dict` count as strings.
+    """
     return frozenset(
-        node.value.strip("~/")
-        for module in modules
-        for node in ast.walk(module.tree)
-        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+        text.strip("~/.") for module in modules for node in ast.walk(module.tree) for text in _texts(node)
     )
 
 
+def _texts(node: ast.AST) -> Iterator[str]:
+    match node:
+        case ast.Constant(value=str(text)):
+            yield text
+        case ast.ClassDef(body=body):
+            yield from (
+                one.target.id
+                for one in body
+                if isinstance(one, ast.AnnAssign) and isinstance(one.target, ast.Name)
+            )
+        case ast.Call(func=ast.Name(id="dict" | "OrderedDict"), keywords=keywords):
+            yield from (one.arg for one in keywords if one.arg)
+
+
 def reads_named_parameters(modules: Sequence[Module]) -> bool:
-    """Return whether a program reads parameters only by literal names, one by one."""
+    """Return whether a program reads only parameters whose names it states: literally, in tables, or as arguments."""
     if any(OPEN.search(module.text) for module in modules):
         return False
-    for module in modules:
-        calls = (n for n in ast.walk(module.tree) if isinstance(n, ast.Call) and last_name(n.func) in READERS)
-        if any(call.args and _computed(call.args[0]) for call in calls):
+    outlines = [Outline(module.tree) for module in modules if any(one in module.text for one in READERS)]
+    strings = OwnStrings([Outline(module.tree) for module in modules] if outlines else [])
+    for outline in outlines:
+        calls = (one for found in outline.calls.values() for one in found if last_name(one.func) in READERS)
+        if not all(_stated(call, outline, strings) for call in calls):
             return False
     return True
+
+
+def _stated(call: ast.Call, outline: Outline, strings: OwnStrings) -> bool:
+    """Return whether a call reads or declares only parameters whose names the program states."""
+    several = last_name(call.func) == "declare_parameters"
+    named = {one.arg: one.value for one in call.keywords if one.arg}
+    if several:
+        # the first argument is a namespace
+        found = call.args[1] if len(call.args) > 1 else named.get("parameters")
+        above = call.args[0] if call.args else named.get("namespace")
+        return (
+            found is not None
+            and strings.holds(found, outline)
+            and (above is None or strings.holds(above, outline))
+        )
+    first = call.args[0] if call.args else named.get("name") or named.get("names") or named.get("param_name")
+    return first is None or (not _group(first) and strings.holds(first, outline))
+
+
+def _group(argument: ast.expr) -> bool:
+    """Return whether an argument is a literal name of a whole group (`~`, `/`), or no name."""
+    if not isinstance(argument, ast.Constant):
+        return False
+    return not isinstance(argument.value, str) or argument.value.rstrip("/") in ("", "~")
 
 
 def deciding(modules: Sequence[Module]) -> tuple[str, ...]:
@@ -125,12 +167,3 @@ def _read_in(expr: ast.AST) -> Iterator[str]:
             first = node.args[0]
             if name in READERS and isinstance(first, ast.Constant) and isinstance(first.value, str):
                 yield first.value
-
-
-def _computed(argument: ast.expr) -> bool:
-    """Return whether an argument is not a literal name, or names a whole group (`~`, `/`)."""
-    if isinstance(argument, ast.List | ast.Tuple):
-        return any(map(_computed, argument.elts[:1]))
-    if isinstance(argument, ast.Constant):
-        return not isinstance(argument.value, str) or argument.value.rstrip("/") in ("", "~")
-    return True

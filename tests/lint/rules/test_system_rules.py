@@ -233,6 +233,7 @@ NONE = "/k has no parameter {}: the launch file sets it without effect"
         (Setting("~gain.p", FILE, 1), []),
         (Setting("~gian.p", FILE, 1), ["gian.p"]),
         (yaml("gian: 1\ngain: 2\nb: 3"), ["gian", "b"]),
+        (yaml("gian: {p: 1, i: 2}\ngain: {p: 1}"), ["gian/p", "gian/i"]),
         (yaml("k: {ros__parameters: {gian: {p: 1}, gain: 2}}"), ["gian.p"]),
         (yaml("/**: {ros__parameters: {gian: 1}}"), []),
         (yaml("/other: {ros__parameters: {gian: 1}}"), []),
@@ -251,6 +252,13 @@ def test_a_parameter_counts_as_absent_only_if_no_node_with_the_setting_may_decla
     assert messages(307, keeper("/k", setting), keeper("/l", setting, named=False)) == []
     assert messages(307, keeper("/k", setting), keeper("/l", setting)) == [NONE.format("gian")]
     assert messages(307, node("/k", unread=True, settings=(setting,))) == []
+
+
+def test_a_section_of_a_shared_parameter_file_is_meant_for_the_node_of_its_name():
+    shared = yaml("k: {ros__parameters: {gian: 1}}\nl: {ros__parameters: {other: 1}}")
+    open_ = keeper("/l", shared, named=False)
+    assert messages(307, keeper("/k", shared), open_) == [NONE.format("gian")]
+    assert messages(307, open_, keeper("/k", shared)) == [NONE.format("gian")]
 
 
 def test_a_parameter_section_without_a_namespace_applies_to_a_node_without_a_namespace():

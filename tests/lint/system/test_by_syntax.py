@@ -146,9 +146,32 @@ READS = [
     ("rospy.get_param(f'~{a}')", False),
     ("rospy.get_param()", True),
     ("other(name)", True),
-    ("self.declare_parameters('', [])", False),
+    ("self.declare_parameters('', [])", True),
+    ("self.declare_parameters('', [('a', 1), ('b', x)])", True),
+    ("self.declare_parameters('', [(a, 1)])", False),
+    ("self.declare_parameters(namespace='', parameters=TABLE)\nTABLE = [('a', 1)]", True),
+    ("self.declare_parameters('', TABLE)", False),
+    ("for name, value in {'a': 1, 'b': -x}.items(): self.declare_parameter(name, value)", True),
+    ("T = {'a': 1}\nfor name in sorted(T): self.declare_parameter('x.' + name)", True),
+    ("T = {}\nT[x] = 1\nfor name in T: self.declare_parameter(name)", False),
+    ("for name in self.get_parameter('names').value: self.get_parameter(f'{name}.x')", False),
+    ("self.value = 'a'\nfor name in self.get_parameter('names').value: self.get_parameter(name)", False),
+    ("def param(self, name, other): self.declare_parameter(name, other)\nself.param('a', x)", True),
+    ("def param(self, name, other): self.declare_parameter(name, other)\nself.param(a, x)", False),
+    ("def param(name='a'): get_param(name)\nparam()", True),
+    ("def param(name): get_param(name)\nparam(*found)", False),
+    ("def param(name): get_param(name)", False),
+    ("for f in fields(cls): node.declare_parameter(f.name, f.default)", True),
+    ("for one in ['a', 'b']:\n    get_param('~' + one)\nfor one in found: print(one)", False),
+    (
+        "class C:\n    NAMES = ('a', 'b')\n    def f(self):\n        for n in self.NAMES: self.get_parameter(n)",
+        True,
+    ),
+    ("with open(x) as names: get_param(names)", False),
+    ("get_param('a' if x else 'b')", True),
+    ("g = lambda name: get_param(name)", False),
     ("self.declare_parameters('ns', [])", True),
-    ("self.get_parameters(['a', b])", True),
+    ("self.get_parameters(['a', b])", False),
     ("self.get_parameters([b])", False),
     ("self.get_parameters([])", True),
     ("Node('n', allow_undeclared_parameters=True)", False),
@@ -162,7 +185,11 @@ def test_a_program_reads_only_parameters_that_it_names(text, named):
 
 
 def test_each_string_of_a_program_may_be_a_name_that_the_program_uses():
-    assert words([module("a = '~b/'\nc = f'x{1}'"), module("'/d/e'; 1; b'f'")]) == {"b", "x", "d/e"}
+    assert words([module("a = '~b/'\nc = f'x{1}.y'"), module("'/d/e'; 1; b'f'")]) == {"b", "x", "y", "d/e"}
+    assert words([module("class C:\n    a: int = 1\n    b = 2\nc: int = 1\ndict(d=1, **e)\nf(g=1)")]) == {
+        "a",
+        "d",
+    }
 
 
 DECIDING = [

@@ -1,0 +1,94 @@
+"""Compare the reports of TARL301 to TARL310 with the misconfigurations that were sown in written workspaces.
+
+    python benchmarks/architecture_written.py [benchmarks/architecture_written/round1]... [--show]
+
+Each workspace is one file: its files follow each other, each after a line `--- path`. The truth beside it was written
+before the linter was run. It lists the sown misconfigurations under `sown`: the rule, and texts that the message
+contains. Under `also_true`, it lists other true reports. All other reports are false, except those under `judged_true`,
+which were found to be true after the run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from tarl_lint.settings.config import Options, resolve
+from tarl_lint.system.command import ALL, Request, systems
+from tarl_lint.system.hazards import hazards
+
+FOLDER: Final = Path(__file__).with_suffix("")
+_FILE: Final = re.compile(r"^--- (\S+)\n", re.MULTILINE)
+Report = tuple[str, str]  # the code of a rule and its message
+
+
+def main() -> int:
+    """Print the figures of each workspace, and of each folder."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("folders", type=Path, nargs="*")
+    parser.add_argument(
+        "--show", action="store_true", help="print what was missed and what was reported wrongly"
+    )
+    options = parser.parse_args()
+    for folder in options.folders or sorted(one for one in FOLDER.iterdir() if one.is_dir()):
+        sown = found = false = reported = 0
+        for truth_file in sorted(folder.glob("*.json")):
+            truth = json.loads(truth_file.read_text("utf-8"))
+            reports = list(_reports(truth_file.with_suffix(".txt")))
+            missed = [one for one in truth["sown"] if not any(_fits(one, report) for report in reports)]
+            wrong = list(_wrong(truth, reports))
+            sown, found = sown + len(truth["sown"]), found + len(truth["sown"]) - len(missed)
+            reported, false = reported + len(reports), false + len(wrong)
+            print(f"{truth_file.stem}: {len(truth['sown'])} sown, {len(missed)} missed, {len(wrong)} false")
+            if options.show:
+                _show(missed, wrong)
+        print(f"{folder.name}: {found} of {sown} found; {false} of {reported} reports false")
+    return 0
+
+
+def _wrong(truth: Mapping[str, Any], reports: Sequence[Report]) -> Iterator[Report]:
+    """Yield the reports that the truth does not have."""
+    right = [one for name in ("sown", "also_true", "judged_true") for one in truth.get(name, [])]
+    yield from (report for report in reports if not any(_fits(one, report) for one in right))
+
+
+def _fits(fault: Mapping[str, Any], report: Report) -> bool:
+    """Return whether a report is about a fault; names in it end where the message's names end."""
+    code, message = report
+    return fault["code"] == code and all(
+        re.search(rf"(?<![\w/]){re.escape(text)}(?![\w/])", message) for text in fault["about"]
+    )
+
+
+def _show(missed: Sequence[Mapping[str, Any]], wrong: Sequence[Report]) -> None:
+    for fault in missed:
+        print(f"    missed {fault['code']} {' '.join(fault['about'])}")
+    for code, message in wrong:
+        print(f"    false  {code} {message}")
+
+
+def _reports(workspace: Path) -> Iterator[Report]:
+    """Yield each report on all launch files of a workspace once."""
+    with tempfile.TemporaryDirectory() as place:
+        root = Path(place)
+        _unpack(workspace.read_text("utf-8"), root)
+        config = resolve(Options((root,), select=("TARL3",)))
+        found = {(one.code, one.message) for system in systems(Request(ALL, (), (root,)), config)
+                 for one in hazards(system, config)}  # fmt: skip
+    yield from sorted(found)
+
+
+def _unpack(text: str, root: Path) -> None:
+    parts = _FILE.split(text)
+    for name, content in zip(parts[1::2], parts[2::2], strict=True):
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(content, "utf-8")
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
