@@ -8,7 +8,7 @@
 
 The worlds of stress_worlds.py and stress_worlds_2.py are formulas; those of stress_worlds_3.py and stress_worlds_4.py
 are small simulations, written without knowledge of the search; so are those of stress_worlds_5.py to
-stress_worlds_9.py, whose drifts have units and whose nominal values are not always in the middle or at an end of the
+stress_worlds_10.py, whose drifts have units and whose nominal values are not always in the middle or at an end of the
 range. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the task,
 and three faults of the topic of its first numeric sensor (bias, latency, dropout), of the same relative size in every
 task. Each method may run BUDGET episodes. A peer receives a cost for each drift that it proposes. If the guarantee
@@ -54,6 +54,7 @@ from stress_worlds_6 import QUIET_MACHINES, SIXTH_MACHINES  # noqa: E402
 from stress_worlds_7 import SEVENTH_MACHINES  # noqa: E402
 from stress_worlds_8 import EIGHTH_MACHINES  # noqa: E402
 from stress_worlds_9 import NINTH_MACHINES  # noqa: E402
+from stress_worlds_10 import TENTH_MACHINES  # noqa: E402
 
 from pytest_tarl import faults  # noqa: E402
 from pytest_tarl.designation import Designation  # noqa: E402
@@ -69,7 +70,14 @@ from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
 from pytest_tarl.stressing.search import divided, explore  # noqa: E402
 
 FORMULAS = {**WORLDS, **FRESH_WORLDS, **NEW_WORLDS, **FOURTH_WORLDS}
-MACHINES = {**FIFTH_MACHINES, **SIXTH_MACHINES, **SEVENTH_MACHINES, **EIGHTH_MACHINES, **NINTH_MACHINES}
+MACHINES = {
+    **FIFTH_MACHINES,
+    **SIXTH_MACHINES,
+    **SEVENTH_MACHINES,
+    **EIGHTH_MACHINES,
+    **NINTH_MACHINES,
+    **TENTH_MACHINES,
+}
 HARMLESS: Mapping[str, World | Machine] = {  # worlds in which no point of the space breaks the guarantee
     "harmless": harmless,
     **QUIET_WORLDS,
