@@ -24,6 +24,7 @@ benchmarks/bound_coverage.py measures how often each bound holds.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from math import ceil, comb, inf, log, log1p
 from statistics import NormalDist
 from typing import NamedTuple
@@ -56,6 +57,7 @@ def rate(passed: int, episodes: int, confidence: float) -> Bound:
     return Bound(low, high, confidence, "Clopper-Pearson", True, episodes)
 
 
+@lru_cache(maxsize=4096)  # a stress search asks for the same few counts thousands of times
 def rate_low(passed: int, episodes: int, risk: float) -> float:
     """Return the success rate at which `passed` or more passes have the probability `risk`."""
     if passed <= 0:

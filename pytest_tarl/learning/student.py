@@ -7,6 +7,7 @@ them.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from math import sqrt, tan
 from statistics import NormalDist, fmean, variance
 
@@ -33,6 +34,7 @@ def mean_bounds(values: Sequence[float], confidence: float) -> tuple[float, floa
     return fmean(values) - reach, fmean(values) + reach
 
 
+@lru_cache(maxsize=1024)  # the integral is slow, and a search asks for few different ones
 def student_quantile(probability: float, degrees: float) -> float:
     """Return a quantile of Student's t above the median.
 

@@ -6,7 +6,8 @@ rate. Both functions are fixed at nominal: the loss at 0, the logit of the failu
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,11 +27,39 @@ JITTER = 1e-8
 
 def covariance(one: Vector, other: Vector) -> Matrix:
     """Return the prior covariances between vectors of shape (drifts, ranges); 0 if one of them is nominal."""
+    columns = zip(one.T, other.T, strict=True)
+    return _summed(one, other, [_single(column, against) for column, against in columns])
+
+
+def scaled_covariances(vectors: Vector) -> Callable[[Vector], Matrix]:
+    """Return a function from scale factors of the ranges to the prior covariances among vectors scaled by them.
+
+    It keeps the parts that depend on one range only, for each factor.
+    """
+
+    @cache
+    def single(place: int, factor: float) -> Matrix:
+        column: Vector = vectors[:, place] * factor
+        return _single(column, column)
+
+    def scaled(factors: Vector) -> Matrix:
+        moved = vectors * factors
+        return _summed(moved, moved, [single(place, float(one)) for place, one in enumerate(factors)])
+
+    return scaled
+
+
+def _summed(one: Vector, other: Vector, singles: Sequence[Matrix]) -> Matrix:
     plain, sizes = one @ other.T, np.abs(one) @ np.abs(other).T
     found: Matrix = LINEAR * (plain + sizes) + PAIRS * (plain**2 + sizes**2)
-    for column, against in zip(one.T, other.T, strict=True):
-        found += SINGLE * _smooth(column[:, None], against[:, None], SINGLE_LENGTH)
+    for part in singles:
+        found += part
     return found + LOCAL * _smooth(one, other, LENGTH)
+
+
+def _single(column: Vector, against: Vector) -> Matrix:
+    found: Matrix = SINGLE * _smooth(column[:, None], against[:, None], SINGLE_LENGTH)
+    return found
 
 
 def variance(vectors: Vector) -> Vector:
