@@ -9,11 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
+from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.repairing.measured import hints
 from pytest_tarl.repairing.mission_pairs import Recorded, Signs, mission_pairs, signs
+from pytest_tarl.repairing.readings import corrections
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.structural import Structures
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.confirming import confirmed
 from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
@@ -21,6 +25,8 @@ from tarl_lint.model import Operand
 FROM = 60  # number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
 LATER = 100  # the same if a constant gains at least `PARTLY`, because it may only need another value or a second one
 PARTLY = 0.2  # share of the wanted gain
+SEEDS = 2  # number of seeds on which a correction of a reading is tried; some are hard by design
+HALF = 0.5  # corrections of readings are tried unless a constant gains this share of the wanted gain
 MOST = 45  # number of episodes for the changes; half as many more if one of them gains much
 
 
@@ -40,27 +46,50 @@ class Early:
         self._recorded: tuple[Recorded, ...] | None = None
         self._signs: Signs | None = None
         self._structures: Structures | None = None
+        self._corrected = False  # whether the readings were corrected
 
     def candidates(self, best: float = 0.0) -> Iterator[Candidate]:
         """Yield confirmed candidates if the search has come to `FROM` episodes, or to `LATER`, otherwise nothing.
 
         `best` is the largest gain of a constant so far.
         """
+        if self._recorded and best < HALF * self.order.goal.wanted:
+            yield from self.corrected()
         partly = best >= PARTLY * self.order.goal.wanted
         begin = LATER if partly else FROM
         if self._structures is not None or self.trials.spent < begin:
             return
-        begun = self.trials.spent
+        begun, before = self.trials.spent, self.spent
         found = self.signs(self.trials)
         self._structures = Structures(self.order, self.guards, self.trials, signs=found)
         try:
             for candidate in self._structures.early(MOST, once=not partly):
-                self.spent = self.trials.spent - begun
+                self.spent = before + self.trials.spent - begun
                 self.waiting = True
                 yield candidate
                 self.waiting = False
         finally:
-            self.spent = self.trials.spent - begun
+            self.spent = before + self.trials.spent - begun
+
+    def corrected(self) -> Iterator[Candidate]:
+        """Yield the corrections of readings that are confirmed; the first call records the mission pairs."""
+        if self._corrected:
+            return
+        self._corrected = True
+        goal, trials = self.order.goal, self.trials
+        begun, before = trials.spent, self.spent
+        for mutation in corrections(self.order, self._pairs(trials)):
+            candidate, seeds = Candidate((mutation,), ALWAYS), [pair.seed for pair in goal.pairs[:SEEDS]]
+            try:
+                reached = [at for at, seed in enumerate(seeds) if goal.reached(trials(candidate, seed), seed)]
+                holds = bool(reached) and confirmed(candidate, trials, goal, reached[0])
+            except RepairError:
+                continue
+            self.spent = before + trials.spent - begun
+            if holds:
+                self.waiting = True
+                yield candidate
+                self.waiting = False
 
     def signs(self, trials: Trials) -> Signs:
         """Return the symptoms of the mission pairs; the first call records them and charges the given trials."""

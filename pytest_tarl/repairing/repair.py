@@ -131,6 +131,7 @@ def _search(
         trials,
         early.candidates if share < 1.0 else lambda _: iter(()),
         early.measured,
+        early.corrected if share < 1.0 else lambda: iter(()),
     )
     try:
         if found.accepted is None:
@@ -142,7 +143,7 @@ def _search(
     if isinstance(strategy, Sweep):
         found.constants = strategy.attempts
     if first and found.accepted is not None and early.waiting and _structural(found.accepted):
-        found.effects, found.method = early.effects(), "structure"
+        found.effects, found.method = early.effects() or strategy.effects(), "structure"
         found.structure = early.spent
     elif not found.effects:
         found.effects, found.method = strategy.effects(), method

@@ -5,10 +5,9 @@ from __future__ import annotations
 from pytest_tarl.patching.dependencies import undeclared
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.report import amounts
+from pytest_tarl.searching.moderate import LARGE
 from pytest_tarl.searching.plainness import edges
 from pytest_tarl.searching.search import Candidate, effective_value
-
-LARGE = 8.0  # factor from which on a change of a constant is unusually large
 
 
 def remarks(mutants: Mutants, candidate: Candidate) -> list[str]:

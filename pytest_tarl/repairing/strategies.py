@@ -36,11 +36,12 @@ def strategy(
     trials: Trials,
     interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
     measured: Callable[[Sequence[Operand]], Sequence[Hint]] = lambda _: (),
+    corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
 ) -> Strategy:
     """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
 
     The sweep calls `interlude` before each of its steps, with the largest gain so far, and `measured` for changes that
-    recorded missions suggest.
+    recorded missions suggest, and `corrections` before it yields an extreme change.
     """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
@@ -60,6 +61,7 @@ def strategy(
             scope=name_scope(order.analysis),
             interlude=interlude,
             measured=lambda: measured(moved),
+            corrections=corrections,
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

@@ -57,6 +57,7 @@ class Attempts:
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
         scope: Scope = everywhere,
         interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
+        corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
     ) -> None:
         self.units = units
         self.mutate = mutate
@@ -70,6 +71,7 @@ class Attempts:
         self.given = given
         self.scope = scope
         self._structures = interlude
+        self.corrections = corrections
         self.slack = SLACK * goal.wanted
         self.turn = 0
         # units that were confirmed and yielded, but that the caller refused

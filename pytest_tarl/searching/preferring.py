@@ -19,6 +19,7 @@ from pytest_tarl.searching.exact import exactest
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.gentler import another_way, gentler
+from pytest_tarl.searching.moderate import MODERATE, extreme, moderate
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
@@ -36,9 +37,8 @@ from pytest_tarl.searching.smaller import (
 )
 from pytest_tarl.searching.units import NEAR, Unit
 
-# number of refinements of each constant whose change a maintainer would prefer to the candidate found
-PLAINER_ROUNDS = 2
-FUNCTIONS = 2  # maximum number of functions whose constants are compared by the course of their missions
+PLAINER_ROUNDS = 2  # number of refinements of each constant whose change a maintainer would prefer
+FUNCTIONS = 2  # maximum number of functions whose constants are compared by their missions' course
 PLAINER = 12  # maximum number of episodes for all such constants
 
 
@@ -66,6 +66,9 @@ class Search(Protocol):
     def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
         """Return whether a new factor reaches the goal on the seed of a pair."""
 
+    def corrections(self) -> Iterator[Candidate]:
+        """Yield the confirmed corrections of sensor readings that are wrong from the start, if not done before."""
+
     def joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
         """Return a selection that combines units."""
 
@@ -75,8 +78,8 @@ class Preferences:
 
     def __init__(self, search: Search) -> None:
         self.search = search
-        # functions whose constants were already compared by the course of their missions
-        self._compared: set[tuple[str, str]] = set()
+        self._compared: set[tuple[str, str]] = set()  # functions whose constants were compared
+        self._moderated = False  # whether moderate changes were already tried before an extreme one
         self._reduced = False  # whether smaller changes of other constants were already tried
         self._replaced: set[Unit] = set()  # units that were already compared with milder changes
         # confirmed changes that are not preferred to the candidate found; they follow if it is refused
@@ -87,6 +90,7 @@ class Preferences:
     ) -> Iterator[Candidate]:
         """Yield the changes preferred to a candidate; `near` says whether it reached the goal on its first seed."""
         if holds:
+            yield from self._moderate(found, unit, factor, pair)
             yield from self._plainer(found, unit, pair)
             yield from self._called(found, unit, factor)
         if holds or (near and oddness(found.mutations) is Oddness.NATURE):
@@ -99,6 +103,18 @@ class Preferences:
                 yield from self._smaller(found, unit, factor, hardest)
             else:
                 yield milder
+
+    def _moderate(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
+        """If a change is extreme, first try corrections of readings and small steps of other constants, once."""
+        if self.search.proposed or self._moderated or not extreme(unit, factor):
+            return
+        self._moderated = True
+        yield from self.search.corrections()
+        begun = self.search.trials.spent
+        for other, step in moderate(unit, self.search.units, self.search.gains, found.guard):
+            if self.search.trials.spent - begun >= MODERATE:
+                return
+            yield from self.search.attempt(other, found.guard, step, pair)
 
     def _hardest(self, pair: int) -> int:
         """Return the index of the pair on whose seed most candidates fell short, by default `pair`.

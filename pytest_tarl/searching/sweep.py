@@ -55,7 +55,8 @@ class Sweep:
     tried, on named constants. If `brief` is true, the search ends after the first steps unless something gains
     `BRIEFLY`. `responding` contains the ids of statements whose constants increased the reward. `interlude` is called
     with the largest gain before each step and each long phase, and may yield candidates of another search. `measured`
-    returns changes that recorded missions suggest (see `FirstSteps`).
+    returns changes that recorded missions suggest (see `FirstSteps`), and `corrections` yields confirmed corrections of
+    sensor readings, which come before extreme changes.
     """
 
     def __init__(
@@ -78,6 +79,7 @@ class Sweep:
         scope: Scope = everywhere,
         interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
         measured: Callable[[], Sequence[Hint]] = tuple,
+        corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
     ) -> None:
         self.structure_follows = structure_follows
         self.brief = brief
@@ -101,6 +103,7 @@ class Sweep:
             given=given,
             scope=scope,
             interlude=interlude,
+            corrections=corrections,
         )
         self.crossing = Crossing(self.attempts)
         self.first_steps = FirstSteps(self.attempts, self.crossing, responding, measured)

@@ -78,6 +78,10 @@ class Scripted:
         if (found := self._run(unit, factor, guard, pair)) is not None:
             yield found
 
+    def corrections(self) -> Iterator[Candidate]:
+        self.log.append(("corrections", "", None, 0))
+        yield from ()
+
     def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
         self._note("between", best[0], None, pair, best[1])
         yield from ()
@@ -439,9 +443,36 @@ def test_small_steps_end_after_their_episodes_and_skip_refused_constants() -> No
     search = Scripted([A, *many], run)
     search.refused.add((many[0], ALWAYS))
     search.gains.enter((A, ALWAYS), 1.5, 0.0)
-    before(search, A, 9.0)
+    before(search, A, 7.0)
     assert not any(code == "N20" for code, _ in search.tries)
     assert search.trials.spent - 1 == EPISODES
+
+
+# moderate changes before extreme ones
+
+
+def test_small_steps_of_other_constants_come_before_an_extreme_change_once() -> None:
+    search = Scripted([A, B], holds=[(B, 1.05)])
+    search.gains.enter((B, ALWAYS), 1.22, -3.0)
+    preferences, found = Preferences(search), Candidate(A.mutations(mutations, 11.5), ALWAYS)
+    assert list(preferences._moderate(found, A, 11.5, 0)) == [Candidate(B.mutations(mutations, 1.05), ALWAYS)]
+    assert [(kind, factor) for kind, _, factor, _ in search.log] == [
+        ("corrections", None),
+        *(("attempt", step) for step in (1.1, 0.91, 1.05, 0.95)),
+    ]
+    assert list(preferences._moderate(found, A, 11.5, 0)) == []
+    assert len(search.log) == 5
+
+
+@pytest.mark.parametrize(("factor", "proposed"), [(7.0, False), (11.5, True)])
+def test_moderate_changes_of_constants_and_proposals_have_no_rivals_of_this_kind(
+    factor: float, proposed: bool
+) -> None:
+    search = Scripted([A, B], proposed=proposed)
+    search.gains.enter((B, ALWAYS), 1.22, -3.0)
+    found = Candidate(A.mutations(mutations, factor), ALWAYS)
+    assert list(Preferences(search)._moderate(found, A, factor, 0)) == []
+    assert search.log == []
 
 
 # constants whose missions are closer to the designed ones

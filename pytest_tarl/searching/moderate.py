@@ -1,0 +1,48 @@
+"""Decide when a change is extreme, and which moderate changes of other constants to try before it.
+
+For example, a loaded robot overshoots its stops by a few centimetres. Eleven times the speed hides that by chance;
+the ticks per metre only have to grow by 4 %.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import log
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.gains import Gains, Part
+from pytest_tarl.searching.plainness import named
+from pytest_tarl.searching.units import Unit, change_size
+
+LARGE = 8.0  # factor from which on a change of a constant is unusually large
+STEPS = (1.1, 0.91, 1.05, 0.95)  # factors of the moderate changes
+MODERATE = 12  # number of episodes after which no further one is tried
+
+
+def extreme(unit: Unit, factor: float) -> bool:
+    """Return whether a change multiplies or divides a constant by at least `LARGE`; changes of zeros have no size."""
+    value = unit.operands[0].value
+    return (
+        bool(value)
+        and not isinstance(value, bool)
+        and factor > 0.0
+        and change_size(unit, factor) >= log(LARGE)
+    )
+
+
+def moderate(found: Unit, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Part]:
+    """Return small steps of the other named constants that matter and were not tried, the most sensitive ones first.
+
+    A constant is sensitive if its smallest step so far cost much reward: its good values are close to the old one.
+    """
+    tried = gains.under(guard)
+    others = [
+        unit
+        for unit in named(units)
+        if unit.operands != found.operands
+        and unit.chart is None
+        and not isinstance(unit.operands[0].value, bool)
+        and gains.matters(unit)
+    ]
+    others.sort(key=lambda unit: min(tried.get(unit, {1.0: 0.0}).values()))
+    return [(unit, step) for unit in others for step in STEPS if step not in tried.get(unit, {})]
