@@ -81,8 +81,8 @@ class EndedEpisode:
 
     @property
     def _silent(self) -> bool:
-        """Return whether nodes ran and published nothing."""
-        return self.drives_ros and self.ros is not None and not self.ros.published
+        """Return whether nodes ran, published nothing and called no service."""
+        return self.drives_ros and self.ros is not None and self.ros.silent
 
     @property
     def _heard(self) -> str:

@@ -60,6 +60,11 @@ class Ros(Network):
         return self.bus.published
 
     @property
+    def silent(self) -> bool:
+        """Whether nodes have neither published a message nor called a service so far."""
+        return not self.published and not self.services.requests
+
+    @property
     def subscribed(self) -> set[str]:
         """Topics that nodes have subscribed to so far."""
         return self.bus.subscribed

@@ -46,6 +46,7 @@ class ServiceDirectory:
         self._endpoints: dict[str, Endpoint] = {}
         self._offers: dict[str, Callable[[], Any]] = {}
         self._waiting: list[Task] = []
+        self.requests = 0  # number of requests of nodes to services that exist
 
     def __contains__(self, name: str) -> bool:
         return name in self._endpoints or name in self._offers
@@ -63,6 +64,7 @@ class ServiceDirectory:
         """
         endpoint = self.find(name)
         if endpoint is None or service_type(endpoint.service_class) == service_type(service_class):
+            self.requests += endpoint is not None
             return endpoint
         self._scheduler.failure = self._scheduler.failure or RecordingError(
             f"{name} is served as {service_type(endpoint.service_class)}, but node {caller!r} calls it as "

@@ -106,6 +106,11 @@ class Interpreter:
         return self.parameter_names is not None
 
     @property
+    def following_clients(self) -> bool:
+        """Return whether requests to services and goals of actions are sinks, and their answers sources."""
+        return self.launching or self.config.clients
+
+    @property
     def command_line(self) -> tuple[str, ...]:
         """Return the command line of the launched node, `sys.argv`; empty if it is not known."""
         given = self.fixed.get(ARGUMENTS)

@@ -58,7 +58,7 @@ def call_library(
         return ctx.ops.send(
             ctx, Invocation(qualified, BOTTOM, arguments, frame, call), Publisher(api=qualified)
         )
-    if ctx.launching:  # only in a run for a launch file
+    if ctx.following_clients:
         client = ctx.ops.launched_call(ctx, None, Invocation(qualified, BOTTOM, arguments, frame, call))
         if client is not None:
             return client

@@ -54,7 +54,7 @@ def call_method(
     call: ir.Call,
 ) -> Value:
     """Call a method of an object whose class is not analysed."""
-    if ctx.launching and target is not None:  # only in a run for a launch file
+    if ctx.following_clients and target is not None:
         client = ctx.ops.launched_call(ctx, target, Invocation(name, base, arguments, frame, call))
         if client is not None:
             return client

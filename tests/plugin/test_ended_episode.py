@@ -16,10 +16,10 @@ from pytest_tarl.faults.installing import NO_FAULTS, Faults
 from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
 
 HEARD: Any = SimpleNamespace(
-    published={"/cmd": 3}, subscribed={"/odom", "/joy"}, shutdown_errors=(), notes=()
+    silent=False, subscribed={"/odom", "/joy"}, shutdown_errors=(), notes=()
 )
-SILENT: Any = SimpleNamespace(published={}, subscribed={"/odom", "/joy"}, shutdown_errors=(), notes=())
-DEAF: Any = SimpleNamespace(published={}, subscribed=set(), shutdown_errors=(), notes=())
+SILENT: Any = SimpleNamespace(silent=True, subscribed={"/odom", "/joy"}, shutdown_errors=(), notes=())
+DEAF: Any = SimpleNamespace(silent=True, subscribed=set(), shutdown_errors=(), notes=())
 SOUND: Any = SimpleNamespace(problem=lambda: None)
 UNKNOWN: Any = SimpleNamespace(problem=lambda: RecordingError("Sensor 'x' received no message."))
 
@@ -122,7 +122,7 @@ def test_a_node_that_a_drift_silences_is_noted_unless_a_fault_is_declared_for_it
 
 def test_notes_come_in_the_order_of_shutdown_recording_start_and_replay() -> None:
     ros: Any = SimpleNamespace(
-        published={},
+        silent=True,
         subscribed=(),
         shutdown_errors=("Node '/a' raised KeyError.",),
         notes=("No launch file.",),

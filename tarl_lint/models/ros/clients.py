@@ -1,6 +1,6 @@
 """Models of clients of services and actions: requests and goals are sinks, responses and results are sources.
 
-Clients are followed only in runs for launch files, where the server is another node.
+Clients are followed in runs for launch files, where the server is another node, and for programs that run the code.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def launched_call(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value
     Return None for other calls.
     """
     table, name = (MADE, it.name) if target is None else (BY_METHOD, it.name)
-    for told in (node_name, launched.asked, argument_parsers.asked):
+    for told in (node_name, launched.asked, argument_parsers.asked) if ctx.launching else ():
         found = told(ctx, it)
         if found is not None:
             return found
