@@ -129,3 +129,46 @@ def test_a_node_is_named_only_where_it_is_assigned_or_used(line: str, nodes: lis
     analysis: Any = SimpleNamespace(flows=[], sources={"pilot.py": text})
     site: Any = None
     assert [found.node for found in anchors(analysis, site, "pilot.py")] == nodes
+
+
+USED = """\
+import rclpy
+
+
+def later(node):
+    node.create_timer(1.0, print)
+
+
+class Holder:
+    def __init__(self, node):
+        node.create_publisher(Float64, "/a", 1)
+
+    def on_start(self, node):
+        node.create_service(Trigger, "/b", print)
+
+
+def main():
+    rclpy.init()
+    node = made()
+    node.declare_parameter("kp", 1.0)
+    print(node)
+
+
+node = made()
+node.create_subscription(Float64, "/c", print, 1)
+"""
+
+
+def test_calls_that_use_a_node_are_places_in_main_in_init_and_outside_of_functions_first() -> None:
+    analysis: Any = SimpleNamespace(flows=[], sources={"pilot.py": USED})
+    site: Any = None
+    found = [ast.unparse(one.statement).partition("(")[0] for one in anchors(analysis, site, "pilot.py")]
+    assert set(found[:3]) == {"node.create_subscription", "node.create_publisher", "node.declare_parameter"}
+    assert set(found[3:]) == {"node.create_timer", "node.create_service"}
+    assert len(found) == 5
+
+
+def test_a_file_that_cannot_be_parsed_starts_no_node() -> None:
+    analysis: Any = SimpleNamespace(flows=[], sources={"a.py": "def (", "pilot.py": SCRIPT})
+    site: Any = None
+    assert [one.source.path for one in anchors(analysis, site, "a.py")] == ["pilot.py"]

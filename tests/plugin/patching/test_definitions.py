@@ -11,8 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.definitions import (
+    Place,
     _entry_name,
     _name,
     computed_at,
@@ -20,6 +22,7 @@ from pytest_tarl.patching.definitions import (
     defined,
     edits,
     parameter,
+    users,
 )
 from pytest_tarl.patching.document import apply_plain_edits, document
 from pytest_tarl.patching.mutate import Mutation, redefinition
@@ -120,6 +123,9 @@ LAUNCH = '<launch><node pkg="a" type="b"><param name="~ki" value="0.5"/></node><
         ("mast.launch.py", "Node(parameters=[{'ki': 0.5}])"),
         ("mast_launch.py", "Node(parameters=[{'ki': 0.5}])"),
         ("Mast.cfg", "gen.add('ki', double_t, 0, 'gain', 0.5, 0, 1)"),
+        ("Mast.cfg", "gen.add('ki', double_t, 0, 'gain', 0.5)"),
+        ("Mast.cfg", "gen.add('ki', double_t, 0, 'gain', default=0.5, min=0)"),
+        ("Mast.cfg", "gen.add(name='ki', paramtype='double', level=0, description='gain', default=0.5)"),
     ],
 )
 def test_a_parameter_is_found_in_each_kind_of_file(path: str, text: str) -> None:
@@ -138,6 +144,9 @@ def test_a_parameter_is_found_in_each_kind_of_file(path: str, text: str) -> None
         ("Mast.cfg", "gen.remove('ki', double_t, 0, 'gain', 0.5, 0, 1)"),
         ("Mast.cfg", "gen.add('kp', double_t, 0, 'gain', 0.5, 0, 1)"),
         ("Mast.cfg", "gen.add("),
+        ("Mast.cfg", "gen.add('ki', double_t, 0, 'gain')"),
+        ("Mast.cfg", "gen.add('ki', str_t, 0, 'gain', 'slow')"),
+        ("Mast.cfg", "add('ki', double_t, 0, 'gain', 0.5)"),
     ],
 )
 def test_other_files_and_other_parameters_stay_as_they_are(path: str, text: str) -> None:
@@ -288,3 +297,70 @@ def test_a_number_in_a_call_in_a_list_is_named_after_its_element() -> None:
         one for one in ast.walk(source.tree) if isinstance(one, ast.Constant) and one.value == "0.5"
     )
     assert _name(source, literal) == "LATE[1]"
+
+
+def place(text: str, value: Any, old: str) -> Place:
+    start = text.index(old)
+    return Place("a.yaml", start, start + len(old), 1, "ki", value)
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "value", "new", "expected"),
+    [
+        ("ki: 0.5", "0.5", 0.5, 0.75, "ki: 0.75"),
+        ("ki: 2", "2", 2, 3.0, "ki: 3"),
+        ("ki: 2", "2", 2, 2.5, "ki: 2.5"),
+        ("ki: 2.0", "2.0", 2.0, 3, "ki: 3.0"),
+        ("ki: 20e-1", "20e-1", 2.0, 3.0, "ki: 3.0"),
+        ("ki: true", "true", True, False, "ki: false"),
+        ("ki: True", "True", True, False, "ki: False"),
+        ("ki: false", "false", False, True, "ki: true"),
+    ],
+)
+def test_a_new_value_is_written_in_the_style_of_the_old_one(
+    text: str, old: str, value: Any, new: Any, expected: str
+) -> None:
+    assert apply_plain_edits("a.yaml", text, edits({place(text, value, old): new}, text)) == expected
+
+
+@pytest.mark.parametrize(("text", "old", "value"), [("ki: 0.6", "0.6", 0.5), ("ki: no", "no", 0.5)])
+def test_a_file_that_changed_since_is_not_edited(text: str, old: str, value: float) -> None:
+    with pytest.raises(RepairError, match=r"^a\.yaml:1: expected 0\.5, but the file changed: run again"):
+        edits({place(text, value, old): 1.0}, text)
+
+
+def test_other_uses_of_a_constant_are_named_by_their_lines(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("mast.py").write_text(
+        NODE.format(use="(REACH + 2.0 * self.ki + GAINS['hold'])").replace(
+            "    def on_height(self, msg):\n",
+            "    def on_height(self, msg):\n"
+            "        far = REACH * msg.data\n"
+            "        self.winch.publish(Float64(data=far))\n"
+            "        fast = self.get_parameter('ki').value * msg.data\n"
+            "        self.winch.publish(Float64(data=fast))\n",
+        )
+    )
+    analysis = analyse([Path("mast.py")])
+    lines = Path("mast.py").read_text().splitlines()
+
+    def uses(code: str, text: str) -> list[Operand]:
+        return [
+            one
+            for step in analysis.sites
+            for one in analysis.operands(step.site)
+            if one.code == code and text in lines[one.span.line - 1]
+        ]
+
+    def numbers(*texts: str) -> list[str]:
+        return [
+            f"mast.py:{at}" for at, line in enumerate(lines, start=1) if any(one in line for one in texts)
+        ]
+
+    assert users(analysis, uses("REACH", "far = ")[:1]) == numbers("(REACH")
+    assert users(analysis, uses("REACH", "(REACH")[:1]) == numbers("far = ")
+    assert users(analysis, [*uses("REACH", "far = ")[:1], *uses("REACH", "(REACH")[:1]]) == []
+    # a parameter is used wherever it is read, whatever the code there
+    assert set(numbers("fast = ")) <= set(users(analysis, uses("self.ki", "(REACH")[:1]))

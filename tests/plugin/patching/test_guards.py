@@ -230,3 +230,26 @@ def test_a_guard_uses_a_global_that_only_a_callback_sets_only_where_the_code_rea
 @pytest.mark.parametrize("expression", ["latest()", "a + b", "cache[key]", "cache['x']"])
 def test_expressions_that_may_raise_or_have_effects_are_not_used(expression: str) -> None:
     assert choose("cache = {}\na = b = key = 1.0\ndef step(): HERE = 1", (expression,)) is None
+
+
+def turned(low: float, high: float, lowest: float, highest: float) -> str:
+    sensor = Sensor("yaw", topic="/yaw", field="data", low=lowest, high=highest, bins=8, angle=True)
+    return condition(Guard((Conjunct(sensor, low, high),)), {"yaw": Reading("yaw")}, TOPICS)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "lowest", "highest"), [(135.0, -90.0, -180.0, 180.0), (270.0, 45.0, 0.0, 360.0)]
+)
+def test_a_condition_on_an_angle_may_cross_the_end_of_its_range(
+    low: float, high: float, lowest: float, highest: float
+) -> None:
+    code = turned(low, high, lowest, highest)
+    inside = [low, (low + highest) / 2, lowest, (lowest + high) / 2, high - 0.5]
+    outside = [high, high + 0.5, (low + high) / 2, low - 0.5]
+    assert [eval(code, {"yaw": value}) for value in inside] == [True] * len(inside)
+    assert [eval(code, {"yaw": value}) for value in outside] == [False] * len(outside)
+
+
+def test_the_condition_that_crosses_the_end_is_written_relative_to_its_low_end() -> None:
+    assert turned(135.0, -90.0, -180.0, 180.0) == "(yaw - 135.0) % 360.0 < 135.0"
+    assert turned(-0.5, -0.75, -1.0, 1.0) == "(yaw + 0.5) % 2.0 < 1.75"

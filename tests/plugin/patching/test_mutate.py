@@ -16,7 +16,21 @@ from hypothesis import strategies as st
 from pytest_tarl import Sensor
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.mutate import Mutation, guard_text, is_integral, mutations, rewrite
+from pytest_tarl.patching.charts import SHARE, offset
+from pytest_tarl.patching.definitions import Place
+from pytest_tarl.patching.mutate import (
+    Mutation,
+    form_values,
+    guard_text,
+    is_integral,
+    mutations,
+    redefinition,
+    rewrite,
+    step_of,
+    stepped,
+    to_step,
+)
+from pytest_tarl.patching.structures import Form
 from tarl_lint.api import analyse
 from tarl_lint.model import Operand, SiteId, Span
 from tests.plugin.patching.repairs import MUD, MUDDY_STRETCH, TOPICS, HandMade, TinyRos
@@ -523,3 +537,76 @@ def test_the_repair_of_the_delivery_robot_has_the_expected_text() -> None:
                     vel = 5 * delta
             rospy.Subscriber("/terrain", Bool, on_terrain)"""
     )
+
+
+def made_at(value: Any, share: float = 1.0) -> Place:
+    return Place("params.yaml", 0, 1, 1, "k", value, share)
+
+
+@pytest.mark.parametrize(
+    ("mutation", "expected"),
+    [
+        (Mutation(constant(0.5), 1.25), 1.25),  # a literal is replaced
+        (Mutation(constant(True), 2.0), False),
+        (Mutation(constant(False, literal=False), 2.0, made_at(False)), True),
+        (Mutation(constant(0.5, literal=False), 3.0), 1.5),  # other constants are scaled
+        (Mutation(constant(0.5, literal=False), 3.0, made_at(2.0)), 6.0),
+        (Mutation(constant(None, literal=False), 3.0, made_at(2.0)), 6.0),
+        (Mutation(constant(None, literal=False), 3.0, made_at(True)), False),
+        (Mutation(constant(0.0, literal=False), 0.7, made_at(0.0)), 0.7),  # a zero is moved
+        (Mutation(constant(None, literal=False), 0.7, made_at(0)), 0.7),
+        # a number that makes a quarter of the change moves four times as far: 2 · (1 + 2 · 4)
+        (Mutation(constant(0.5, literal=False), 3.0, made_at(2.0, 4.0)), 18.0),
+        (Mutation(constant(0.5, literal=False), 0.5, made_at(2.0, -2.0)), 4.0),
+    ],
+)  # fmt: skip
+def test_the_number_at_a_definition_follows_the_change_at_the_use(mutation: Mutation, expected: Any) -> None:
+    found = redefinition(mutation)
+    assert (found, type(found)) == (pytest.approx(expected), type(expected))
+
+
+def test_a_step_on_a_chart_is_a_factor_that_leads_back_to_the_step() -> None:
+    share = constant(0.9)
+    made = stepped(share, 5.0, SHARE, mutations)  # the distance from 1 becomes a fifth
+    assert made is not None
+    assert (made.value, made.chart) == (0.98, SHARE)
+    assert step_of(made) == pytest.approx(5.0)
+    named = stepped(constant(0.9, literal=False), 5.0, SHARE, mutations)
+    assert named is not None
+    assert named.value == pytest.approx(0.98 / 0.9, rel=1e-3)
+    assert step_of(named) == pytest.approx(5.0, rel=0.02)
+    moved = stepped(constant(-0.5), 5.0, offset(0.25), mutations)  # four times the size is added
+    assert moved is not None
+    assert (moved.value, step_of(moved)) == (0.5, pytest.approx(5.0))
+    zero = stepped(constant(0.0), 5.0, offset(0.25), mutations)
+    assert zero is not None
+    assert (zero.value, step_of(zero)) == (1.0, pytest.approx(5.0))
+
+
+def test_without_a_chart_or_a_value_a_step_is_a_factor_and_has_no_scale() -> None:
+    plain = stepped(constant(0.9), 2.0, None, mutations)
+    assert plain == mutations(constant(0.9), 2.0)
+    assert plain is not None
+    assert step_of(plain) is None
+    unknown = stepped(constant(None, literal=False), 2.0, SHARE, mutations)
+    assert unknown is not None
+    assert (unknown.value, unknown.chart) == (2.0, None)
+    assert stepped(constant(0.9), -1.0, SHARE, mutations) is None
+    assert stepped(constant(0.9), 1.0, SHARE, mutations) is None  # changes nothing
+
+
+def test_another_step_of_a_mutation_keeps_its_operand_and_its_scale() -> None:
+    first = stepped(constant(0.9), 5.0, SHARE, mutations)
+    assert first is not None
+    other = to_step(first, 10.0, mutations)
+    assert other is not None
+    assert (other.value, other.chart, other.operand) == (0.99, SHARE, first.operand)
+    template: Any = object()
+    formed = Mutation(constant(0.9), 2.0, form=Form(template, "gain", (("gain", 0.3), ("rest", 5.0))))
+    again = to_step(formed, 4.0, mutations)
+    assert again is not None
+    assert (again.value, again.form) == (4.0, formed.form)
+    assert form_values(again) == {"gain": pytest.approx(1.2), "rest": 5.0}
+    assert form_values(first) == {}
+    bare = Mutation(constant(0.9), 2.0, form=Form(template, "", (("gain", 0.3),)))
+    assert form_values(bare) == {"gain": 0.3}

@@ -13,7 +13,17 @@ from hypothesis import strategies as st
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching import reading, suggesting
-from pytest_tarl.patching.patch import BASE, SEAL, TITLE, unified_diff, write
+from pytest_tarl.patching.patch import (
+    BASE,
+    QUOTE,
+    SEAL,
+    TITLE,
+    seal,
+    unified_diff,
+    unquoted,
+    write,
+    write_partial,
+)
 
 LINES = st.lists(st.sampled_from(["a = 1", "b = 2", "-- c", "++ d", "@@ e", "\\ f", ""]), max_size=12)
 TEXTS = st.tuples(LINES, st.sampled_from(["", "\n"])).map(lambda made: "\n".join(made[0]) + made[1])
@@ -113,3 +123,113 @@ def test_the_fence_of_a_suggestion_is_longer_than_any_in_the_text(tmp_path: Path
     assert "`node.py`, line 1:" in suggesting.markdown(found)
     several = suggesting.markdown(patch(tmp_path, "a = 1\nb = 2\n", "c = 3\n"))
     assert "`node.py`, lines 1 to 2:\n\n```suggestion\nc = 3\n```\n" in several
+
+
+def rewritten(root: Path, *changes: tuple[str, str]) -> Path:
+    """Write a patch of node.py, replace texts in it, and seal it again."""
+    (root / "node.py").write_text(NODE)
+    file = root / "node.py"
+    header = [f"{TITLE}0.1.0: a repair", "test: test_it.py::test_it"]
+    diff = unified_diff({file: NODE.encode()}, {file: NODE.replace("y = 2", "y = 3")}, root, header)
+    path = write(diff, root / ".tarl" / "patches", "test_it.py::test_it", "mud")
+    text = path.read_text()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    lines = [line for line in text.splitlines(keepends=True) if not line.startswith(f"# {SEAL}:")]
+    at = next(number for number, line in enumerate(lines) if line.startswith("diff "))
+    digest = seal("".join(lines).encode())
+    path.write_text("".join([*lines[:at], f"# {SEAL}: {digest}\n", *lines[at:]]))
+    return path
+
+
+def test_a_patch_that_is_sealed_again_is_read(tmp_path: Path) -> None:
+    found = reading.read(rewritten(tmp_path))
+    assert found.sealed
+    assert found.told("test") == ["test_it.py::test_it"]
+    assert [file.name for file in found.files] == ["node.py"]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        [("@@ -2,4 +2,4 @@", "@@ -2,5 +2,4 @@")],
+        [("@@ -2,4 +2,4 @@", "@@ -2,4 +2,3 @@")],
+        [("@@ -2,4 +2,4 @@", "@@ -x,4 +2,4 @@")],
+        [("@@ -2,4 +2,4 @@", "@@ -0,4 +2,4 @@")],
+        [("-y = 2", "*y = 2")],
+        [("+++ b/node.py", "+++ b/other.py")],
+        [("--- a/node.py", "--- a/other.py")],
+        [("--- a/node.py\n", "")],
+        [("# test: ", "test: ")],
+    ],
+    ids=[
+        "old length",
+        "new length",
+        "no number",
+        "line 0",
+        "sign",
+        "new name",
+        "old name",
+        "no name",
+        "header",
+    ],
+)
+def test_a_patch_that_was_edited_is_damaged_even_if_its_seal_is_right(
+    tmp_path: Path, changes: list[tuple[str, str]]
+) -> None:
+    path = rewritten(tmp_path)
+    changes = [(old.replace("@@ -2,4 +2,4 @@", hunk(path)), edited(new, path)) for old, new in changes]
+    with pytest.raises(RepairError, match="is damaged: it was cut or edited"):
+        reading.read(rewritten(tmp_path, *changes))
+
+
+def hunk(path: Path) -> str:
+    """Return the line of a patch that begins its only hunk."""
+    return next(line for line in path.read_text().splitlines() if line.startswith("@@ "))
+
+
+def edited(new: str, path: Path) -> str:
+    """Return the line that begins the hunk with the numbers changed as in `new`, given for -2,4 +2,4."""
+    if not new.startswith("@@ "):
+        return new
+    _, old, fresh, *_ = hunk(path).split()
+    start, _, count = old.removeprefix("-").partition(",")
+    begin, _, size = fresh.removeprefix("+").partition(",")
+    first, second = new.split()[1:3]
+    one = "x" if "x" in first else "0" if first.startswith("-0") else start
+    return f"@@ -{one},{int(count) + (first.endswith('5'))} +{begin},{int(size) - (second.endswith('3'))} @@"
+
+
+def test_two_sections_of_one_file_are_damaged(tmp_path: Path) -> None:
+    path = rewritten(tmp_path)
+    body = path.read_text().partition("diff --git")[2]
+    with pytest.raises(RepairError, match="is damaged"):
+        reading.read(rewritten(tmp_path, (f"diff --git{body}", f"diff --git{body}diff --git{body}")))
+
+
+def test_a_missing_patch_is_reported_with_the_folder_of_patches(tmp_path: Path) -> None:
+    with pytest.raises(
+        RepairError, match=r"gone\.patch cannot be read \(.*TARL writes patches to \.tarl/patches"
+    ):
+        reading.read(tmp_path / "gone.patch")
+
+
+def test_a_partial_repair_is_quoted_so_that_only_tarl_reads_it(tmp_path: Path) -> None:
+    (tmp_path / "node.py").write_text(NODE)
+    file = tmp_path / "node.py"
+    header = [f"{TITLE}0.1.0: partial, a change", "partial: regains 4 of 9"]
+    diff = unified_diff({file: NODE.encode()}, {file: NODE.replace("y = 2", "y = 3")}, tmp_path, header)
+    path = write_partial(diff, tmp_path / ".tarl" / "patches", "test_it.py::test_a[b]", None)
+    assert path.name == "test-it-test-a-b-online.partial"
+    content = path.read_bytes()
+    assert all(line.startswith(QUOTE) for line in content.splitlines())
+    assert unquoted(content) == diff.encode()
+    assert unquoted(diff.encode()) == diff.encode()
+    found = reading.read(path)
+    assert found.told("partial") == ["regains 4 of 9"]
+    (changed,) = found.files
+    assert changed.exact(NODE.encode()) == NODE.replace("y = 2", "y = 3").encode()
+    (tmp_path / "file").write_text("")
+    with pytest.raises(RepairError, match="cannot be written"):
+        write_partial(diff, tmp_path / "file", "t", "mud")
