@@ -179,6 +179,26 @@ def test_the_refused_candidate_is_reported_whatever_it_failed_at(monkeypatch: py
     assert refusal(("good",), monkeypatch, placing=lambda *_: None) == (0, "not at its definition")
 
 
+@pytest.mark.parametrize(
+    ("budget", "reported", "reason"),
+    [(0, None, "budget"), (1, 0, "gain too small"), (2, 1, "gain too small")],
+)
+def test_the_budget_is_the_reason_only_if_no_candidate_was_refused_before_it_ended(
+    budget: int, reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    field: Any = Field(("bad at once", "bad at once", "good"))
+    examiner = Examiner(field, (ALWAYS,))
+    trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), budget)
+    assert examiner.first(iter(field.candidates), trials) is None
+    assert examiner.cut
+    refused = examiner.refused
+    assert refused.reason == reason
+    assert refused.candidate == (field.candidates[0] if budget else None)
+
+
 def test_a_guard_is_narrower_if_it_has_all_conditions_of_another_one_and_more() -> None:
     wet, dark = (Conjunct(Sensor(name, topic=f"/{name}", field="data"), 1, 1) for name in ("wet", "dark"))
     one, other, both = Guard((wet,)), Guard((dark,)), Guard((dark, wet))

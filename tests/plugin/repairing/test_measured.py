@@ -143,6 +143,9 @@ def test_changes_of_five_percent_suggest_a_step_and_smaller_ones_do_not(tmp_path
     assert suggested(tmp_path, {PUSH: (1.0, 1.04)}) == []
     assert {"GAIN": 19.0} in suggested(tmp_path, {PUSH: (1.0, 19.0)})
     assert suggested(tmp_path, {PUSH: (1.0, 21.0)}) == []
+    # 50 + 950 is 20 times as large, which is the limit, and a ratio of 96 is above it
+    assert suggested(tmp_path, {LEVEL: (10.0, 960.0)}) == [{"TARGET": 20.0}]
+    assert suggested(tmp_path, {LEVEL: (10.0, 961.0)}) == []
 
 
 def test_pairs_agree_up_to_a_quarter_of_the_change(tmp_path: Path) -> None:
