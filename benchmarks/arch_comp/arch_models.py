@@ -169,7 +169,7 @@ TOWER_MASS = 522617.0 / 4 + 240000.0 + 56780.0 + 3 * 17740.0  # kg, modal
 TOWER_FREQUENCY, TOWER_DAMPING = 0.31994, 0.01  # Hz, -
 INERTIA = (
     115926.0 + 3 * 11776047.0 + 534.116 * GEARBOX**2
-)  # kg m², as the published parameter file computes it
+)  # moment of inertia, computed as in the published parameter file (kg m²)
 RATED = 12.1 * 2 * pi / 60 / GEARBOX  # rad/s of the generator
 WIND = (0.0, 11.4, 12.0, 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0, 21.0, 22.0, 23.0, 24.0, 25.0)
 PITCH = (

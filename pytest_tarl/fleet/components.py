@@ -26,7 +26,7 @@ import numpy as np
 from pytest_tarl.learning.tables import Floats, Ints
 
 REPLICATES = 200
-FEWEST = 30  # minimum number of robots for an interval
+FEWEST = 30  # minimum number of robots for which an interval is given
 RANDOM = 2  # number of random components: between robots, and residual (between missions)
 CONFOUNDED = (
     # a contrast cannot be estimated if its part outside the row space of the design is larger than this share

@@ -45,7 +45,8 @@ ENDS: dict[Reason, str] = {
 }
 
 NEARLY = 0.8  # share of the loss that a rejected candidate must restore to be worth a wider tolerance
-# suggested tolerance, as a multiple of the loss that remains: a test needs some room to show less
+# suggested tolerance, as a multiple of the remaining loss: larger than 1, so that a test can show that the
+# loss is below it
 SPARE = 1.5
 
 

@@ -44,7 +44,7 @@ class Windows:
         self.names.clear()
 
     def look(self, name: str, _property: int = 0) -> float:
-        """Return 1.0 for a property of an open window, -1.0 without the window."""
+        """Return 1.0 for a property of an open window, and -1.0 if the window does not exist."""
         return 1.0 if name in self.names else -1.0
 
     def place(self, _name: str) -> tuple[int, int, int, int]:

@@ -35,7 +35,7 @@ def is_generated(name: str) -> bool:
 
 
 def generated(name: str) -> ModuleType:
-    """Create the module `PACKAGE.cfg.NAMEConfig` from its `.cfg` file. Raise UnsupportedApiError without one."""
+    """Create the module `PACKAGE.cfg.NAMEConfig` from its `.cfg` file; without this file, raise UnsupportedApiError."""
     package, _, rest = name.partition(".")
     module = ModuleType(name, f"Generated from the .cfg files of {package}.")
     wanted = rest.removeprefix("cfg").removeprefix(".")

@@ -127,11 +127,9 @@ class Frame(Obj):
         self.statement: ir.Stmt | None = None
         self.closures: dict[int, Branches] = {}
         self.control: object = None
-        # numbers of the conditions that have been connected with the present `control` in the graph
+        # numbers of the conditions that are connected with the current `control` in the graph
         self.waypoints: set[int] = set()
-        self.entered: object = (
-            None  # the control dependence of the caller that has been connected with this call
-        )
+        self.entered: object = None  # the caller's control dependence, once it is connected with this call
         self.heads: dict[
             tuple[int, ...], dict[Key, Value]
         ] = {}  # loop and iterations of outer loops → state at the loop's head in its last fixpoint

@@ -12,7 +12,7 @@ IN_FLIGHT = 0.5  # mass that still leaves the lip after the ladle starts to tilt
 SLOW_BELOW = 4.0  # missing mass below which the ladle pours slowly (kg)
 FAST, SLOW, BACK = 2.4, 0.9, -6.0  # deg/s
 SMOOTHING = 0.6
-STARTS = 0.15  # loss of mass that shows that iron flows (kg)
+STARTS = 0.15  # loss of mass from which on iron is taken to flow (kg)
 MIN_LEFT = 8.0  # mass of iron in the ladle below which slag flows out (kg)
 
 

@@ -159,7 +159,7 @@ def made(*instances: Instance) -> list[tuple[str, str, str, str]]:
     return [(one.node, one.source, one.sink, one.kind) for one in hops(instances)]
 
 
-def test_the_flows_of_a_node_have_launched_topics(example):
+def test_the_topics_in_the_flows_of_a_node_are_renamed_as_in_its_launch_file(example):
     both = instance(
         "/n/k",
         flow(example, ("a",), ("b", "/c")),

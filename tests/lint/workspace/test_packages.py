@@ -303,7 +303,7 @@ def test_nested_groups_of_a_cfg_file_name_their_enclosing_groups(tmp_path):
     ]
 
 
-def test_folders_of_tools_are_skipped_and_marked_ones_noted(tmp_path):
+def test_folders_of_tools_are_skipped_and_folders_marked_as_ignored_are_noted(tmp_path):
     for name in (
         "a",
         "build",

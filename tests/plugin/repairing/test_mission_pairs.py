@@ -237,7 +237,7 @@ def test_effects_are_empty_until_changes_were_tried(early: Early) -> None:
     assert len(Fake.made) == 1
 
 
-def test_the_changes_that_missions_suggest_use_the_same_pairs(early: Early) -> None:
+def test_changes_suggested_by_missions_use_the_pairs_of_the_early_search(early: Early) -> None:
     found: Any = early.measured(["GAIN"])  # type: ignore[list-item]
     assert found == [("pair",), ["GAIN"]]
     assert early.trials.spent == 1

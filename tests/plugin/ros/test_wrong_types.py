@@ -175,7 +175,7 @@ rospy.spin()
 
 
 @pytest.mark.parametrize("reason", REFUSING)
-def test_the_refusal_of_a_request_is_a_sentence_for_the_world(start: Start, reason: str) -> None:
+def test_a_world_gets_a_whole_sentence_if_the_node_refuses_its_request(start: Start, reason: str) -> None:
     handler, said = REFUSING[reason]
     ros = start(REFUSED.format(handler))
     reply = ros.bus.call("dock", OLD_TRIGGER._request_class())

@@ -35,7 +35,7 @@ def found(trials: Trials, *guards: Guard) -> Candidate:
     return next(Sweep(GAINS, mutations, guards, trials, GOAL).candidates())
 
 
-def test_a_constant_with_a_small_gain_is_tried_with_larger_factors_before_the_next_guard() -> None:
+def test_before_the_next_guard_a_constant_with_a_small_gain_is_tried_with_larger_factors() -> None:
     def earned(factors: dict[int, float], _: Guard) -> float:
         return (
             10.0 if factors.get(6, 1.0) > 4.0 else 0.2 if factors.get(6, 1.0) > 1.0 else 0.01 * len(factors)

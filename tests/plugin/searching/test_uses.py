@@ -67,7 +67,7 @@ def test_uses_are_tried_alone_at_once_if_all_of_them_together_suffice_in_some_mi
     assert trials.labels.index(label(found)) < others[0]
 
 
-def test_a_use_without_an_effect_is_credited_only_with_its_own_gain() -> None:
+def test_a_use_without_an_effect_gets_no_credit_for_the_gain_of_another_use() -> None:
     sweep, found, _ = searched({SECOND}, set())
     assert found is not None
     effects = sweep.effects()

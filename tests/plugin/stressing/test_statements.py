@@ -135,7 +135,7 @@ def test_text_json_and_page_show_the_statements(only: tuple[Executed, ...]) -> N
         assert "No statement ran only in failures" in shown
 
 
-def test_a_run_names_the_branch_of_the_node_that_only_failures_take(tank: pytest.Pytester) -> None:
+def test_a_run_names_the_branch_that_the_node_takes_only_in_failures(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "import Sensor", "import Drift, Sensor")
     space = '{"world": Drift.space(pump=Drift.range(0.1, 1.0, nominal=1.0))}'
     changed(tank, "test_tank", '{"clogged": 0.25}', space)
