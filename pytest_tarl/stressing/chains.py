@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf
+from math import inf, sqrt
 
 import numpy as np
 
@@ -23,6 +23,7 @@ NEARER = 0.98  # maximum distance of the next confirmed drift, as a share of the
 # A chain tests the failure rate alone if a test at its farther drifts shows too many failures with at least the
 # probability LIKELY; it tests the loss alone if that probability is below UNLIKELY.
 LIKELY, UNLIKELY = 0.5, 0.05
+ALIKE = 0.02  # probabilities whose difference is at most this count as the same
 VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
 POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a drift beyond the near end
 # multiples of the near end of a chain that are tested as well: before it, if the same seeds fail under all drifts;
@@ -30,6 +31,7 @@ POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a 
 OUTWARD = (1.12, 1.08, 1.04)
 BEFORE = (1.03,)
 INWARD = tuple(0.96**step for step in range(1, 17))
+FINE = tuple(0.985**step for step in range(16))  # multiples of the first drift of a chain in small steps
 # multiples of the drift at the near end of a chain that may become drifts of the chain
 STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
 
@@ -110,6 +112,32 @@ def finer(nearest: Nearest, chain: Sequence[Point], part: Part) -> list[Point]:
     ]
 
 
+def closer(nearest: Nearest, confirmed: Point) -> list[Point]:
+    """Return a chain of drifts in small steps that begins a little nearer than a confirmed drift.
+
+    The direction is that of the confirmed drift, of the nearest predicted one or of the nearest one that failed in the
+    search, whichever is most likely to be confirmed. The chain is empty if the model does not cover the confirmed
+    drift, or if no tried drift fails.
+    """
+    coordinates = nearest.coordinates
+    if not coordinates.covers(confirmed) or nearest.best is None:
+        return []
+    evaluator = nearest.evaluator
+    draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} closer {len(nearest.tested)}")
+    towards = [confirmed, nearest.predicted(NEXT.errors, NEXT.depth, draws), nearest.best]
+    covered = [
+        coordinates.vector(point) for point in towards if point is not None and coordinates.covers(point)
+    ]
+    vectors = np.array([vector for vector in covered if vector.any()])
+    if not len(vectors):
+        return []
+    room = sqrt(max((NEARER * nearest.distance(confirmed)) ** 2 - coordinates.options, 0.0))
+    vectors *= room / np.linalg.norm(vectors, axis=1, keepdims=True)
+    vectors = np.clip(vectors, coordinates.low, coordinates.high)
+    vector = vectors[int(np.argmax(nearest.model().failing(vectors)))]
+    return [coordinates.point(share * vector) for share in FINE]
+
+
 def clear(nearest: Nearest) -> list[Point]:
     """Return up to three drifts in several directions that failed in the search, those farthest from nominal first.
 
@@ -154,7 +182,8 @@ def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Poi
     """Return a drift for each step of the plan, nearer than `limit`, those farthest from nominal first.
 
     The drifts are multiples of `near` or have been tried before. A step takes the nearest drift that is likely enough
-    to be confirmed, or else the likeliest one. The plan ends early if no drift is at least `POSSIBLE`.
+    to be confirmed, or else the nearest one that is about as likely as the likeliest one. The plan ends early if no
+    drift is at least `POSSIBLE`.
     """
     coordinates = nearest.coordinates
     vectors = _sorted([*_multiples(nearest, near), *nearest.vectors()])
@@ -166,8 +195,7 @@ def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Poi
         allowed = (lengths > apart * last) & (lengths < limit) & (chances >= POSSIBLE)
         if not allowed.any():
             break
-        likely = allowed & (chances >= least)
-        place = int(np.argmax(likely if likely.any() else np.where(allowed, chances, -1.0)))
+        place = int(np.argmax(allowed & (chances >= min(least, chances[allowed].max() - ALIKE))))
         found.insert(0, coordinates.point(vectors[place]))
         last = float(lengths[place])
     return found

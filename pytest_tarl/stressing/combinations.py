@@ -22,9 +22,9 @@ from pytest_tarl.stressing.rays import Ray, distance, joined
 
 # pairs of directions are tested at this share of the distance to each boundary, where each direction alone holds
 INSIDE = 0.9
-FIRST = 0.5  # share of the budget for the first search for the nearest failing drift
+FIRST = 0.44  # share of the budget for the first search for the nearest failing drift
 # share of the budget that the first chains of tests may use, so that enough is left for the single directions
-CONFIRMED = 0.8
+CONFIRMED = 0.85
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 ALONE = 3  # number of rounds of the search with nominal options before the others are searched
 REFINED = 0.08  # share of the budget for the search between the first chains of tests
@@ -162,7 +162,8 @@ class Combined:
         with self.evaluator.limited(CONFIRMED):
             with self.evaluator.limited(self.evaluator.spent / self.evaluator.budget + REFINED):
                 self._leading.refine()
-            self._confirm(chains.NEXT)
+            if not self._confirm(chains.NEXT):
+                self._approach_confirmed()
 
     def end(self) -> None:
         """Search for nearer failing drifts, test pairs, and confirm the results. Raise BudgetSpentError."""
@@ -174,8 +175,10 @@ class Combined:
         self._test(sorted(proposed, key=lambda one: -distance(self.evaluator.space, one)))
 
     def draw(self) -> None:
-        """Predict the map and the nearest failures from all episodes, if every ray has some."""
-        if all(curve.evidence for curve in self.together.curves):
+        """Predict the map and the nearest failures from all episodes, if every ray has some; run no further ones."""
+        if not all(curve.evidence for curve in self.together.curves):
+            return
+        with self.evaluator.limited(0.0):
             found = self._leading.expected(EXPECTED)
             self.together.expected = [failure(self.evaluator.space, point) for point in found]
             self.together.margin_map = self.nearest.map()
@@ -218,12 +221,27 @@ class Combined:
         limit = min((one.distance for one in self.together.confirmed), default=inf)
         return self._test(chains.chain(self._leading, plan, limit))
 
+    def _approach_confirmed(self) -> None:
+        """Test chains in small steps from the nearest confirmed drift, until one confirms none. Raise BudgetSpentError.
+
+        The chains before have larger steps, so they end farther from the boundary than the model's errors require.
+        """
+        while known := self.together.confirmed:
+            near = min(known, key=lambda one: (one.distance, one.names)).point
+            chain = chains.closer(self._leading, near)
+            if not self._run(chain, chains.part_of(self._leading, chain[:1])):
+                return
+
     def _test(self, chain: Sequence[Point]) -> bool:
+        """Test a chain with further drifts on the ray through its near end. Raise BudgetSpentError."""
+        leading = self._leading
+        part = chains.part_of(leading, chain)
+        return self._run(chains.finer(leading, chain, part), part)
+
+    def _run(self, chain: Sequence[Point], part: Part) -> bool:
         self.together.tried = len(self.nearest.tried)
         try:
-            leading = self._leading
-            part = chains.part_of(leading, chain)
-            return self.together.confirm(chains.finer(leading, chain, part), self.evaluator, part)
+            return self.together.confirm(chain, self.evaluator, part)
         finally:
             for one in (self.nearest, *self.options):
                 one.tested = self.together.tested

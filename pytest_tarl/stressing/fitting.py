@@ -39,6 +39,7 @@ def fitted(
             standard_error(cut, typical),
             failed,
             evaluator.sources(point),
+            cut.tolist(),
         )
         for point, (losses, failed), cut in zip(points, measured, within, strict=True)
     ]

@@ -19,7 +19,7 @@ import numpy as np
 from pytest_tarl import seeds
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
-from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, Evaluator
+from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, BudgetSpentError, Evaluator
 from pytest_tarl.stressing.evolving import evolve
 from pytest_tarl.stressing.findings import Curve, MarginMap
 from pytest_tarl.stressing.fitting import fitted
@@ -168,9 +168,15 @@ class Nearest:
         return margin_map(self.curves, self.model(), self.coordinates)
 
     def _fails(self, point: Point) -> bool:
-        """Return whether a point's own episodes show a failure; run a few more if they suggest one."""
+        """Return whether a point's own episodes show a failure; run a few more if they suggest one.
+
+        A point whose missing episodes exceed the budget does not count as failing.
+        """
         evaluator = self.evaluator
-        return evaluator.glance(point).failing and evaluator.examine(point, SIZES[0]).result == "fails"
+        try:
+            return evaluator.glance(point).failing and evaluator.examine(point, SIZES[0]).result == "fails"
+        except BudgetSpentError:
+            return False
 
     def _clearly_fails(self, point: Point) -> bool:
         """Return whether a point's own episodes clearly show a failure, without the help of the model."""

@@ -9,8 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import chain
-from math import log
+from math import log, sqrt
+from statistics import fmean
 from typing import TypeVar
 
 import numpy as np
@@ -18,7 +20,14 @@ import numpy as np
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
 from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
 from pytest_tarl.stressing.one_thread import one_thread
-from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covariance, variance
+from pytest_tarl.stressing.surrogates import (
+    LossField,
+    Matrix,
+    RateField,
+    covariance,
+    scaled_covariances,
+    variance,
+)
 
 DRAWN = 400  # number of random drifts that the model compares
 PART = 0.75  # probability that a direction changes in a random drift
@@ -31,6 +40,7 @@ SCALES = (9.0, 36.0, 144.0)
 # possible variances of the effect that a seed has on the logit under all drifts, besides none
 LUCK = (1.0, 4.0)
 IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
+LEAST_LOSS = 0.25  # minimum predicted loss of a drift that shows by which factor a seed changes the losses
 LOGIT = 4.0  # this difference of logits counts as much as the whole tolerated loss
 
 
@@ -38,7 +48,8 @@ LOGIT = 4.0  # this difference of logits counts as much as the whole tolerated l
 class Sample:
     """A tried drift: its vector, mean loss, number of failed episodes, and the pool and number of each episode's seed.
 
-    `loss` is in units of the tolerated loss, and `spread` is its standard error.
+    `loss` is in units of the tolerated loss, and `spread` is its standard error. `losses` are the losses of the
+    episodes, in the order of `sources`.
     """
 
     vector: Vector
@@ -46,6 +57,7 @@ class Sample:
     spread: float
     failed: int
     sources: Sequence[tuple[str, int]]
+    losses: Sequence[float] = ()
 
 
 @dataclass(frozen=True)
@@ -88,6 +100,7 @@ class Prediction:
         `origin` is the loss at the zero vector, which is not 0 if the drifts have options that are not nominal.
         """
         self.coordinates, self.given, self.shown = coordinates, given, shown
+        self._samples, self._typical = samples, typical
         self._origin = min(max(origin, LOWEST), 1.0 - LOWEST)
         self._vectors = np.array([one.vector for one in samples]).reshape(
             len(samples), len(coordinates.spans)
@@ -223,7 +236,16 @@ class Prediction:
     def _loss(self, vectors: Vector) -> tuple[Vector, Vector]:
         """Return the predicted means and standard deviations of the losses at vectors."""
         mean, deviation = self._losses.moments(*self._prior(vectors, 0))
-        return mean + self._origin, deviation
+        mean = mean + self._origin
+        return mean, np.hypot(deviation, self._shared * np.maximum(mean, 0.0))
+
+    @cached_property
+    def _shared(self) -> float:
+        """Return the error of all predicted losses that the common seeds cause, as a share of the loss."""
+        if not self._samples:
+            return 0.0
+        means = self._losses.moments(*self._prior(self._vectors, 0))[0] + self._origin
+        return shared_error(self._samples, means, self._typical)
 
     def _prior(self, vectors: Vector, field: int) -> tuple[Matrix, Vector]:
         """Return prior covariances with the tried drifts, and prior variances.
@@ -262,6 +284,26 @@ class Prediction:
         return best, highest
 
 
+def shared_error(samples: Sequence[Sample], means: Vector, typical: float) -> float:
+    """Return the relative error of all predicted losses that the choice of the common seeds causes.
+
+    Under a seed, all drifts may lose more than their means by the same factor, for example because there is more to
+    lose. Drifts that share their seeds share this error, so it does not shrink with their number. `means` are the
+    predicted losses of the samples, and `typical` is the variance of a loss.
+    """
+    products: dict[tuple[str, int], float] = {}
+    squares: dict[tuple[str, int], float] = {}
+    for one, mean in zip(samples, means.tolist(), strict=True):
+        for source, loss in zip(one.sources, one.losses, strict=False):
+            if LEAST_LOSS <= mean < 1.0 - LOWEST:
+                products[source] = products.get(source, 0.0) + mean * (loss - mean)
+                squares[source] = squares.get(source, 0.0) + mean**2
+    if len(squares) < 2:
+        return 0.0
+    excess = fmean((products[source] / size) ** 2 - typical / size for source, size in squares.items())
+    return sqrt(max(excess, 0.0) / len(squares))
+
+
 def _within(vectors: Vector, room: float, draws: np.random.Generator) -> Vector:
     """Return the vectors; those longer than `room` are shortened to a random length."""
     lengths = np.linalg.norm(vectors, axis=1)
@@ -284,11 +326,12 @@ def _relevant(field: Callable[[Matrix], Field], vectors: Vector) -> tuple[Field,
     The factor is IRRELEVANT instead of 1 where that increases the evidence.
     """
     units = np.ones(vectors.shape[1])
-    best = field(covariance(vectors, vectors))
+    prior = scaled_covariances(vectors)
+    best = field(prior(units))
     for place in range(len(units)):
         fewer = units.copy()
         fewer[place] = IRRELEVANT
-        other = field(covariance(vectors * fewer, vectors * fewer))
+        other = field(prior(fewer))
         if other.evidence > best.evidence:
             best, units = other, fewer
     return best, units

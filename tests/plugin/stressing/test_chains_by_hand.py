@@ -11,7 +11,18 @@ import numpy as np
 import pytest
 
 from pytest_tarl.stressing import chains
-from pytest_tarl.stressing.chains import BEFORE, INWARD, LIKELY, OUTWARD, UNLIKELY, finer, part_of
+from pytest_tarl.stressing.chains import (
+    BEFORE,
+    FINE,
+    INWARD,
+    LIKELY,
+    NEARER,
+    OUTWARD,
+    UNLIKELY,
+    closer,
+    finer,
+    part_of,
+)
 from pytest_tarl.stressing.evaluating import Count
 from pytest_tarl.stressing.guarantee import Guarantee, Part, most_passed
 from pytest_tarl.stressing.rate_tests import BLOCK, LOOKS, SPENT, RateTests
@@ -232,3 +243,35 @@ def test_chains_without_a_failing_drift_or_with_an_option_are_short() -> None:
     assert chain(option, inf) == [option]
     assert chain(option, 1.0) == []
     assert chain(option, 1.0 / chains.NEARER + 0.001) == [option]
+
+
+@pytest.mark.parametrize(
+    ("best", "predicted", "slope"),
+    [
+        ({"a": 0.3, "b": 0.0}, {"a": 0.0, "b": 0.2}, inf),  # the model prefers b
+        ({"a": 0.3, "b": 0.1}, None, 0.75),
+        ({"a": 0.1, "b": 0.3}, {"a": 0.3, "b": 0.1, "option": 1.0}, 3.0),
+    ],
+)
+def test_small_steps_lead_from_a_confirmed_drift_in_the_likeliest_direction(
+    best: Any, predicted: Any, slope: float
+) -> None:
+    nearest = model_of((), ())
+    failing = SimpleNamespace(failing=lambda vectors: vectors[:, 1])
+    nearest.model = lambda: failing
+    nearest.coordinates.options, nearest.tested, nearest.best = 0, [], best
+    nearest.evaluator = SimpleNamespace(seed=0, drift="world")
+    nearest.predicted = lambda errors, depth, draws: predicted
+    found = closer(nearest, DRIFTS[1])  # at a distance of 0.75, with a slope of 0.75
+    assert lengths(found) == pytest.approx([0.75 * NEARER * one for one in FINE])
+    assert all(
+        one["b"] == pytest.approx(slope * one["a"]) if slope < inf else one["a"] == 0.0 for one in found
+    )
+
+
+def test_no_small_steps_lead_from_a_drift_that_the_model_does_not_cover() -> None:
+    nearest = model_of((), ())
+    nearest.best = DRIFTS[0]
+    assert closer(nearest, {"a": 0.6, "b": 0.8, "option": 1.0}) == []
+    nearest.best = None
+    assert closer(nearest, DRIFTS[0]) == []

@@ -15,6 +15,7 @@ from pytest_tarl.learning.bounds import Range
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import evolving, holding, nearest
 from pytest_tarl.stressing.boundary import bisect
+from pytest_tarl.stressing.combinations import Combined, Together
 from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.evaluating import NEAREST, SPENT
 from pytest_tarl.stressing.findings import NEAR_RISK, Curve, failure
@@ -549,3 +550,27 @@ def test_a_guarantee_is_printed_with_its_rate_and_tolerance() -> None:
     assert told.endswith(
         "At least 95.43 % of the episodes pass, and the mean reward is at most 0.123 below the recorded one."
     )
+
+
+# the end of the budget
+
+
+def test_the_map_of_a_search_whose_budget_is_spent_needs_no_further_episodes() -> None:
+    space = space_of(
+        a=Drift.range(0.0, 1.0, nominal=0.0),
+        b=Drift.range(0.0, 1.0, nominal=0.0),
+        camera=Drift.choice("up", "down"),
+    )
+    evaluator = evaluator_of(lambda point, _: (not point["camera"], 10.0), space)
+    curves = [Curve(ray) for ray in rays(space, {})]
+    both = Combined(evaluator, Together(0.01, curves))
+    for one in curves:
+        for t in one.ray.places:
+            one.evidence[t] = evaluator.glance(one.ray.point(t))
+    spent, evaluator.budget = evaluator.spent, evaluator.spent
+    both.draw()  # more episodes of the failing option would decide whether it fails
+    assert both.nearest.best is None
+    evaluator.budget = 1000
+    both.draw()
+    assert (both.together.expected, evaluator.spent) == ([], spent)
+    assert both.nearest.best == {**space.nominal, "camera": 1.0}

@@ -364,7 +364,7 @@ def test_a_search_begins_with_a_quick_look_at_each_place_of_the_rays(
     assert both.nearest.calls[0] == ("approach", None)  # type: ignore[attr-defined]
     assert plans == [FIRST, FIRST, "clear", NEXT]
     spent = both.evaluator.spent
-    assert both.nearest.calls[1] == ("refine", spent + round(0.08 * 800))  # type: ignore[attr-defined]
+    assert both.nearest.calls[1] == ("refine", spent + round(0.08 * 850))  # type: ignore[attr-defined]
     assert both.nearest.risk == pytest.approx(0.1 * 0.3)
 
 
@@ -377,6 +377,46 @@ def test_no_clear_failure_is_tested_once_a_chain_was_confirmed(
     monkeypatch.setattr(Combined, "_test", lambda self, chain: tests.append(chain))
     made(CUBE).begin()
     assert tests == []
+
+
+def test_small_steps_follow_from_the_nearest_confirmed_drift_until_none_is_confirmed(
+    leading: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    far, near = drift(a=0.9, b=0.9), drift(a=0.6, b=0.6)
+    begun: list[Point] = []
+    tested: list[Any] = []
+    both = made(CUBE)
+
+    def run(self: Combined, chain: Any, part: str) -> bool:
+        tested.append((chain, part))
+        if chain == ["from far"]:
+            self.together.every.append(failure(CUBE, near))
+        return chain == ["from far"]
+
+    def closer(_: Any, confirmed: Point) -> list[str]:
+        begun.append(confirmed)
+        return ["from far"] if confirmed == far else ["from near", "nearer"]
+
+    monkeypatch.setattr(Combined, "_confirm", lambda self, plan: plan == FIRST)
+    monkeypatch.setattr(Combined, "_run", run)
+    monkeypatch.setattr(combinations.chains, "closer", closer)
+    monkeypatch.setattr(combinations.chains, "part_of", lambda _, chain: chain[0])
+    both.begin()
+    assert begun == []  # nothing is confirmed
+    both.together.every.append(failure(CUBE, far))
+    both.begin()
+    assert begun == [far, near]
+    assert tested == [(["from far"], "from far"), (["from near", "nearer"], "from near")]
+
+
+def test_no_small_steps_follow_if_the_next_chain_confirms_a_drift(
+    leading: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Combined, "_confirm", lambda self, plan: True)
+    monkeypatch.setattr(Combined, "_run", lambda self, chain, part: pytest.fail("a chain ran"))
+    both = made(CUBE)
+    both.together.every.append(failure(CUBE, drift(a=0.9, b=0.9)))
+    both.begin()
 
 
 def test_the_end_of_a_search_improves_tests_pairs_and_confirms_from_far_to_near(

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from itertools import islice
+from math import sqrt
 
 import numpy as np
+import pytest
 
 from pytest_tarl import Drift
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.evaluating import GLANCE, SEARCH, TURNS
+from pytest_tarl.stressing.guarantee import Guarantee
 from pytest_tarl.stressing.nearest import DESCENDED, EXPLORED, GUIDED, Nearest
-from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
+from pytest_tarl.stressing.prediction import Prediction, Sample, Shown, shared_error
 from pytest_tarl.stressing.spreading import SHORTER, around
 from tests.plugin.stressing.worlds import evaluator_of, space_of
 
+GIVEN = Guarantee(0.95, 0.5, (1.0,) * 100, 1.0)
 SQUARE = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
 
 
@@ -105,3 +109,67 @@ def test_drifts_around_the_best_one_are_tried() -> None:
     assert len(nearest.tried) == 1 + EXPLORED + GUIDED + DESCENDED
     for point in nearest.tried[-DESCENDED:]:
         assert 0.5 < np.hypot(point["a"], point["b"]) / np.hypot(0.9, 0.6) <= SHORTER[1] + 1e-9
+
+
+def shared(seeds: int, own: float, common: float, typical: float, loss: float = 1.0) -> float:
+    """Return the shared error of 60 drifts that use pairs of `seeds` in turn.
+
+    `own` and `common` are the standard deviations of the factors of an episode and of a seed.
+    """
+    draws = np.random.default_rng(3)
+    factors = 1.0 + common * draws.standard_normal(seeds)
+    samples = []
+    for number in range(60):
+        row = [2 * number % seeds, (2 * number + 1) % seeds]
+        losses = [loss * (factors[place] + own * draws.standard_normal()) for place in row]
+        sources = [(SEARCH, place) for place in row]
+        samples.append(Sample(np.array([0.5, 0.0]), float(np.mean(losses)), 0.1, 0, sources, losses))
+    return shared_error(samples, np.full(60, loss), typical)
+
+
+def test_the_error_that_common_seeds_cause_shrinks_with_their_number_and_not_with_that_of_drifts() -> None:
+    assert shared(16, 0.0, 0.4, 0.0) == pytest.approx(0.4 / sqrt(16), rel=0.4)
+    assert shared(60, 0.0, 0.4, 0.0) == pytest.approx(0.4 / sqrt(60), rel=0.4)
+    assert shared(16, 0.3, 0.4, 0.3**2) == pytest.approx(0.4 / sqrt(16), rel=0.4)
+
+
+def test_noise_of_each_episode_causes_no_shared_error() -> None:
+    assert shared(16, 0.4, 0.0, 0.4**2) < 0.03
+    assert shared(16, 0.4, 0.0, 0.0) > 0.03  # the noise of a seed's mean, if `typical` does not explain it
+
+
+@pytest.mark.parametrize("loss", [0.2, 2.5, 0.0, -1.0])
+def test_small_and_cut_off_losses_show_no_factor_of_a_seed(loss: float) -> None:
+    assert shared(16, 0.0, 0.4, 0.0, loss) == 0.0
+
+
+def test_a_model_allows_for_the_shared_error_in_proportion_to_the_loss() -> None:
+    coordinates = Coordinates(SQUARE, SQUARE.nominal)
+    known = [(0.4, 0.5), (0.8, 1.0)]
+    factors = [0.7, 1.3, 0.6, 1.4]
+    plain, aware = (
+        Prediction(
+            coordinates,
+            GIVEN,
+            [
+                Sample(
+                    np.array([t, 0.0]),
+                    loss,
+                    0.01,
+                    0,
+                    [(SEARCH, place) for place in range(4)],
+                    [loss * one for one in factors][: 4 * known_losses],
+                )
+                for t, loss in known
+            ],
+            Shown(0.1, 0.5),
+            0.0001,
+            0.0,
+        )
+        for known_losses in (0, 1)
+    )
+    asked = np.array([[0.0, 0.0], [0.4, 0.0], [0.8, 0.0]])
+    (mean, deviation), (same, larger) = (one.moments(asked) for one in (plain, aware))
+    assert same == pytest.approx(mean)
+    rise = np.sqrt(larger**2 - deviation**2)
+    assert rise == pytest.approx(np.sqrt(0.125) / 2 * np.array([0.0, 0.5, 1.0]), abs=0.02)
