@@ -43,7 +43,8 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
                 "(tarl.launch, or parameters= of tarl.start), and TARL finds them there."
             )
     with _working_in(root):  # the analysis names files relative to the working directory
-        analysis = _analysis(paths, root)
+        # a package's __init__.py passes on names of other files, so imports from the package lead through it
+        analysis = _analysis([*paths, *imported(paths, root, packages=True)], root)
     if analysis.errors:
         first = analysis.errors[0]
         raise AnalysisError(f"{first.path}:{first.line} cannot be analysed: {first.message}")
@@ -57,15 +58,22 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
 
 def _what_to_name(paths: Sequence[Path], folder: Path, root: Path) -> str:
     """Return the advice for nodes without a flow: name the files that they import, if there is a flow through them."""
-    more = imported(paths, root)
-    with _working_in(root):
-        analysis = _analysis([*paths, *more], root) if more else None
-    if analysis is None or not analysis.flows:
+    passed = passed_with_imports(paths, root)
+    if not passed:
         return "run tarl-lint on these files, and name all files of the node."
-    passed = {(root / step.span.path).resolve() for step in analysis.sites}
-    named = [os.path.relpath(each, folder) for each in (*paths, *more) if each in passed]
-    files = ", ".join(f'"{Path(each).as_posix()}"' for each in named)
+    files = ", ".join(f'"{Path(os.path.relpath(each, folder)).as_posix()}"' for each in passed)
     return f"it passes through files that are imported, so name these: nodes=[{files}]."
+
+
+def passed_with_imports(paths: Sequence[Path], root: Path) -> tuple[Path, ...]:
+    """Return the files through which flows pass if the files that `paths` import are analysed, too."""
+    more = imported(paths, root)
+    if not more:
+        return ()
+    with _working_in(root):
+        analysis = _analysis([*paths, *more], root)
+    passed = {(root / step.span.path).resolve() for step in analysis.sites}
+    return tuple(each for each in (*paths, *more) if each in passed)
 
 
 def _analysis(paths: Sequence[Path], root: Path) -> Analysis:

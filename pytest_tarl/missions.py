@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytest_tarl.accounts import Account, Compared
-from pytest_tarl.analysed import analysed, instruments
+from pytest_tarl.analysed import analysed, instruments, passed_with_imports
 from pytest_tarl.boundary_repairs import Job, repair_boundary
 from pytest_tarl.comparing import run_online
 from pytest_tarl.design import AS_WRITTEN, fixture_path, replaced
@@ -154,7 +154,7 @@ class Mission:
     def _silent(self, analysis: Analysis) -> Iterator[str]:
         """Yield a note for each node file without any recorded statement."""
         files = [(self.folder / node).resolve() for node in self.designation.nodes]
-        return silent_files(files, analysis, self.root.resolve())
+        return silent_files(files, analysis, self.root.resolve(), passed_with_imports)
 
     def _record(self, rollout: Rollout, sites: Plan, analysis: Analysis) -> Account:
         drift = self._recorded_drift

@@ -7,10 +7,12 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
+
+INIT: Final = "__init__.py"
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +35,10 @@ def uses(analysis: Analysis, root: Path) -> Iterator[Use]:
                 yield Use(file, shown, step.span.line)
 
 
-def imported(files: Sequence[Path], root: Path) -> tuple[Path, ...]:
+def imported(files: Sequence[Path], root: Path, *, packages: bool = False) -> tuple[Path, ...]:
     """Return the project's files that these files import, directly or not, in the order in which they are found.
 
-    Files that are not valid Python, and what they would import, are left out.
+    With `packages`, return only files `__init__.py`, and follow no other file. What is not valid Python is left out.
     """
     found = dict.fromkeys(files)
     waiting = list(files)
@@ -45,8 +47,10 @@ def imported(files: Sequence[Path], root: Path) -> tuple[Path, ...]:
         try:
             tree = ast.parse(file.read_bytes())
         except (SyntaxError, ValueError, OSError):
+            del found[file]
             continue
         more = [each for _, each in _imports(tree, file, root.resolve(), packages=True) if each not in found]
+        more = [each for each in more if each.name == INIT or not packages]
         found.update(dict.fromkeys(more))
         waiting += dict.fromkeys(more)
     return tuple(each for each in found if each not in files)
@@ -78,5 +82,5 @@ def _files(module: str, level: int, at: Path, root: Path, packages: bool) -> lis
     parts = module.split(".")
     wanted = [start.joinpath(*parts).with_suffix(".py") for start in starts if module]
     if packages:
-        wanted += [start.joinpath(*filter(None, parts), "__init__.py") for start in starts if module or level]
+        wanted += [start.joinpath(*filter(None, parts), INIT) for start in starts if module or level]
     return [file for file in wanted if file.is_file() and file.is_relative_to(root)][:1]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,24 +13,52 @@ if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
 
-def silent_files(files: Sequence[Path], analysis: Analysis, root: Path) -> Iterator[str]:
-    """Yield a sentence, with advice, for every named file that takes no part in a flow.
+def silent_files(
+    files: Sequence[Path],
+    analysis: Analysis,
+    root: Path,
+    passed_with_imports: Callable[[Sequence[Path], Path], Sequence[Path]],
+) -> Iterator[str]:
+    """Yield sentences, with advice, for the named files that take no part in a flow.
 
     A file takes part by a site (a recorded statement), or by a name that a site uses, such as a constant.
+    `passed_with_imports` returns the files that flows pass through if imported files are analysed, too.
     """
+    more: Sequence[Path] | None = None
+    cut_off = []
     passed = {(root / step.span.path).resolve() for step in analysis.sites}
     used = {use.file for use in uses(analysis, root)}
     for file in files:
         if file.suffix != ".py" or file.resolve() in passed:
             continue
         unfollowed = _unfollowed(file, files)
-        if unfollowed or file.resolve() not in used:
-            place = file.relative_to(root).as_posix() if file.is_relative_to(root) else str(file)
-            yield (
-                f"{place} is named in nodes, but no flow from a subscription to a publish call passes through it, so "
-                "nothing in it is recorded or repaired: "
-                f"{unfollowed or 'remove it from nodes, or run `tarl-lint` to see the flows'}"
-            )
+        if not unfollowed and file.resolve() in used:
+            continue
+        if more is None and not unfollowed:
+            more = passed_with_imports(files, root)
+        if not unfollowed and file in (more or ()):
+            cut_off.append(file)
+            continue
+        yield (
+            f"{_shown(file, root)} is named in nodes, but no flow from a subscription to a publish call passes through "
+            "it, so nothing in it is recorded or repaired: "
+            f"{unfollowed or 'remove it from nodes, or run `tarl-lint` to see the flows'}"
+        )
+    if cut_off:
+        links = [one for one in more or () if one not in files and one not in passed]
+        yield (
+            f"the flows through {_listed(cut_off, root)} also pass through files that nodes "
+            "does not name, so nothing in the former is recorded or repaired: add "
+            f"{_listed(links, root)} to nodes and record again"
+        )
+
+
+def _listed(files: Sequence[Path], root: Path) -> str:
+    return ", ".join(_shown(one, root) for one in files)
+
+
+def _shown(file: Path, root: Path) -> str:
+    return file.relative_to(root).as_posix() if file.is_relative_to(root) else str(file)
 
 
 def _unfollowed(file: Path, files: Sequence[Path]) -> str:

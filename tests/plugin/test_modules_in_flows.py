@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from pytest_tarl.analysed import analysed, passed_with_imports
 from pytest_tarl.modules_in_flows import Use, uses
 from pytest_tarl.unrecorded_nodes import silent_files
 
@@ -78,7 +79,7 @@ def test_files_above_the_root_are_not_found(tmp_path: Path) -> None:
 
 
 def silent(root: Path, names: list[str], found: Any) -> list[str]:
-    return list(silent_files([root / name for name in names], found, root))
+    return list(silent_files([root / name for name in names], found, root, passed_with_imports))
 
 
 def test_files_without_a_statement_or_a_used_name_are_named(tmp_path: Path) -> None:
@@ -110,5 +111,54 @@ def test_a_file_outside_the_root_is_named_by_its_whole_path(tmp_path: Path) -> N
     root = tmp_path / "project"
     found = project(root, {"node.py": ""}, step("node.py", 2, "x = 1"))
     (tmp_path / "far.py").write_text("")
-    (told,) = silent_files([tmp_path / "far.py"], found, root)
+    (told,) = silent_files([tmp_path / "far.py"], found, root, passed_with_imports)
     assert told.startswith(f"{tmp_path / 'far.py'} is named in nodes")
+
+
+NODE = """
+import rospy
+from std_msgs.msg import Float64
+from robot import scaled
+def heard(message):
+    pub.publish(Float64(scaled(message.data)))
+pub = rospy.Publisher("out", Float64, queue_size=1)
+rospy.Subscriber("in", Float64, heard)
+"""
+
+
+def named(root: Path, *nodes: str) -> Any:
+    return analysed(SimpleNamespace(nodes=nodes), root, root)  # type: ignore[arg-type]
+
+
+def test_flows_pass_through_packages_that_are_not_named(tmp_path: Path) -> None:
+    files = {
+        "node.py": NODE,
+        "robot/__init__.py": "from .gains import scaled\n",
+        "robot/gains.py": "from robot.limits import held\ndef scaled(value):\n    return held(2.0 * value)\n",
+        "robot/limits.py": "def held(value):\n    return min(value, 1.0)\n",
+    }
+    project(tmp_path, files)
+    found = named(tmp_path, "node.py", "robot/gains.py")
+    assert {one.span.path for one in found.sites} == {"node.py", "robot/gains.py"}
+    (tmp_path / "robot" / "__init__.py").write_text("def scaled(:\n")
+    assert {one.span.path for one in named(tmp_path, "node.py").sites} == {"node.py"}
+
+
+def test_files_that_a_flow_does_not_reach_without_another_are_named_with_it(tmp_path: Path) -> None:
+    files = {
+        "node.py": NODE.replace(
+            "from robot import scaled", "from middle import Middle\nscaled = Middle().scaled"
+        ),
+        "middle.py": "import far\nclass Middle:\n    def scaled(self, value):\n        return far.scaled(value)\n",
+        "far.py": "def scaled(value):\n    return 2.0 * value\n",
+        "spare.py": "",
+    }
+    project(tmp_path, files)
+    found = named(tmp_path, "node.py", "far.py", "spare.py")
+    spare, far = silent(tmp_path, ["node.py", "far.py", "spare.py"], found)
+    assert spare.startswith("spare.py is named in nodes, but no flow")
+    assert far == (
+        "the flows through far.py also pass through files that nodes does not name, so nothing in the former is "
+        "recorded or repaired: add middle.py to nodes and record again"
+    )
+    assert silent(tmp_path, ["node.py", "far.py", "middle.py"], named(tmp_path, *list(files)[:3])) == []
