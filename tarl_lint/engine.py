@@ -101,7 +101,9 @@ def trace(
 
     def linked() -> tuple[Linker, tuple[Flow, ...]]:
         launched = parameters is not None
-        machine = Linker(relevant(modules, config, clients=launched or config.clients), config, thorough=thorough)
+        machine = Linker(
+            relevant(modules, config, clients=launched or config.clients), config, thorough=thorough
+        )
         machine.parameter_names, machine.fixed = parameters, fixed
         machine.link()
         return machine, Tracer(machine).flows()

@@ -15,9 +15,7 @@ from pytest_tarl.errors import RecordingError, SettingsError
 from pytest_tarl.faults.installing import NO_FAULTS, Faults
 from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
 
-HEARD: Any = SimpleNamespace(
-    silent=False, subscribed={"/odom", "/joy"}, shutdown_errors=(), notes=()
-)
+HEARD: Any = SimpleNamespace(silent=False, subscribed={"/odom", "/joy"}, shutdown_errors=(), notes=())
 SILENT: Any = SimpleNamespace(silent=True, subscribed={"/odom", "/joy"}, shutdown_errors=(), notes=())
 DEAF: Any = SimpleNamespace(silent=True, subscribed=set(), shutdown_errors=(), notes=())
 SOUND: Any = SimpleNamespace(problem=lambda: None)
