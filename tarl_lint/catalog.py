@@ -242,7 +242,7 @@ WAITING_METHODS: Final = frozenset(
 MUTATORS: Final = frozenset(
     [
         "append", "appendleft", "extend", "extendleft", "insert", "add", "update", "put", "put_nowait", "push",
-        "fill", "set", "setdefault", "itemset", "write", "push_back", "send", "clear", "sort",
+        "fill", "set", "setdefault", "itemset", "write", "push_back", "send", "send_nowait", "clear", "sort",
     ]
 )  # fmt: skip
 

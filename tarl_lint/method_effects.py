@@ -7,7 +7,7 @@ from typing import Final
 
 CHANGES: Final = re.compile(
     r"(?:set|add)(?:_|[A-Z])|(?:correct|fit|partial_fit|observe|learn|train)$|[Aa]ccept_?[Ww]aveform"
-    r"|(?:update|step|process|feed|push|advance|integrate|transition)(?:_|[A-Z]|$)"
+    r"|(?:update|step|process|feed|push|advance|integrate|transition)(?:_|[A-Z]|$)|on_?[Nn]ext$"
 )  # names of methods that change their object even if the result is used
 TELLS: Final = re.compile(
     r"(?:send|publish|emit|log|print|write|say|speak|show|notify|call|draw|plot|display|imshow|save|dump|export|report"
@@ -18,6 +18,16 @@ TELLS: Final = re.compile(
 REGISTERS: Final = re.compile(
     r"(?:set|add|register|connect|bind|on|subscribe|install|attach|schedule)(?:_|[A-Z]|$)"
 )  # names of methods that store callables in order to call them later
+OBSERVES: Final = re.compile(
+    r"(?:subscribe|on|once|connect|listen|observe|add_?(?:[Ll]istener|[Oo]bserver))(?:_|[A-Z]|$)"
+)  # names of methods that register callables which get what the object gets
+DERIVES: Final = re.compile(
+    r"(?:pipe|map|flat_map|select|where|share|merge|throttle|debounce|buffer)(?:_|[A-Z]|$)"
+)  # names of methods that return a stream of what their object gets later
+WHOLE: Final = re.compile(
+    r"(?:model_|to_?|as_?)?(?:json|dict|yaml|xml|bytes|string|msg|message|proto|copy|tuple|dump)(?:_json|_python|s)?$"
+    r"|Serialize\w*$|serialize$|encode$|pack$"
+)  # names of methods that return all data of their object
 FAILS: Final = re.compile(
     r"(?:loads?|parse|decode|literal_eval|fromisoformat|strptime|unpack|from_?[Ss]tring|look_?up|transform|do_transform"
     r"|convert|index|Decimal|Fraction|ip_address|UUID|inv|solve)(?:_|[A-Z]|$)|lookup"
@@ -40,6 +50,21 @@ def only_tells(name: str) -> bool:
 def keeps_callables(name: str) -> bool:
     """Return whether a class or method stores the callables passed to it."""
     return name[:1].isupper() or REGISTERS.match(name) is not None
+
+
+def observes(name: str) -> bool:
+    """Return whether a method registers callables that the object calls with the data that it gets."""
+    return OBSERVES.match(name) is not None
+
+
+def derives(name: str) -> bool:
+    """Return whether a method returns a stream of what its object gets later."""
+    return DERIVES.match(name) is not None
+
+
+def returns_all(name: str) -> bool:
+    """Return whether a method that a library's base class defines returns all data of its object, as `json` does."""
+    return WHOLE.match(name) is not None
 
 
 def fails(name: str) -> str | None:

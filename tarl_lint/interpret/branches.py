@@ -102,6 +102,8 @@ def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
 def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value) -> list[Value]:
     """Return the elements to unroll a loop over; [] if they are unknown, too many, or carry no data."""
     elements = sizes.unpacked(ctx, source) or []
+    if any(o.name == heap.MEMBERS for o in source.pts):
+        return elements
     plain = len(s.body) <= SHORT and all(isinstance(one, ir.Assign | ir.Evaluate) for one in s.body)
     limit = sizes.MAX_KNOWN if plain else MAX_EXACT_TURNS if ctx.exact else MAX_TURNS
     if not 1 < len(elements) <= limit:

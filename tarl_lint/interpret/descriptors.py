@@ -1,4 +1,4 @@
-"""Descriptors: objects in a class whose `__get__` and `__set__` replace the access to an attribute."""
+"""Attributes that code of the class handles: setters of properties, `__setattr__`, and descriptors."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Final
 from tarl_lint.interpret import dunder_methods
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, Obj, Value, const, join, lineage, pointer
 
@@ -37,15 +38,32 @@ def read(ctx: Interpreter, base: Value, value: Value, name: str, frame: Frame, p
 
 
 def write(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, pos: ir.Pos) -> bool:
-    """Pass a stored value to `__setattr__` or to the descriptors of the classes; return whether there are any."""
-    done = False
-    if _used(ctx, "__setattr__"):
-        given = [const(name), value]
-        done = dunder_methods.special(ctx, base, "__setattr__", given, frame, pos) is not None
+    """Pass a stored value to `__setattr__`, a property or a descriptor; return whether the class has one of these."""
+    given = [const(name), value]
+    done = _used(ctx, "__setattr__") and (
+        dunder_methods.special(ctx, base, "__setattr__", given, frame, pos) is not None
+    )
+    if _used(ctx, name):
+        done |= _set_property(ctx, base, name, value, frame, pos)
     for obj in base.objects if _used(ctx, "__set__") else ():
         for descriptor in _descriptors(ctx, obj, name):
             given = [pointer(obj), value]
             done |= dunder_methods.special(ctx, pointer(descriptor), "__set__", given, frame, pos) is not None
+    return done
+
+
+def _set_property(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, pos: ir.Pos) -> bool:
+    """Call the setters of a property; return whether a class has one."""
+    done = False
+    for obj in base.objects:
+        cls = obj.info if obj.kind == "instance" else None
+        for owner in lineage(cls) if isinstance(cls, Obj) else ():
+            setter = ctx.store.get((owner, f"{name}.setter"))
+            if setter is not None:
+                call = ir.Call(ir.Const(None, pos), (), (), pos, dunder_methods.slot("__set__", pos))
+                ctx.ops.call_value(ctx, heap.bind(ctx, setter, obj, owner), ([value], {}), frame, call)
+                done = True
+                break
     return done
 
 

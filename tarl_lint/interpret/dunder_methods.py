@@ -37,7 +37,7 @@ def special(
         result = join(result, method)
     if not methods:
         return None
-    call = ir.Call(ir.Const(None, pos), (), (), pos, _slot(name, pos))
+    call = ir.Call(ir.Const(None, pos), (), (), pos, slot(name, pos))
     made = ctx.ops.call_value(ctx, result, (list(given), {}), frame, call)
     return Value(made.deps | value.deps, made.pts, made.consts)
 
@@ -71,6 +71,6 @@ def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], fram
     return made
 
 
-def _slot(name: str, pos: ir.Pos) -> int:
+def slot(name: str, pos: ir.Pos) -> int:
     """Return a slot number for the call made by an operator, distinct from the slots of explicit calls."""
     return -(1_000_000 + pos[0] * 100_000 + pos[1] * 100 + len(name))

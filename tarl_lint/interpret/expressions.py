@@ -94,7 +94,11 @@ def external(ctx: Interpreter, qualified: str) -> Value:
 
 
 def _attribute(ctx: Interpreter, expr: ir.Attribute, frame: Frame) -> Value:
-    base = evaluate(ctx, expr.base, frame)
+    return read_attribute(ctx, evaluate(ctx, expr.base, frame), expr, frame)
+
+
+def read_attribute(ctx: Interpreter, base: Value, expr: ir.Attribute, frame: Frame) -> Value:
+    """Return an attribute of an evaluated object; call the getter of a property or descriptor."""
     value = heap.read_or_hold(ctx, base, expr.name)
     for obj in value.objects:
         if obj.kind == "bound" and is_property(obj):
@@ -138,9 +142,9 @@ def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:
 def _part_of_text(
     ctx: Interpreter, base: Value, bounds: Sequence[ir.Expr | None], frame: Frame
 ) -> Value | None:
-    """Return `text[a:b]` of a known text; None if it is unknown, or if the run is not for a launch file."""
+    """Return `text[a:b]` of a known text; None if it is unknown."""
     known, text = base.constant()
-    if not ctx.launching or not known or not isinstance(text, str):
+    if not known or not isinstance(text, str):
         return None
     ends = [evaluate(ctx, one, frame).constant() if one is not None else (True, None) for one in bounds]
     numbers = [end for found, end in ends if found and (end is None or isinstance(end, int))]

@@ -16,7 +16,7 @@ from tarl_lint.interpret.budget import (
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.lower_statements import lower_module
-from tarl_lint.memory import carry_nodes
+from tarl_lint.memory import carry_nodes, joins
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.shared import Root
 from tarl_lint.memory.store import Store
@@ -173,9 +173,13 @@ class Linker(Interpreter):
                 frame = Frame(key, len(self.frames) + 1, program.function, program, module)
                 self.frames[key] = frame
             frame.root_waits = True
+            frame.escapes = []
             self.stack.append(frame)
             if not program.takes_part:
                 self.work.call_limit = IRRELEVANT_CALL_LIMIT + len(program.body)
             statements.run(self, frame)
+            # callbacks may still run when `sys.exit(app.exec_())` or another exception ends the module
+            if frame.escapes:
+                joins.merge(self, [{}, *{id(e.state): e.state for e in frame.escapes}.values()])
 
         self.ops.add_root(self, root, run)

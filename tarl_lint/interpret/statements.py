@@ -25,7 +25,7 @@ from tarl_lint.ir.exception_types import raised
 from tarl_lint.ir.lower_statements import lower_body
 from tarl_lint.memory import heap, updates
 from tarl_lint.memory.frames import Escape, Frame
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, const, join, lineage
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, const, join
 from tarl_lint.models import removal, unpacking
 from tarl_lint.models.ros import publications
 from tarl_lint.models.ros.endpoints import Acceptance, Publisher
@@ -107,7 +107,7 @@ def assign(ctx: Interpreter, target: ir.Expr, value: Value, frame: Frame) -> Non
         base = expressions.evaluate(ctx, target.base, frame)
         if not base.pts:
             assign_fallback(ctx, target.base, value, frame)
-        elif not set_property(ctx, base, target, value, frame):
+        elif not descriptors.write(ctx, base, target.name, value, frame, target.pos):
             updates.write_field(ctx, base, target.name, value)
     elif isinstance(target, ir.Item):
         _assign_item(ctx, target, value, frame)
@@ -137,24 +137,6 @@ def _assign_item(ctx: Interpreter, target: ir.Item, value: Value, frame: Frame) 
         updates.write_item(ctx, base, index, value)
     else:
         assign_fallback(ctx, target.base, value, frame)
-
-
-def set_property(ctx: Interpreter, base: Value, target: ir.Attribute, value: Value, frame: Frame) -> bool:
-    """Call the setter if the attribute is a property, or the `__set__` of a descriptor."""
-    done = descriptors.write(ctx, base, target.name, value, frame, target.pos)
-    ctx.store.reads.ask(ctx.nullness.setters.__contains__, target.name)
-    if target.name not in ctx.nullness.setters:
-        return done
-    for obj in base.objects:
-        cls = obj.info if obj.kind == "instance" else None
-        for owner in lineage(cls) if isinstance(cls, Obj) else ():
-            setter = ctx.store.get((owner, f"{target.name}.setter"))
-            if setter is not None:
-                call = ir.Call(target, (), (), target.pos, -target.slot)
-                calls.call_value(ctx, heap.bind(ctx, setter, obj, owner), ([value], {}), frame, call)
-                done = True
-                break
-    return done
 
 
 def assign_fallback(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame) -> None:

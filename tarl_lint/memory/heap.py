@@ -29,17 +29,19 @@ KEYS = "<keys>"  # field of a mapping: dependencies of its keys
 LENGTH = "<length>"  # field of a container: dependencies of its length
 HELD = "<callables>"  # field of a library object: callables that were passed to it
 SENT = "<sent>"  # field of a port, file or socket: data written to it
+MEMBERS = "members"  # name of a sequence of the known names, or names and values, of an object's attributes
 GENERATOR = "generator"  # name of a sequence that represents a generator
 METHODS_OF = {
     "publisher": frozenset(["publish"]),
     "sequence": frozenset(
-        ["append", "appendleft", "extend", "insert", "add", "put", "put_nowait", "pop", "popleft", "get"]
+        ["append", "appendleft", "extend", "insert", "add", "put", "put_nowait", "send", "send_nowait", "pop",
+         "popleft", "get"]
     ),
     "mapping": frozenset(["update", "get", "pop", "setdefault", "__getitem__", "__setitem__"]),
     "lib": frozenset(["put", "put_nowait", "set_result"]),
     "goal": frozenset(["publish_feedback"]),
     "server": frozenset(["publish_feedback", "set_succeeded", "set_aborted"]),
-}
+}  # fmt: skip
 DICTIONARIES = frozenset(["dict", "OrderedDict", "defaultdict", "UserDict", "Counter", "TypedDict", "?"])
 HOLLOW = frozenset(
     ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super", VIEW]

@@ -24,6 +24,7 @@ from tarl_lint.trees import walk
 MAX_INSIDE: Final = 3
 # number of slots for the callables of one call; they differ from the slots of the calls in the code
 KEPT_APART: Final = 500
+INSIDE: Final = ("sequence", "mapping")  # kinds of objects in which callables are searched
 SERVER: Final = "server"  # attribute of a handler in which libraries store what made it
 
 
@@ -42,6 +43,26 @@ def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Cal
             if target.kind in LATER:
                 opaque = _opaque(ctx, arguments, BOTTOM)
                 ctx.ops.call_later(ctx, target, _wanted(ctx, target, opaque)[0] if opaque.deps else ())
+    for target in _nested(ctx, (*plain, *named.values())):
+        ctx.ops.call_later(ctx, target, ())
+
+
+def _nested(ctx: Interpreter, values: Iterable[Value]) -> list[Obj]:
+    """Return the functions inside containers, such as a list of tools."""
+    inner = [containers.elements_of_any(ctx, _only(o)) for v in values for o in v.objects if o.kind in INSIDE]
+    return [o for o in _callables(ctx, inner, MAX_INSIDE - 1) if o.kind in LATER]
+
+
+def notify(ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
+    """Let an object of a library call its observers, which it gets now, with the data that it has or will get.
+
+    The object itself represents this data.
+    """
+    for target in (o for value in arguments[0] for o in value.objects):
+        if target.kind == "method" and (deps := ctx.use(base)):
+            calls.call_object(ctx, target, ([Value(deps)], {}), frame, call)
+        elif target.kind in LATER:
+            ctx.ops.call_later(ctx, target, _wanted(ctx, target, base)[0])
 
 
 def make_instances(
@@ -71,7 +92,7 @@ def _callables(ctx: Interpreter, values: Iterable[Value], depth: int) -> list[Ob
         for obj in value.objects:
             if obj.kind in LATER or (obj.kind == "instance" and _functor(ctx, obj)):
                 found[obj] = None
-            elif obj.kind in ("sequence", "mapping") and depth:
+            elif obj.kind in INSIDE and depth:
                 found.update(
                     dict.fromkeys(_callables(ctx, [containers.elements_of_any(ctx, _only(obj))], depth - 1))
                 )

@@ -33,6 +33,7 @@ QUEUES = frozenset(
     for module in ("queue", "Queue", "asyncio", "multiprocessing")
     for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
 )
+PIPES = ("multiprocessing.Pipe", "trio.open_memory_channel", "anyio.create_memory_object_stream")
 PROCESSES = frozenset(["subprocess.Popen", "pexpect.spawn", "pexpect.spawnu"])
 STREAMS = frozenset(["stdin", "stdout", "stderr"])
 NAMED = (
@@ -351,7 +352,7 @@ def new_queue(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def new_pipe(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the two ends of a pipe between processes. One object represents both: what is sent comes out again."""
+    """Return the two ends of a pipe or channel. One object represents both: what is sent comes out again."""
     end = new_queue(ctx, it)
     obj = recency.allocate(ctx, "sequence", it.frame, ("ends", it.call.slot))
     for number in range(2):

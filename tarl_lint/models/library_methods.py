@@ -9,7 +9,7 @@ from tarl_lint.interpret import call_contexts
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, instances
+from tarl_lint.memory import heap, instances, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import (
     NONE,
@@ -19,7 +19,7 @@ from tarl_lint.memory.values import (
     Value,
     inherited_from,
 )
-from tarl_lint.method_effects import changes, fails, keeps_callables
+from tarl_lint.method_effects import changes, derives, fails, keeps_callables, observes, returns_all
 from tarl_lint.models import (
     argument_parsers,
     callables,
@@ -123,6 +123,8 @@ def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
 def _unknown_method(
     ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Value:
+    if (text := _of_text(ctx, base, name, arguments, frame, call)) is not None:
+        return text
     if (drawing := drawings.drawn_into(ctx, base, arguments, frame, call)) is not None:
         return drawing
     if (found := instances.looked_up(ctx, name, (*arguments[0], *arguments[1].values()))).pts:
@@ -147,23 +149,49 @@ def _unknown_method(
             ctx, Value(ctx.use(base) | call_contexts.all_used(ctx, arguments)), frame, call
         )
         containers.change(ctx, arguments[0][written], news, call.arguments[written:], frame)
-    if name in TEXT_METHODS and not base.pts and base.consts:
-        return Value(
-            ctx.use(base) | call_contexts.all_used(ctx, arguments),
-            consts=strings.text_of(ctx, base, name, arguments),
-        )
     if name in catalog.DEVICE_READERS and base.pts and all(map(is_device, base.pts)):
         deps = containers.received(ctx, base, arguments)
     else:
-        deps = ctx.use(base) | call_contexts.all_used(ctx, arguments) | given
+        deps = ctx.use(base) | call_contexts.all_used(ctx, arguments) | given | _fields(ctx, base, name)
     if not deps and not base.pts:
         return UNKNOWN
     made = new_object(ctx, arguments, deps, frame, call, fields=False)
     return _loaded(ctx, made, Invocation(name, base, arguments, frame, call))
 
 
+def _of_text(
+    ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
+) -> Value | None:
+    """Return the result of a method of known texts; None for other methods and objects."""
+    if base.pts or not base.consts:
+        return None
+    if name in strings.TESTS:
+        return strings.tested(base, name, arguments)
+    if name not in TEXT_METHODS:
+        return None
+    if name == "join":
+        arguments = strings.keys_joined(ctx, arguments, frame, call)
+    return Value(
+        ctx.use(base) | call_contexts.all_used(ctx, arguments),
+        consts=strings.text_of(ctx, base, name, arguments),
+    )
+
+
+def _fields(ctx: Interpreter, base: Value, name: str) -> Nodes:
+    """Return the data in the fields of instances if a library's base class defines a method that returns them all."""
+    found = NONE
+    for obj in base.objects if returns_all(name) else ():
+        if obj.kind == "instance":
+            ctx.store.reads.look(obj)
+            held = (ctx.store.get((obj, field)) for field in list(obj.fields) if field.isidentifier())
+            found = found.union(*(ctx.use(value) for value in held if value is not None))
+    return found
+
+
 def _connect(ctx: Interpreter, it: Invocation) -> None:
-    """Connect or emit a signal, or declare an option of the command line."""
+    """Register observers, connect or emit a signal, or declare an option of the command line."""
+    if observes(it.name) and it.base.pts and all(map(changeable, it.base.pts)):
+        callables.notify(ctx, it.base, it.arguments, it.frame, it.call)
     if it.name in SIGNALLING:
         qt_signals.signal(ctx, it.base, it.name, it.arguments, it.frame, it.call)
     elif it.name == environment.ADDING:
@@ -171,7 +199,9 @@ def _connect(ctx: Interpreter, it: Invocation) -> None:
 
 
 def _loaded(ctx: Interpreter, made: Value, it: Invocation) -> Value:
-    """Return the result of a method: parsed options, or data loaded from a file."""
+    """Return the result of a method: parsed options, data loaded from a file, or a stream derived from another."""
+    if derives(it.name):  # what the base gets later is also in the result
+        updates.add_element(ctx, made, Value(pts=frozenset(o for o in it.base.pts if o.kind == "lib")))
     if it.name not in argument_parsers.PARSING:
         return made
     if ctx.thorough:

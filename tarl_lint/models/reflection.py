@@ -5,13 +5,14 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 
-from tarl_lint.interpret import call_contexts, expressions
+from tarl_lint.interpret import call_contexts, descriptors, expressions
+from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, join_all, lineage, pointer
+from tarl_lint.memory.values import BOTTOM, MAX_TEXTS, UNKNOWN, Obj, Value, const, join_all, lineage, pointer
 from tarl_lint.models import containers
 
 OURS = frozenset(["instance", "class", "closure", "module"])
@@ -27,7 +28,17 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
         ]  # `reduce(getattr, parts, message)` returns a part of the message; storing there fills it
     if not names and len(it.call.arguments) > 1:
         return _method_by_beginning(ctx, it) or ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
-    return join_all([heap.read_or_hold(ctx, plain[0], n) for n in names] + plain[2:])
+    found = [
+        expressions.read_attribute(ctx, plain[0], _written(it, name, number), it.frame)
+        for number, name in enumerate(names)
+    ]
+    return join_all(found + plain[2:])
+
+
+def _written(it: Invocation, name: str, number: int = 0) -> ir.Attribute:
+    """Return the attribute that a call of `getattr` accesses, as if it was written with a dot."""
+    base = it.call.arguments[0] if it.call.arguments else ir.Const(None, it.call.pos)
+    return ir.Attribute(base, name, it.call.pos, 1000 * (abs(it.call.slot) + 1) + number)
 
 
 def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
@@ -49,6 +60,65 @@ def getter(ctx: Interpreter, it: Invocation) -> Value:
     """Return the function made by `attrgetter(...)` or `itemgetter(...)`."""
     obj = recency.intern(ctx, "partial", (it.frame.id, it.statement, it.call.slot, *it.frame.turn), it.name)
     obj.describe((expressions.external(ctx, f"{it.name}.<made>"), it.arguments[0], {}))
+    return pointer(obj)
+
+
+def bound_method(ctx: Interpreter, it: Invocation) -> Value:
+    """Return `types.MethodType(function, obj)`."""
+    if len(it.arguments[0]) != 2:
+        return UNKNOWN
+    function, receiver = it.arguments[0]
+    owners = ((o, o.info) for o in receiver.objects if o.kind == "instance")
+    ways = [heap.bind(ctx, function, obj, cls) for obj, cls in owners if isinstance(cls, Obj)]
+    return join_all(ways) if ways else function
+
+
+def member_names(ctx: Interpreter, it: Invocation) -> Value:
+    """Return `dir(obj)`: the names of the attributes of an object of an analysed class, without special ones."""
+    found = _members(ctx, it.arguments[0])
+    if found is None:
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    return _listed(ctx, [const(name) for name in found], it)
+
+
+def members(ctx: Interpreter, it: Invocation) -> Value:
+    """Return `inspect.getmembers(obj)`: the names and values of the attributes; with a predicate, only the methods."""
+    found, filters = (
+        _members(ctx, it.arguments[0]),
+        len(it.arguments[0]) > 1 or "predicate" in it.arguments[1],
+    )
+    if found is None:
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    pairs: list[Value] = []
+    for name in found:
+        value = heap.read(ctx, it.arguments[0][0], name)
+        if not filters or any(o.kind in CALLABLE for o in value.pts):
+            pair = recency.allocate(ctx, "sequence", it.frame, ("pair", it.call.slot, name))
+            ctx.store.put((pair, item_field(0)), const(name))
+            ctx.store.put((pair, item_field(1)), value)
+            pairs.append(pointer(pair))
+    return _listed(ctx, pairs, it)
+
+
+def _members(ctx: Interpreter, plain: Sequence[Value]) -> list[str] | None:
+    """Return the names of an object's attributes; None if they are not known, or too many."""
+    obj = next(iter(plain[0].pts)) if plain and len(plain[0].pts) == 1 else None
+    cls = obj.info if obj is not None and obj.kind == "instance" else obj
+    if obj is None or not isinstance(cls, Obj) or cls.kind != "class":
+        return None
+    found: set[str] = set()
+    for owner in {obj, *lineage(cls)}:
+        ctx.store.reads.look(owner)
+        found.update(n for n in owner.fields if n.isidentifier() and not n.startswith("__"))
+    return sorted(found) if 0 < len(found) <= MAX_TEXTS else None
+
+
+def _listed(ctx: Interpreter, values: Sequence[Value], it: Invocation) -> Value:
+    """Return a new sequence over which a loop is executed element by element."""
+    obj = recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot))
+    obj.name = heap.MEMBERS
+    for number, value in enumerate(values):
+        ctx.store.put((obj, item_field(number)), value)
     return pointer(obj)
 
 
@@ -90,7 +160,9 @@ def set_attribute(ctx: Interpreter, it: Invocation) -> Value:
         if ctx.thorough and value.deps != plain[2].deps:
             ctx.graph.copies |= value.deps
         for field in plain[1].texts():
-            updates.write_field(ctx, plain[0], field, value)
+            plainly = it.name == "object.__setattr__" or it.name == "__setattr__"
+            if plainly or not descriptors.write(ctx, plain[0], field, value, it.frame, it.call.pos):
+                updates.write_field(ctx, plain[0], field, value)
         if not plain[1].texts():
             updates.add_element(ctx, plain[0], value)
     return UNKNOWN

@@ -32,6 +32,7 @@ TEXT_METHODS: Final = frozenset(
         "removesuffix",
     ]
 )
+TESTS: Final = frozenset(["startswith", "endswith"])
 MAX_TEXT: Final = 300
 
 
@@ -45,6 +46,15 @@ def text_of(ctx: Interpreter, base: Value, name: str, arguments: Arguments) -> C
         ),
         [base, *plain, *named.values()],
     )
+
+
+def tested(base: Value, name: str, arguments: Arguments) -> Value | None:
+    """Return whether known texts begin or end with a known text; None if it is unknown, or differs between them."""
+    texts, given = base.texts(), [value.constant() for value in arguments[0]]
+    if not texts or base.pts or len(given) != 1 or not isinstance(given[0][1], str):
+        return None
+    results = {getattr(text, name)(given[0][1]) for text in texts}
+    return Value(base.deps, consts=frozenset(results)) if len(results) == 1 else None
 
 
 def pieces(ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value | None:

@@ -129,6 +129,11 @@ def connect(
         if _of_library(ctx, target):
             obj = _received(ctx, record, it.frame, ("forward", it.call.slot, target.key))
             calls.call_object(ctx, target, ([pointer(obj)], {}), it.frame, it.call)
+        elif target.kind == "lib" and target.parent is not None and target.name.isidentifier():
+            # an attribute of a library's object, such as `subject.on_next`, is one of its methods
+            obj = _received(ctx, record, it.frame, ("forward", it.call.slot, target.key))
+            owner, given = target.parent, pointer(obj)
+            ctx.ops.call_method(ctx, pointer(owner), owner, target.name, ([given], {}), it.frame, it.call)
         elif target.kind in CALLABLE or target.kind == "instance":
             arriving = message(ctx, record, target)
             call_when(ctx, ("callback", *record.key), target, [pointer(arriving), *extra], "callback")

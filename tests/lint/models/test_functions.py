@@ -399,7 +399,39 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(kept.near)  # data
         out.publish(kept.far)  # clean
     """,
-    ("multiprocessing.Pipe",): """
+    ("types.MethodType",): """
+        class Plain: near, far = 0.0, 0.0
+        def put(self, value): self.near = value
+        kept = Plain()
+        kept.put = NAME(put, kept)
+        kept.put(msg.data)
+        out.publish(kept.near)  # data
+        out.publish(kept.far)  # clean
+    """,
+    ("dir",): """
+        class Plain:
+            def on_near(self): return msg.data
+            def far(self): return 0.0
+        kept = Plain()
+        for name in NAME(kept):
+            if name.startswith("on_"):
+                out.publish(getattr(kept, name)())  # data
+            else:
+                out.publish(getattr(kept, name)())  # clean
+    """,
+    ("inspect.getmembers",): """
+        class Plain:
+            limit = 0.0
+            def on_near(self): return msg.data
+            def far(self): return 0.0
+        kept = Plain()
+        for name, method in NAME(kept, inspect.ismethod):
+            if name.startswith("on_"):
+                out.publish(method())  # data
+            else:
+                out.publish(method())  # clean
+    """,
+    ("multiprocessing.Pipe", "trio.open_memory_channel", "anyio.create_memory_object_stream"): """
         near, far = NAME()
         other, _ = NAME()
         near.send(msg.data)

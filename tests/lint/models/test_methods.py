@@ -166,7 +166,7 @@ CHANGED: dict[tuple[str, ...], str] = {
         out.publish(len(kept))  # data
         out.publish(len(other))  # clean
     """,
-    ("append", "put", "put_nowait", "push", "push_back", "appendleft"): """
+    ("append", "put", "put_nowait", "send_nowait", "push", "push_back", "appendleft"): """
         kept, other = [], []
         kept.NAME(msg.data)
         other.NAME(0.0)

@@ -221,9 +221,70 @@ class Server(http.server.HTTPServer):
 seen = [0.0]
 rospy.Subscriber("in", Float64, lambda msg: seen.__setitem__(0, msg.data))
 Server().serve_forever()
+### observers of a library's object
+subject = reactivex.Subject()
+subject.pipe(1).subscribe(lambda x: out.publish(x))  # data
+rospy.Subscriber("in", Float64, subject.on_next)
+other = reactivex.Subject()
+other.pipe(1).subscribe(lambda x: out.publish(x))  # clean
+rospy.Subscriber("other", Float64, print)
+### functions in a list that a library gets
+def say(text):
+    out.publish(seen["x"])  # data
+seen = {}
+rospy.Subscriber("in", Float64, lambda msg: seen.update(x=msg.data))
+agent = agents.make([say])
+### a program that ends with the exit code of a window
+class Window:
+    def __init__(self):
+        self.seen = 0.0
+        rospy.Subscriber("in", Float64, self.receive)
+        rospy.Timer(rospy.Duration(1), self.tick)
+    def receive(self, msg):
+        self.seen = msg.data
+    def tick(self, event):
+        out.publish(self.seen)  # data
+if __name__ == "__main__":
+    window = Window()
+    sys.exit(app.exec_())
+### setattr and getattr of a property
+class Level:
+    def __init__(self):
+        self.seen = []
+    @property
+    def value(self):
+        return self.seen[-1]
+    @value.setter
+    def value(self, value):
+        self.seen.append(value)
+        out.publish(value)  # data
+level = Level()
+rospy.Subscriber("in", Float64, lambda msg: setattr(level, "value", msg.data))
+rospy.Timer(1, lambda event: out.publish(getattr(level, "value")))  # data
+### an object as text by a method of a library's base class
+class Fix(pydantic.BaseModel):
+    lat: float
+    other: float
+def on(msg):
+    fix = Fix(lat=msg.data, other=1.0)
+    out.publish(fix.model_dump_json())  # data
+    out.publish(fix.other)  # clean
+    out.publish(fix.name())  # clean
+rospy.Subscriber("in", Float64, on)
 """
 CASES = dict(part.split("\n", 1) for part in PROGRAMS.split("### ")[1:])
-MODULES = ("asyncio", "contextlib", "enum", "functools", "http.server", "queue", "rclpy")
+MODULES = (
+    "asyncio",
+    "contextlib",
+    "enum",
+    "functools",
+    "http.server",
+    "pydantic",
+    "queue",
+    "rclpy",
+    "reactivex",
+    "sys",
+)
 
 
 @pytest.mark.parametrize("title", CASES)
