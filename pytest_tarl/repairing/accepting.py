@@ -129,7 +129,7 @@ class Examiner:
         """Yield the other values of a candidate that come before its further guards; update `weak`."""
         guard = examined.candidate.guard
         if guard == candidates.ALWAYS and examined.reason in (*WEAK, *STRONG):
-            yield self.others.unguarded(candidate, trials)
+            yield self.others.unguarded(candidate, examined.reason, trials)
         if examined.fresh and self._missed.nearly_right(examined.candidate):
             weak.append(guard)
             yield self.others.improved(examined.candidate, trials)

@@ -49,7 +49,16 @@ class Between:
         if all(max(one, 1 / one) ** span < FINEST for one in factors):
             return None
         self.steps += 1
-        share = (self.weak + self.strong) / 2
+        return self.at(self.share)
+
+    @property
+    def share(self) -> float:
+        """Return the exponent halfway between the weak and the strong one."""
+        return (self.weak + self.strong) / 2
+
+    def at(self, share: float) -> Candidate | None:
+        """Return the candidate whose factors are raised to an exponent, or None if that changes nothing."""
+        factors = [one for one in self._factors if one is not None]
         tried = (
             to_step(mutation, one**share, self.mutate)
             for mutation, one in zip(self.candidate.mutations, factors, strict=True)
@@ -59,7 +68,7 @@ class Between:
 
     def told(self, reason: Reason) -> bool:
         """Store the result of the last candidate; return whether it decides on which side to continue."""
-        share = (self.weak + self.strong) / 2
+        share = self.share
         if reason in WEAK:
             self.weak = share
         elif reason in STRONG:

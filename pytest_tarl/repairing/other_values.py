@@ -10,7 +10,7 @@ from dataclasses import replace
 from math import sqrt
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.model import Guard
+from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import STRONG, WEAK, Between, common_factor, stronger
 from pytest_tarl.repairing.centring import in_place, moved, neighbours
 from pytest_tarl.repairing.ledger import Ledger, Tried, operands
@@ -68,12 +68,13 @@ class Others:
             if not examined.fresh or examined.reason not in (*WEAK, *TOO_LITTLE):
                 return
 
-    def unguarded(self, candidate: Candidate, trials: Trials) -> OtherValues:
+    def unguarded(self, candidate: Candidate, reason: Reason, trials: Trials) -> OtherValues:
         """Propose smaller changes that may hold in both worlds without the condition of a candidate.
 
         A lower threshold may suit both worlds although the value found under the condition goes too far in the rest of
         a mission. Bisect between the original value and the one found: if a value fails without the condition, the same
-        value under the condition shows whether it is too small. Raise BudgetSpentError.
+        value under the condition shows whether it is too small. A value that reaches the goal is moved to the middle of
+        the good ones. `reason` says why the value found fails without its condition. Raise BudgetSpentError.
         """
         if not candidate.guard.conjuncts or operands(candidate) in self._unguarded:
             return
@@ -84,13 +85,26 @@ class Others:
             if middle is None:
                 return
             if self._reaches(middle, trials):
-                examined = yield middle
+                examined = yield self._amid(between, middle, reason in STRONG, trials)
                 # the tests left are for the candidate under its condition
                 if examined.fresh or not between.told(examined.reason):
                     return
                 continue
             enough = self._reaches(replace(middle, guard=candidate.guard), trials)
             between.told(STRONG[0] if enough else WEAK[0])
+
+    def _amid(self, between: Between, good: Candidate, harmful: bool, trials: Trials) -> Candidate:
+        """Return a value in the middle of those that reach the goal: `good`, one halfway inward and one outward.
+
+        If larger changes are harmful in the designed world, none goes further outward.
+        """
+        low, high = (between.weak + between.share) / 2, (between.share + between.strong) / 2
+        beside = (low,) if harmful else (low, high)
+        held = [
+            share for share in beside if (one := between.at(share)) is not None and self._reaches(one, trials)
+        ]
+        amid = between.at(sum((between.share, *held)) / (len(held) + 1))
+        return good if amid is None else amid
 
     def inward(self, refused: Candidate, trials: Trials) -> OtherValues:
         """Propose a smaller change than `refused`, which lost reward in few missions of its test and may go too far.

@@ -65,7 +65,7 @@ def test_a_value_that_was_examined_is_not_proposed_again() -> None:
 
 
 def without_condition(
-    drifted: tuple[float, float], guarded: float, designed: float
+    drifted: tuple[float, float], guarded: float, designed: float, reason: Any = "gain too small"
 ) -> tuple[list[float], list[tuple[float, bool]]]:
     """Return the proposals for a change by 5 under a condition, and the (factor, condition) of what ran.
 
@@ -82,7 +82,7 @@ def without_condition(
 
     mutants: Any = SimpleNamespace(mutate=mutations, order=SimpleNamespace(goal=GOAL))
     others = Others(mutants, Ledger(), Missed())
-    found, proposed = others.unguarded(Candidate(FOUND.mutations, WET), Trials(run, 50)), []
+    found, proposed = others.unguarded(Candidate(FOUND.mutations, WET), reason, Trials(run, 50)), []
     with suppress(StopIteration):
         candidate = next(found)
         while True:
@@ -90,25 +90,30 @@ def without_condition(
             proposed.append(factor(candidate.mutations[0]) or 1.0)
             reason: Any = "nominal gets worse" if proposed[-1] > designed else "never tested"
             candidate = found.send(Tried(candidate, reason, ()))
-    assert list(others.unguarded(Candidate(FOUND.mutations, WET), Trials(run, 50))) == []
+    assert list(others.unguarded(Candidate(FOUND.mutations, WET), reason, Trials(run, 50))) == []
     return proposed, ran
 
 
+def power(*exponents: float) -> Any:
+    return pytest.approx([5**one for one in exponents], rel=1e-3)
+
+
 def test_a_smaller_change_may_need_no_condition() -> None:
-    half = pytest.approx(5**0.5, rel=1e-3)
-    assert without_condition((1.6, 3.0), 1.6, 9.0)[0] == [half]
-    proposed, ran = without_condition((1.2, 1.6), 1.2, 9.0)
-    assert proposed == [
-        pytest.approx(5**0.25, rel=1e-3)
-    ]  # the first value goes too far without the condition
-    assert ran[:2] == [(half, False), (half, True)]
-    assert without_condition((3.0, 3.6), 3.0, 9.0)[0] == [
-        pytest.approx(5**0.75, rel=1e-3)
-    ]  # the first value is too small
+    assert without_condition((2.1, 3.0), 2.1, 9.0)[0] == power(0.5)
+    proposed, ran = without_condition((1.3, 1.6), 1.3, 9.0)
+    assert proposed == power(0.25)  # the first value goes too far without the condition
+    assert ran[:2] == [(pytest.approx(5**0.5, rel=1e-3), False), (pytest.approx(5**0.5, rel=1e-3), True)]
+    assert without_condition((3.0, 3.6), 3.0, 9.0)[0] == power(0.75)  # the first value is too small
+
+
+def test_a_change_without_a_condition_is_moved_to_the_middle_of_the_good_values() -> None:
+    assert without_condition((1.4, 3.0), 1.4, 9.0)[0] == power(0.375)
+    assert without_condition((2.1, 4.0), 2.1, 9.0)[0] == power(0.625)
+    assert without_condition((2.1, 4.0), 2.1, 9.0, "nominal gets worse")[0] == power(0.5)
 
 
 def test_a_change_that_does_harm_in_the_designed_world_is_made_smaller_a_few_times() -> None:
-    assert without_condition((1.0, 9.0), 1.0, 1.7)[0] == pytest.approx([5**0.5, 5**0.25], rel=1e-3)
+    assert without_condition((1.0, 9.0), 1.0, 1.4, "nominal gets worse")[0] == power(0.375, 0.1875)
     proposed, ran = without_condition((9.0, 8.0), 9.0, 9.0)
     assert proposed == []
     assert len(ran) == 6
@@ -117,4 +122,4 @@ def test_a_change_that_does_harm_in_the_designed_world_is_made_smaller_a_few_tim
 def test_a_change_without_a_condition_has_no_smaller_ones_of_this_kind() -> None:
     mutants: Any = SimpleNamespace(mutate=mutations, order=SimpleNamespace(goal=GOAL))
     trials = Trials(lambda *_: Outcome(10.0, True), 50)
-    assert list(Others(mutants, Ledger(), Missed()).unguarded(FOUND, trials)) == []
+    assert list(Others(mutants, Ledger(), Missed()).unguarded(FOUND, "gain too small", trials)) == []
