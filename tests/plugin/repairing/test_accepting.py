@@ -179,10 +179,7 @@ def test_the_refused_candidate_is_reported_whatever_it_failed_at(monkeypatch: py
     assert refusal(("good",), monkeypatch, placing=lambda *_: None) == (0, "not at its definition")
 
 
-@pytest.mark.parametrize(
-    ("budget", "reported", "reason"),
-    [(0, None, "budget"), (1, 0, "gain too small"), (2, 1, "gain too small")],
-)
+@pytest.mark.parametrize(("budget", "reason"), [(0, "budget"), (1, "gain too small"), (2, "gain too small")])
 def test_the_budget_is_the_reason_only_if_no_candidate_was_refused_before_it_ended(
     budget: int, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
