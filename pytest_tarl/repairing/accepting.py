@@ -11,6 +11,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import STRONG, WEAK, further
 from pytest_tarl.repairing.centring import centred
+from pytest_tarl.repairing.known_missions import firing, known_to_fail
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.missed import Missed
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
@@ -25,7 +26,6 @@ from pytest_tarl.searching.confirming import CONFIRMATIONS
 from pytest_tarl.searching.plainness import oddness
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
-QUICK = 3  # number of known seeds on which a guard is tried before its test on fresh seeds
 WORLDS = 3  # number of worlds in which a test runs: drifted, designed, and designed without the candidate
 OLD_WORLD = 8  # number of episodes in the old world, to display the reward there if the drift is permanent
 MOST = 5  # maximum number of candidates to test per search
@@ -172,7 +172,7 @@ class Examiner:
             return self.ledger.enter(Tried(candidate, "not at its definition", ()))
         candidate = placed
         try:
-            problem = self._known_to_fail(candidate, trials)
+            problem = known_to_fail(self.mutants, candidate, trials, self._missed)
         except RepairError:
             problem = "cannot be written"
         if problem:
@@ -285,39 +285,11 @@ class Examiner:
         worse = reason == "gain too small" and fmean(totals) < self.order.goal.online
         return "worse than unrepaired" if worse else reason
 
-    def _known_to_fail(self, candidate: Candidate, trials: Trials) -> Reason:
-        """Return why a candidate fails on known episodes, or "" if it does not fail.
-
-        Known episodes are drifted episodes with a loss, a few drifted episodes without a loss, and recorded episodes in
-        which the guard holds. Raise BudgetSpentError and RepairError.
-        """
-        goal, offline = self.order.goal, self.order.fixture.sample
-        known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))
-        slack = self.order.reference.mean - goal.near
-        trials.expect((candidate, pair.seed) for pair in goal.pairs[:QUICK])
-        for pair in goal.pairs[:QUICK]:
-            if not goal.reached(trials(candidate, pair.seed), pair.seed):
-                trials.misses[pair.seed] += 1
-                return "gain too small"
-        if self._missed.again(candidate, trials, goal):
-            return "gain too small"
-        for pair in goal.controls:
-            outcome = trials(candidate, pair.seed)
-            if outcome.total < pair.total - slack or goal.lost(outcome):
-                return "breaks other missions"
-        firing = self._firing(candidate)[:QUICK]
-        self.mutants.foresee([(candidate, seed) for seed in firing], None)
-        for seed in firing:
-            trials.charge()
-            if self.mutants.run(candidate, seed, None).total < known[seed] - slack:
-                return "nominal gets worse"
-        return ""
-
     def _tested(self, candidate: Candidate) -> Acceptance:
         """Test a candidate on its own fresh seeds."""
         order, number = self.order, of_fresh_seeds(self.tried) + 1
         self._ran = 0
-        nominal = self._world(candidate, None) if self._firing(candidate) else None
+        nominal = self._world(candidate, None) if firing(self.order, candidate) else None
 
         def test(fresh: Sequence[int]) -> Acceptance:
             return accept(
@@ -344,14 +316,6 @@ class Examiner:
         return World(
             run,
             lambda chosen: self.mutants.foresee([(candidate, seed) for seed in chosen], drift),
-        )
-
-    def _firing(self, candidate: Candidate) -> tuple[int, ...]:
-        """Return the seeds of recorded episodes in which the guard holds; empty if the drift is permanent."""
-        if self.order.permanent:
-            return ()
-        return candidates.firing_episodes(
-            candidate.guard, self.order.fixture.sample, self.order.comparison.sensors
         )
 
     def _refuse(self, refused: Refused) -> None:
