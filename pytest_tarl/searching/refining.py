@@ -12,7 +12,7 @@ FINEST = 1.1  # ratio of two factors below which no factor between them is tried
 # minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
 ALMOST = 0.9
 NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
-# minimum height of a sharp peak (see SHARP) above one of its neighbours that is refined as finely, and minimum gain of
+# minimum height of a sharp peak (see SHARP) above 0 or a neighbour that is refined as finely, and minimum gain of
 # other promising factors, as a share of the wanted gain
 PROMISING = 0.4
 SHARP = 0.5  # a peak is sharp if both neighbouring factors gain at most this share of its gain
@@ -59,4 +59,4 @@ def _narrow(
     known = [gains[one] for one in neighbours if one in gains]
     sharp = len(known) == 2 and max(known) <= SHARP * most
     # a reward that falls far between two close factors tells as much as a large gain
-    return sharp and most - min(known) >= PROMISING * wanted
+    return sharp and most - min(0.0, *known) >= PROMISING * wanted
