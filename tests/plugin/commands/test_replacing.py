@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -172,3 +173,15 @@ def test_a_permission_error_of_the_system_is_raised(
             continue
         with pytest.raises(PermissionError):
             replace_all([change(path)])
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="needs the list of open files")
+@pytest.mark.parametrize("content", [b"before", b"edited"])
+def test_no_folder_stays_open(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "src" / "robot" / "node.py"
+    path.parent.mkdir(parents=True)
+    path.write_bytes(content)
+    count = len([*Path("/proc/self/fd").iterdir()])
+    with suppress(MovedError):
+        replace_all([Change(path, tmp_path, b"before", b"after")])
+    assert len([*Path("/proc/self/fd").iterdir()]) == count
