@@ -18,6 +18,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from tarl_lint.errors import UsageError
 from tarl_lint.settings.config import Options, resolve
 from tarl_lint.system.command import ALL, Request, systems
 from tarl_lint.system.hazards import hazards
@@ -78,8 +79,12 @@ def _reports(workspace: Path) -> Iterator[Report]:
         root = Path(place)
         _unpack(workspace.read_text("utf-8"), root)
         config = resolve(Options((root,), select=("TARL3",)))
-        found = {(one.code, one.message) for system in systems(Request(ALL, (), (root,)), config)
-                 for one in hazards(system, config)}  # fmt: skip
+        try:
+            found = {(one.code, one.message) for system in systems(Request(ALL, (), (root,)), config)
+                     for one in hazards(system, config)}  # fmt: skip
+        except UsageError as problem:
+            print(f"{workspace.name}: {problem}")
+            return
     yield from sorted(found)
 
 

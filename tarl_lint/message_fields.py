@@ -1,4 +1,4 @@
-"""Fields of messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`."""
+"""Fields of messages of the standard packages, and of other packages with messages for commands and displays."""
 
 from __future__ import annotations
 
@@ -129,4 +129,39 @@ ALL_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     "RelativeHumidity": HEADED | _fields("relative_humidity variance"),
     "Temperature": HEADED | _fields("temperature variance"),
     "TimeReference": HEADED | _fields("time_ref source"),
+}
+# the above, and the messages for commands and displays of other packages
+KNOWN_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
+    **ALL_FIELDS,
+    "JointTrajectory": HEADED | _fields("joint_names points"),
+    "JointTrajectoryPoint": _fields("positions velocities accelerations effort time_from_start"),
+    "AckermannDrive": _fields("steering_angle steering_angle_velocity speed acceleration jerk"),
+    "AckermannDriveStamped": HEADED | _fields("drive", "AckermannDrive"),
+    "GripperCommand": _fields("position max_effort"),
+    "Marker": HEADED
+    | _fields(
+        "ns id type action lifetime frame_locked points colors text mesh_resource mesh_file texture_resource"
+    )
+    | _fields("texture uv_coordinates mesh_use_embedded_materials")
+    | _fields("pose", "Pose")
+    | _fields("scale", "Vector3")
+    | _fields("color", "ColorRGBA"),
+    "MarkerArray": _fields("markers"),
+    "DiagnosticArray": HEADED | _fields("status"),
+    "DiagnosticStatus": _fields("level name message hardware_id values"),
+    "KeyValue": _fields("key value"),
+    "GeoPoint": _fields("latitude longitude altitude"),
+    "GeoPose": _fields("position", "GeoPoint") | _fields("orientation", "Quaternion"),
+    "GeoPointStamped": HEADED | _fields("position", "GeoPoint"),
+    "GeoPoseStamped": HEADED | _fields("pose", "GeoPose"),
+}
+# package → the names in KNOWN_FIELDS that may be types of this package
+PACKAGES: Final[Mapping[str, frozenset[str]]] = {
+    **dict.fromkeys(("std_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs"), frozenset(ALL_FIELDS)),
+    "trajectory_msgs": frozenset(["JointTrajectory", "JointTrajectoryPoint"]),
+    "ackermann_msgs": frozenset(["AckermannDrive", "AckermannDriveStamped"]),
+    "control_msgs": frozenset(["GripperCommand"]),
+    "visualization_msgs": frozenset(["Marker", "MarkerArray"]),
+    "diagnostic_msgs": frozenset(["DiagnosticArray", "DiagnosticStatus", "KeyValue"]),
+    "geographic_msgs": frozenset(["GeoPoint", "GeoPose", "GeoPointStamped", "GeoPoseStamped"]),
 }

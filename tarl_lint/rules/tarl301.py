@@ -6,9 +6,12 @@ not move. For this reason, the keyboard teleoperation of the Kobuki had no effec
 (https://github.com/aliasrobotics/RVD/issues/581). Robots also stand still if they are launched in a namespace
 but their code publishes on `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
 
-The rule reports nothing if a node of the launch file was not read or computes the names of its topics, or if an
-included launch file is not in the workspace, because the other end might be there. The rule also reports
-nothing if no publisher has a similar name, because sensors and simulators are often started elsewhere.
+Two private names of the same node are similar too, such as `/speech/finished` and `/speech/finish`.
+
+The rule reports nothing if a node of the launch file was not read and may use the type, or computes the names of its
+topics, or if an included launch file is not in the workspace, because the other end might be there. The types of
+well-known packages are known: a laser driver does not publish `Twist`. The rule also reports nothing if no publisher has
+a similar name, because sensors and simulators are often started elsewhere.
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ from typing import Final
 
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
-from tarl_lint.system.hazards import at_end, differ, single, spelled_alike
+from tarl_lint.system.hazards import at_end, differ, in_private_names, single, spelled_alike
 from tarl_lint.system.model import System
 from tarl_lint.workspace.conditions import exclusive
 
@@ -128,10 +131,8 @@ VALID: Final = (
 
 def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each subscription that differs from a publisher only in the name of the topic."""
-    if not system.complete:
-        return
     published, subscribed = (
-        {name for name, _, _ in system.ends(role)} for role in ("publishes", "subscribes")
+        {name for name, _, _ in system.named(role)} for role in ("publishes", "subscribes")
     )
     lonely = [(name, who, end) for name, who, end in system.ends("publishes") if name not in subscribed]
     for name, who, end in system.ends("subscribes"):
@@ -143,9 +144,12 @@ def findings(system: System) -> Iterator[Finding]:
             if them is not who
             and single(beyond)
             and not differ(end, beyond)
-            and spelled_alike(name, other)
+            and (spelled_alike(name, other) or in_private_names(name, other, who, them))
             and not exclusive(who.node, them.node)
         )
+        # nobody else publishes private names of a node that was read
+        own = [one for one in near if one[1] == name.rpartition("/")[0]]
+        near = near if system.complete(end) else own
         if near:
             message = f"{who.name} subscribes to {name} ({end.type}), which no node publishes; "
             message += (

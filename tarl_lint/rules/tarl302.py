@@ -154,10 +154,10 @@ VALID: Final = (
 
 def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each subscription whose type no publisher of its topic has."""
-    for name, who, end in system.ends("subscribes"):
+    for name, who, end in system.named("subscribes"):
         others = {
             (them.name, beyond)
-            for other, them, beyond in system.ends("publishes")
+            for other, them, beyond in system.named("publishes")
             if other == name and len(beyond.names) == 1 and not exclusive(who.node, them.node)
         }
         if len(end.names) == 1 and others and all(differ(end, beyond) for _, beyond in others):

@@ -1,9 +1,12 @@
 """TARL304: a service that is called has no server, and a server with a similar name is never called.
 
 The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason:
-a service `~home` of the node `arm` is `/arm/home`, not `/home`. The rule reports nothing if a node of the
-launch file was not read or an included launch file is not in the workspace. The rule also reports nothing if no
-server has a similar name, because the server may be started elsewhere.
+a service `~home` of the node `arm` is `/arm/home`, not `/home`. In one namespace, `open` and `open_door` are similar as
+well.
+
+The rule reports nothing if a node of the launch file was not read and may use the type, or if an included launch file is
+not in the workspace. The rule also reports nothing if no server has a similar name, because the server may be started
+elsewhere.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ from typing import Final
 
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
-from tarl_lint.system.hazards import at_end, single, spelled_alike
+from tarl_lint.system.hazards import at_end, in_private_names, longer_alike, single, spelled_alike
 from tarl_lint.system.model import System
 from tarl_lint.workspace.conditions import exclusive
 
@@ -71,18 +74,23 @@ VALID: Final = (
 
 def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each client whose service differs from that of a server only in its name."""
-    if not system.complete:
-        return
-    served, called = ({name for name, _, _ in system.ends(role)} for role in ("serves", "calls"))
+    served, called = ({name for name, _, _ in system.named(role)} for role in ("serves", "calls"))
     for name, who, end in system.ends("calls"):
         near = sorted(
             (other, them.name)
             for other, them, beyond in system.ends("serves")
             if other not in called
             and single(beyond) == single(end)
-            and spelled_alike(name, other)
+            and (
+                spelled_alike(name, other)
+                or longer_alike(name, other)
+                or in_private_names(name, other, who, them)
+            )
             and not exclusive(who.node, them.node)
         )
+        # nobody else offers private names of a node that was read
+        own = [one for one in near if one[1] == name.rpartition("/")[0]]
+        near = near if system.complete(end) else own
         if name not in served and near and single(end):
             message = f"{who.name} calls {name} ({end.type}), which no node offers; "
             message += " and ".join(f"{node} offers {other}" for other, node in near)

@@ -4,9 +4,9 @@ The last message wins, so the robot jerks as it follows both nodes in turn. Give
 a multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: the game controller and the autonomous
 control published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
 
-The rule covers commands such as `Twist`, if the commands of each node depend on a subscribed topic. The rule
-does not cover nodes that are started under a condition known only on the robot, because one of them may
-replace the other.
+The rule covers commands such as `Twist`, and numbers on topics such as `wheel_velocity/command`, if the commands of each
+node depend on a subscribed topic. The rule does not cover nodes that are started under a condition known only on the
+robot, because one of them may replace the other.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Final
 from tarl_lint.model import Finding
 from tarl_lint.system.hazards import at_node
 from tarl_lint.system.model import Instance, System
-from tarl_lint.system.staleness import COMMANDS
+from tarl_lint.system.staleness import commands
 
 CODE: Final = "TARL305"
 SUMMARY: Final = "two nodes publish commands on the same topic"
@@ -111,7 +111,7 @@ def findings(system: System) -> Iterator[Finding]:
     for instance in system.instances:
         for finding in instance.interface.flows if instance.interface is not None else ():
             sink = finding.flow.sink if finding.flow is not None else None
-            if sink is None or instance.node.condition or sink.type not in COMMANDS or len(sink.topics) != 1:
+            if sink is None or instance.node.condition or not commands(sink) or len(sink.topics) != 1:
                 continue
             topic = instance.resolve(sink.topics[0])
             authors.setdefault(topic, {}).setdefault(instance.name, (instance, sink.topics[0]))

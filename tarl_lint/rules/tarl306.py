@@ -6,7 +6,7 @@ continues with the last command. For this reason, a Pioneer robot collided with 
 (https://github.com/amor-ros-pkg/rosaria/pull/51). Store the time of the last message, and stop the robot when
 the message is too old.
 
-The rule reports nothing if the program reads the time anywhere or resets the values that the callback stored: to
+The rule reports nothing if the program reads the time anywhere, except for the stamp of a message, or resets the values that the callback stored: to
 `None`, or to a constant in the function that publishes. The rule also reports nothing if the program contains words
 such as `timeout`, `last_` and `counter`, because such words suggest that the program detects old messages in another
 way.

@@ -16,11 +16,11 @@ has it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import Any, Final
 
 from tarl_lint.model import Finding
-from tarl_lint.system.hazards import at_node
+from tarl_lint.system.hazards import at_node, spelled_alike
 from tarl_lint.system.model import Instance, System
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Setting
@@ -139,8 +139,10 @@ def findings(system: System) -> Iterator[Finding]:
             carriers.setdefault(setting, []).append(instance)
     for setting, instances in carriers.items():
         given = _given(setting, instances) if setting.name.startswith("~") else ()
-        for name, receivers in dict.fromkeys(given):
-            if all(_lacks(instance, name) for instance in receivers):
+        for name, receivers, certain in dict.fromkeys(given):
+            if all(_lacks(instance, name) for instance in receivers) and (
+                certain or _misspelt(name, receivers)
+            ):
                 first = receivers[0]
                 message = f"{first.name} has no parameter {name}: the launch file sets it without effect"
                 yield at_node(CODE, first, message, name)
@@ -174,8 +176,20 @@ def _lacks(instance: Instance, name: str) -> bool:
     interface = instance.interface
     if interface is None or not interface.parameters or name.partition(".")[0] in _OF_ROS:
         return False
-    parts = {name, name.replace(".", "/"), name.replace("/", "."), *name.replace("/", ".").split(".")}
-    return parts.isdisjoint(interface.words)
+    # ROS 1 nodes may read a whole group of parameters; in ROS 2, `gain` is not the group of `gain.p`
+    groups = name.split("/") if "/" in name else ()
+    spellings = {name, name.replace(".", "/"), name.replace("/", "."), *groups}
+    return spellings.isdisjoint(interface.words) and not _joined_of(name, interface.words)
+
+
+def _joined_of(name: str, words: Collection[str]) -> bool:
+    """Return whether a name may be put together from words, digits and separators."""
+    reached = {0}
+    for place in range(len(name)):
+        if place in reached:
+            reached |= {place + len(word) for word in words if word and name.startswith(word, place)}
+            reached |= {place + 1} if name[place].isdigit() or name[place] in "._-/" else set()
+    return len(name) in reached
 
 
 def _parsed(setting: Setting) -> Any:
@@ -186,18 +200,31 @@ def _parsed(setting: Setting) -> Any:
         return None  # another part of the report states the problem
 
 
-def _given(setting: Setting, instances: list[Instance]) -> Iterator[tuple[str, tuple[Instance, ...]]]:
-    """Yield the names of the parameters in a setting, each with the nodes that it is meant for."""
+def _misspelt(name: str, instances: Iterable[Instance]) -> bool:
+    """Return whether a program has a string that differs from the name by one letter."""
+    return any(
+        spelled_alike(f"/{name}", f"/{word}")
+        for one in instances
+        if one.interface is not None
+        for word in one.interface.words
+    )
+
+
+def _given(setting: Setting, instances: list[Instance]) -> Iterator[tuple[str, tuple[Instance, ...], bool]]:
+    """Yield the parameters in a setting, each with the nodes that it is meant for.
+
+    The last part says whether it is certainly meant for them: a section for all nodes may be meant for nodes of other
+    launch files.
+    """
     above = setting.name.lstrip("~").strip("/")
     if setting.yaml is None or above:
-        yield above, tuple(instances)
+        yield above, tuple(instances), True
         return
     parsed = _parsed(setting)
     named = list(sections(parsed))
     if not named and isinstance(parsed, dict):
-        yield from ((one.replace(".", "/"), tuple(instances)) for one in dotted(parsed))
+        yield from ((one.replace(".", "/"), tuple(instances), True) for one in dotted(parsed))
     for pattern, values in named:
         receivers = tuple(one for one in instances if matches(pattern, one.name))
-        # a section for all nodes is meant for the nodes that have the parameter
-        if receivers and not is_wildcard(pattern):
-            yield from ((one, receivers) for one in dotted(values))
+        if receivers:
+            yield from ((one, receivers, not is_wildcard(pattern)) for one in dotted(values))

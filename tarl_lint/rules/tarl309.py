@@ -3,19 +3,22 @@
 The callback raises AttributeError at its first message. rospy logs the error and continues, so the rest of the robot
 runs without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
 
-The rule covers messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`, whose fields are known.
+The rule covers messages that packages of the workspace define, and messages of `std_msgs`, `geometry_msgs`, `nav_msgs`,
+`sensor_msgs` and a few other packages, whose fields are known.
 The rule examines the arguments of new messages, and variables that always hold a message: a message that a callback
 receives, or one that the function creates.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Final
 
-from tarl_lint.message_fields import ALL_FIELDS
+from tarl_lint.message_fields import KNOWN_FIELDS
 from tarl_lint.model import Finding
-from tarl_lint.system.model import System
+from tarl_lint.system.fields import lacking
+from tarl_lint.system.model import Interface, Misfit, System
 
 CODE: Final = "TARL309"
 SUMMARY: Final = "code uses a field that the message type does not have"
@@ -108,11 +111,12 @@ def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each use of an absent field, only once if several nodes run the same program."""
     from difflib import get_close_matches  # slow to import; reports import every rule
 
+    known = {**KNOWN_FIELDS, **system.messages}
     for interface in {
         one.interface.path: one.interface for one in system.instances if one.interface
     }.values():
-        for misfit in interface.misfits:
-            fields = list(ALL_FIELDS[misfit.type])
+        for misfit in (*interface.misfits, *_in_workspace(interface, known)):
+            fields = list(known[misfit.type])
             near = get_close_matches(misfit.field, fields, 1)
             hint = f"did you mean {near[0]}?" if near else f"it has {', '.join(fields)}"
             message = f"{misfit.type} has no field {misfit.field}: {hint}"
@@ -120,3 +124,11 @@ def findings(system: System) -> Iterator[Finding]:
             yield Finding(
                 CODE, misfit.span, message, about=about, place=misfit.place, package=interface.package
             )
+
+
+def _in_workspace(interface: Interface, known: Mapping[str, Mapping[str, str]]) -> Iterator[Misfit]:
+    """Yield the uses of absent fields of messages that the workspace defines."""
+    for use in interface.uses:
+        absent = lacking(use.type, tuple(use.field.split(".")), known)
+        if absent is not None:
+            yield replace(use, type=absent[0], field=absent[1])

@@ -22,6 +22,7 @@ from tarl_lint.system.binding import (
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.gz_bridges import bridged, own_name
 from tarl_lint.system.image_transport import is_republisher, republished, transported
+from tarl_lint.system.known_packages import kinds, typed
 from tarl_lint.system.known_programs import stated
 from tarl_lint.system.model import Hop, Instance, Interface, Role, Seen, System, full_name
 from tarl_lint.system.service_calls import PARTS, part
@@ -29,6 +30,7 @@ from tarl_lint.system.topic_tools import passed_on
 from tarl_lint.workspace import hidden_packages
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
+from tarl_lint.workspace.message_files import fields
 from tarl_lint.workspace.model import Problem, Workspace
 from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
@@ -51,7 +53,16 @@ def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: 
     """Return the system of a launch file. `files` are the Python files of the workspace."""
     instances = _with_meant([_instance(node, launch, workspace, files, read) for node in launch.nodes])
     problems = (*launch.problems, *hidden_packages.problems(launch, workspace), *_unparsed(launch))
-    return System(launch.file, tuple(instances), launch.settings, tuple(hops(instances)), problems)
+    used = {use.type for one in instances if one.interface is not None for use in one.interface.uses}
+    return System(
+        launch.file,
+        tuple(instances),
+        launch.settings,
+        tuple(hops(instances)),
+        problems,
+        messages=fields(used, workspace),
+        packages=frozenset(one.name for one in workspace.packages),
+    )
 
 
 def _with_meant(instances: Sequence[Instance]) -> list[Instance]:
@@ -137,7 +148,8 @@ def _known(instance: Instance, launch: Launch, workspace: Workspace) -> Seen:
     package = workspace.package(node.package)
     if package is None:
         passed = passed_on(instance, values, ros2=launch.ros2)
-        return passed if passed.ends else stated(instance, values, ros2=launch.ros2)
+        found = passed if passed.ends else stated(instance, values, ros2=launch.ros2)
+        return replace(found if found.ends else typed(instance, values), kinds=kinds(node))
     ends = named_topics(package, node.executable) if node.kind == "node" else ()
     return Seen(tuple(transported(instance, ends)))
 

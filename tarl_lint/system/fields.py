@@ -1,94 +1,167 @@
-"""Find uses of message fields that the message type does not have, for types whose fields are known."""
+"""Find uses of message fields that the message type does not have, for types whose fields are known.
+
+Fields of types of the workspace are known only when a system is composed; their uses are listed until then.
+"""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
-from typing import Final
+from typing import Final, NamedTuple
 
 from tarl_lint.evidence import Outline
 from tarl_lint.flows.statement_text import Texts
 from tarl_lint.ir.lower_expressions import position
-from tarl_lint.message_fields import ALL_FIELDS
+from tarl_lint.message_fields import KNOWN_FIELDS, PACKAGES
 from tarl_lint.read.source import Module
 from tarl_lint.system.model import Misfit
 from tarl_lint.trees import last_name
 
-_STANDARD: Final = frozenset(["std_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs"])
 _METHODS: Final = frozenset(
     ["serialize", "deserialize", "serialize_numpy", "deserialize_numpy", "get_fields_and_field_types",
      "connection_header"]
 )  # fmt: skip
-_REGISTERS: Final[Mapping[str, tuple[int, int]]] = {"Subscriber": (1, 2), "create_subscription": (0, 2)}
+# functions that register a callback: places and keywords of message type and callback
+_REGISTERS: Final[Mapping[str, tuple[tuple[int, str], tuple[int, str]]]] = {
+    "Subscriber": ((1, "data_class"), (2, "callback")),
+    "create_subscription": ((0, "msg_type"), (2, "callback")),
+}
 Function = ast.FunctionDef | ast.AsyncFunctionDef
+_Fields = Mapping[str, Mapping[str, str]]
+
+
+class _Use(NamedTuple):
+    """A use of the field `path[-1]` of a message: of the message itself, or of the part that `path[:-1]` names."""
+
+    type: str
+    path: tuple[str, ...]
+    node: ast.expr
 
 
 def misfits(module: Module, outline: Outline, texts: Texts) -> Iterator[Misfit]:
     """Yield the uses of absent fields, of messages that a callback receives, and of new messages."""
-    types = _imported(module.tree)
+    for use in _uses(module.tree, outline):
+        absent = lacking(use.type, use.path, KNOWN_FIELDS)
+        if absent is not None:
+            yield _found(*absent, use.node, module, outline, texts)
+
+
+def uses(module: Module, outline: Outline, texts: Texts) -> Iterator[Misfit]:
+    """Yield the uses of fields of types `package/Name` that are not known; the field is a dotted path."""
+    for use in _uses(module.tree, outline):
+        if "/" in use.type:
+            yield _found(use.type, ".".join(use.path), use.node, module, outline, texts)
+
+
+def lacking(kind: str, path: tuple[str, ...], fields: _Fields) -> tuple[str, str] | None:
+    """Return the type and its absent field at the end of a path; None if the type has it or is unknown."""
+    *before, name = path
+    for part in before:
+        kind = fields.get(kind, {}).get(part, "")
+    known = fields.get(kind)
+    if not known or name in known or name in _METHODS or name.startswith("_") or name.upper() == name:
+        return None
+    return kind, name
+
+
+def _found(kind: str, field: str, node: ast.expr, module: Module, outline: Outline, texts: Texts) -> Misfit:
+    return Misfit(kind, field, texts[module.path].stretch(position(node)), outline.qualname(node.lineno))
+
+
+def _uses(tree: ast.Module, outline: Outline) -> Iterator[_Use]:
+    """Yield the uses of fields of messages whose types the module imports."""
+    types = _imported(tree)
     if not types:
         return
-    for call, kind, name in _unknown_arguments(module.tree, types):
-        span = texts[module.path].stretch(position(call))
-        yield Misfit(kind, name, span, outline.qualname(call.lineno))
+    yield from _arguments(tree, types)
     functions = [
         one for one in outline.definitions if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef)
     ]
-    received = _received(module.tree, types)
+    received = _received(tree, types)
     for function in functions:
         held = _made(function, types)
         kinds = received.get(function.name, set())
         if len(kinds) == 1 and sum(one.name == function.name for one in functions) == 1:
-            held |= _parameter(function, next(iter(kinds)))
+            held |= _parameter(function, *next(iter(kinds)))
         for node in ast.walk(function) if held else ():
-            found = _absent(node, held) if isinstance(node, ast.Attribute) else None
-            if found is not None and isinstance(node, ast.Attribute):
-                span = texts[module.path].stretch(position(node))
-                yield Misfit(*found, span, outline.qualname(node.lineno))
+            if isinstance(node, ast.Attribute):
+                name, path = _path(node)
+                if name in held:
+                    yield _Use(held[name], path, node)
 
 
-def _unknown_arguments(tree: ast.Module, types: Mapping[str, str]) -> Iterator[tuple[ast.Call, str, str]]:
-    """Yield the calls that create a message with an absent field, with message type and field."""
+def _path(node: ast.Attribute) -> tuple[str, tuple[str, ...]]:
+    """Return the variable at the beginning of an attribute, and the names after it; "" for another expression."""
+    parts: list[str] = []
+    expr: ast.expr = node
+    while isinstance(expr, ast.Attribute):
+        parts.append(expr.attr)
+        expr = expr.value
+    return (expr.id if isinstance(expr, ast.Name) else ""), tuple(reversed(parts))
+
+
+def _arguments(tree: ast.Module, types: Mapping[str, str]) -> Iterator[_Use]:
+    """Yield the keyword arguments of calls that create a message."""
     bound = {one.name for one in ast.walk(tree) if isinstance(one, ast.ClassDef | Function)} | {
         one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
     }
     for call in (one for one in ast.walk(tree) if isinstance(one, ast.Call)):
         name = call.func.id if isinstance(call.func, ast.Name) else ""
         if name in types and name not in bound:
-            fields = ALL_FIELDS[types[name]]
-            for keyword in call.keywords:
-                if keyword.arg and keyword.arg not in fields and not keyword.arg.startswith("_"):
-                    yield call, types[name], keyword.arg
+            yield from (_Use(types[name], (one.arg,), call) for one in call.keywords if one.arg)
 
 
 def _imported(tree: ast.Module) -> dict[str, str]:
-    """Return local name → type for messages of standard packages whose fields are known."""
-    return {
-        alias.asname or alias.name: alias.name
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.partition(".")[0] in _STANDARD
-        for alias in node.names
-        if alias.name in ALL_FIELDS
-    }
+    """Return local name → type for messages: `Name` if the fields are known, else `package/Name`."""
+    found: dict[str, str] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            package, _, rest = node.module.partition(".")
+            for alias in node.names if rest.partition(".")[0] == "msg" else ():
+                known = alias.name in PACKAGES.get(package, ())
+                found[alias.asname or alias.name] = alias.name if known else f"{package}/{alias.name}"
+    return found
 
 
-def _received(tree: ast.Module, types: Mapping[str, str]) -> dict[str, set[str]]:
-    """Return function name → types of the messages with which a subscription calls it; "" for an unknown type."""
-    found: dict[str, set[str]] = {}
+def _received(tree: ast.Module, types: Mapping[str, str]) -> dict[str, set[tuple[str, int]]]:
+    """Return function name → the types of the messages with which a subscription calls it, and their positions.
+
+    The type is "" if it is unknown.
+    """
+    found: dict[str, set[tuple[str, int]]] = {}
     for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
         places = _REGISTERS.get(last_name(call.func))
-        if places is not None and len(call.args) > max(places):
-            kind = types.get(last_name(call.args[places[0]]), "")
-            found.setdefault(last_name(call.args[places[1]]), set()).add(kind)
-    return {name: kinds for name, kinds in found.items() if name and "" not in kinds}
+        if places is None:
+            continue
+        kind, callback = (_argument(call, *place) for place in places)
+        if kind is not None and callback is not None:
+            name, number = _called(callback)
+            found.setdefault(name, set()).add((types.get(last_name(kind), ""), number))
+    return {name: kinds for name, kinds in found.items() if name and all(kind for kind, _ in kinds)}
 
 
-def _parameter(function: Function, kind: str) -> dict[str, str]:
+def _argument(call: ast.Call, place: int, name: str) -> ast.expr | None:
+    named = next((one.value for one in call.keywords if one.arg == name), None)
+    return named if named is not None else call.args[place] if len(call.args) > place else None
+
+
+def _called(callback: ast.expr) -> tuple[str, int]:
+    """Return the name of the function that a callback calls, and the position of the message among its arguments."""
+    match callback:
+        case ast.Call(func=func, args=[function, *given]) if last_name(func) == "partial":
+            return last_name(function), len(given)
+        case ast.Lambda(args=ast.arguments(args=[first, *_]), body=ast.Call(func=function, args=given)):
+            places = [i for i, one in enumerate(given) if isinstance(one, ast.Name) and one.id == first.arg]
+            return (last_name(function), places[0]) if len(places) == 1 else ("", 0)
+    return last_name(callback), 0
+
+
+def _parameter(function: Function, kind: str, number: int) -> dict[str, str]:
     names = [one.arg for one in function.args.args if one.arg not in ("self", "cls")]
     stored = {
         one.id for one in ast.walk(function) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
     }
-    return {names[0]: kind} if names and names[0] not in stored else {}
+    return {names[number]: kind} if len(names) > number and names[number] not in stored else {}
 
 
 def _made(function: Function, types: Mapping[str, str]) -> dict[str, str]:
@@ -109,22 +182,3 @@ def _made(function: Function, types: Mapping[str, str]) -> dict[str, str]:
         and isinstance(values[0].func, ast.Name)
         and values[0].func.id in types
     }
-
-
-def _absent(node: ast.Attribute, held: Mapping[str, str]) -> tuple[str, str] | None:
-    """Return (message type, field name) of an attribute that is not a field of the message type."""
-    kind = _kind(node.value, held)
-    fields = ALL_FIELDS.get(kind)
-    name = node.attr
-    if not fields or name in fields or name in _METHODS or name.startswith("_") or name.upper() == name:
-        return None
-    return kind, name
-
-
-def _kind(expr: ast.expr, held: Mapping[str, str]) -> str:
-    """Return the type of a message expression, "" if it is unknown."""
-    if isinstance(expr, ast.Name):
-        return held.get(expr.id, "")
-    if isinstance(expr, ast.Attribute):
-        return ALL_FIELDS.get(_kind(expr.value, held), {}).get(expr.attr, "")
-    return ""

@@ -73,13 +73,37 @@ def spelled_alike(one: str, other: str) -> bool:
     """Return whether two absolute names may be meant to be equal: one has a namespace more, or a letter differs.
 
     `/robot/scan` may be meant to be `/scan`, but `/left/scan` and `/right/scan` are different names. A letter may be
-    missing, wrong, or in the wrong place. Names with fewer than five letters, and names that differ in a digit
-    (`left_1`, `left_2`), are different names.
+    missing, wrong, or in the wrong place; underscores and upper case make no difference. Names with fewer than five
+    letters, and names that differ in a digit (`left_1`, `left_2`), are different names.
     """
     (above, last), (beyond, end) = (name.rpartition("/")[::2] for name in (one, other))
     if last == end:
         return one != other and _within(*sorted((above.split("/"), beyond.split("/")), key=len))
-    return above == beyond and min(len(last), len(end)) >= 5 and _one_apart(last, end)
+    if above != beyond:
+        return False
+    if _squeezed(last) == _squeezed(end) and (
+        last.count("_") != end.count("_") or last.lower() == end.lower()
+    ):
+        return True
+    return min(len(last), len(end)) >= 5 and _one_apart(last, end)
+
+
+def in_private_names(one: str, other: str, *nodes: Instance) -> bool:
+    """Return whether two names are private names of the same node, which is one of the given ones."""
+    above, beyond = one.rpartition("/")[0], other.rpartition("/")[0]
+    return one != other and above == beyond and above in [node.name for node in nodes]
+
+
+def longer_alike(one: str, other: str) -> bool:
+    """Return whether two names in the same namespace, not the root, differ by whole words: `open` and `open_door`."""
+    (above, last), (beyond, end) = (name.rpartition("/")[::2] for name in (one, other))
+    few, many = sorted((set(last.split("_")), set(end.split("_"))), key=len)
+    return one != other and above == beyond != "" and few <= many
+
+
+def _squeezed(name: str) -> str:
+    """Return a name without underscores and upper case: `e_stop` and `eStop` are alike."""
+    return name.replace("_", "").lower()
 
 
 def _within(few: list[str], many: list[str]) -> bool:

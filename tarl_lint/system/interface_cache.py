@@ -66,6 +66,7 @@ _PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "stale": _findings,
     "words": frozenset,
     "misfits": lambda entries: tuple(map(_misfit, entries)),
+    "uses": lambda entries: tuple(map(_misfit, entries)),
     "deciding": tuple,
     "in_names": lambda entries: tuple(ParameterName(*one) for one in entries),
 }

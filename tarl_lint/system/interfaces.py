@@ -6,7 +6,7 @@ A program is analysed with the modules that it imports, whose main blocks do not
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
@@ -18,6 +18,7 @@ from tarl_lint.flows.reachability import Tracer
 from tarl_lint.flows.statement_text import Texts
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.ir.lower_expressions import position
+from tarl_lint.ir.nodes import Pos
 from tarl_lint.model import Finding, Flow
 from tarl_lint.models.ros.endpoints import Publisher
 from tarl_lint.node_names import node_name
@@ -25,7 +26,7 @@ from tarl_lint.parameter_names import MARK, ParameterName
 from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
-from tarl_lint.system.fields import misfits
+from tarl_lint.system.fields import misfits, uses
 from tarl_lint.system.model import Endpoint, Interface, Role
 from tarl_lint.system.parameters import deciding, reads_named_parameters, words
 from tarl_lint.system.qos import of_call
@@ -87,6 +88,7 @@ def interface(
         deciding=deciding(modules),
         in_names=tuple(parameters),
         misfits=tuple(one for each in modules for one in misfits(each, outlines[each.path], texts)),
+        uses=tuple(one for each in modules for one in uses(each, outlines[each.path], texts)),
     )
 
 
@@ -132,7 +134,11 @@ def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline])
     for record in machine.sources.values():
         source = tracer.ends.source(record)
         if record.kind == "topic":
-            qos = of_call(outlines[record.path], record.pos) if record.api.startswith("rclpy") else None
+            qos = (
+                of_call(outlines[record.path], record.pos, outlines.values())
+                if record.api.startswith("rclpy")
+                else None
+            )
             whole = only(record.whole_types)
             yield Endpoint(
                 "subscribes",
@@ -145,33 +151,69 @@ def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline])
             )
         elif record.kind in _SERVED and not record.api.startswith(CLIENTS):
             role = _SERVED[record.kind]
-            yield Endpoint(role, source.topics, source.type, source.span, None, source.qualname)
+            whole = imported_type(outlines[record.path].tree, source.type)
+            yield Endpoint(
+                role, source.topics, source.type, source.span, None, source.qualname, whole_type=whole
+            )
     yield from _publishers(machine, tracer, outlines)
 
 
 def _clients(machine: Linker, module: Module, outline: Outline, texts: Texts) -> Iterator[Endpoint]:
-    """Yield the services that a module calls in functions that run."""
+    """Yield the services that a module calls in functions that run; names may be computed."""
     ran = {frame.function.qualname for frame in machine.frames.values() if frame.program.path == module.path}
+    made = _made(machine, "service", [module.path])
+    for (_, pos), clients in made.items():
+        names = tuple(sorted({topic for one in clients for topic in one.topics}))
+        kind = " | ".join(sorted({kind for one in clients for kind in one.types}))
+        if names:
+            span = texts[module.path].stretch(pos)
+            whole = imported_type(module.tree, kind)
+            yield Endpoint("calls", names, kind, span, None, outline.qualname(pos[0]), whole_type=whole)
     for call, name, kind in called_services(outline):
         place = outline.qualname(call.lineno)
-        if not ran or place in ran or not place:
-            span = texts[module.path].stretch(position(call))
-            yield Endpoint("calls", (name,), kind, span, None, place)
+        known = any(one.topics for one in made.get((module.path, position(call)), []))
+        if not known and (not ran or place in ran or not place):
+            span, whole = texts[module.path].stretch(position(call)), imported_type(module.tree, kind)
+            yield Endpoint("calls", (name,), kind, span, None, place, whole_type=whole)
 
 
 def _publishers(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline]) -> Iterator[Endpoint]:
-    made: dict[tuple[str, tuple[int, int, int, int]], list[Publisher]] = {}
-    for obj in machine.objects.values():
-        if isinstance(obj.info, Publisher) and obj.info.kind == "topic" and obj.info.path in outlines:
-            made.setdefault((obj.info.path, obj.info.pos), []).append(obj.info)
-    for (path, pos), publishers in made.items():
+    made = _made(machine, "topic", outlines)
+    for (path, pos), publishers in ((at, alike) for at, every in made.items() for alike in _by_topics(every)):
         topics = tuple(sorted({topic for one in publishers for topic in one.topics}))
         types = " | ".join(sorted({kind for one in publishers for kind in one.types}))
         outline = outlines[path]
-        qos = of_call(outline, pos) if publishers[0].api.startswith("rclpy") else None
+        qos = of_call(outline, pos, outlines.values()) if publishers[0].api.startswith("rclpy") else None
         span = tracer.texts[path].stretch(pos)
         whole = only({kind for one in publishers for kind in one.whole_types})
         yield Endpoint("publishes", topics, types, span, qos, outline.qualname(pos[0]), whole_type=whole)
+
+
+def _made(machine: Linker, kind: str, paths: Collection[str]) -> dict[tuple[str, Pos], list[Publisher]]:
+    """Return the publishers or clients that modules make, by file and position."""
+    made: dict[tuple[str, Pos], list[Publisher]] = {}
+    for obj in machine.objects.values():
+        if isinstance(obj.info, Publisher) and obj.info.kind == kind and obj.info.path in paths:
+            made.setdefault((obj.info.path, obj.info.pos), []).append(obj.info)
+    return made
+
+
+def imported_type(tree: ast.Module, name: str) -> str:
+    """Return `package/Name` of a type of services or actions that a module imports by its own name; else ""."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            package, _, rest = node.module.partition(".")
+            if rest in ("srv", "action") and name in [one.name for one in node.names if one.asname is None]:
+                return f"{package}/{name}"
+    return ""
+
+
+def _by_topics(publishers: Sequence[Publisher]) -> Iterable[list[Publisher]]:
+    """Return publishers of one place, which may be a wrapper, in groups with the same topics."""
+    groups: dict[frozenset[str], list[Publisher]] = {}
+    for one in publishers:
+        groups.setdefault(frozenset(map(str, one.topics)), []).append(one)
+    return groups.values()
 
 
 def only(types: Collection[str]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -72,7 +72,7 @@ class Interface:
     `whole` says in addition that all topics have constant names and that the analysis was complete.
     `in_names` are the parameters that names contain; `deciding` are the parameters used in conditions.
     `stale` are publish calls that go on without new messages; `misfits` are uses of fields that a message
-    type lacks.
+    type lacks. `uses` are uses of fields of types `package/Name` that are unknown here; their fields are dotted paths.
     """
 
     path: str
@@ -88,6 +88,7 @@ class Interface:
     misfits: tuple[Misfit, ...] = ()
     deciding: tuple[str, ...] = ()
     in_names: tuple[ParameterName, ...] = ()
+    uses: tuple[Misfit, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -95,12 +96,14 @@ class Seen:
     """The topics and services of a node whose code was not read, as its C++ source or its arguments name them.
 
     `certain` says that the node has no others, except those of transforms and parameters. `through` says that data of
-    each subscribed topic may reach each published one.
+    each subscribed topic may reach each published one. `kinds` are all types of messages and services that the node may
+    use; None if they are unknown.
     """
 
     ends: tuple[Endpoint, ...] = ()
     certain: bool = False
     through: bool = True
+    kinds: frozenset[str] | None = None
 
 
 @dataclass(frozen=True)
@@ -137,6 +140,12 @@ class Instance:
     def whole(self) -> bool:
         """Return whether the node certainly has no endpoints but the known ones."""
         return self.silent or (self.known.certain if self.interface is None else self.interface.whole)
+
+    def may_use(self, kind: str) -> bool:
+        """Return whether the node may have an unknown endpoint of a type of messages or services."""
+        return not self.whole and (
+            self.interface is not None or self.known.kinds is None or kind in self.known.kinds
+        )
 
     def ends(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
         """Yield the endpoints of a role by launched name, without those whose name is unknown."""
@@ -194,7 +203,11 @@ class Chain:
 
 @dataclass(frozen=True)
 class System:
-    """The nodes of one launch file. Hops and chains are sorted."""
+    """The nodes of one launch file. Hops and chains are sorted.
+
+    `messages` are the fields of types `package/Name` of the workspace that the nodes use, each with its type or "".
+    `packages` are the packages of the workspace.
+    """
 
     file: Path
     instances: tuple[Instance, ...] = ()
@@ -203,16 +216,28 @@ class System:
     problems: tuple[Problem, ...] = ()
     findings: tuple[Finding, ...] = ()
     arguments: tuple[tuple[str, str], ...] = field(default=())
+    messages: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    packages: frozenset[str] = frozenset()
 
-    @property
-    def complete(self) -> bool:
-        """Return whether every node is known, so that a topic with one known end certainly has no other."""
-        return all(one.whole for one in self.instances) and not any(one.hides for one in self.problems)
+    def complete(self, end: Endpoint) -> bool:
+        """Return whether a topic or service with one known end certainly has no other in this system.
+
+        Nodes of other packages do not use types that packages of this workspace define.
+        """
+        own = end.whole_type.partition("/")[0] in self.packages
+        able = (one for one in self.instances if not own or one.node.package in self.packages)
+        return not any(one.may_use(end.type) for one in able) and not any(one.hides for one in self.problems)
 
     def ends(self, role: Role) -> Iterator[tuple[str, Instance, Endpoint]]:
         """Yield the endpoints that all nodes have in a role, by launched name."""
         for instance in self.instances:
             for name, endpoint in instance.ends(role):
+                yield name, instance, endpoint
+
+    def named(self, role: Role) -> Iterator[tuple[str, Instance, Endpoint]]:
+        """Yield the endpoints of a role by launched name, also those that are known of unread nodes."""
+        for instance in self.instances:
+            for name, endpoint in instance.named(role):
                 yield name, instance, endpoint
 
 

@@ -19,12 +19,12 @@ _Scope = _Function | ast.Lambda | None
 # functions and methods whose result is made of their arguments and of the object whose method they are
 _MADE: Final = frozenset(
     ["sorted", "reversed", "enumerate", "zip", "list", "tuple", "set", "frozenset", "dict", "str", "chain", "product",
-     "items", "keys", "values", "format", "join", "lower", "upper", "strip", "lstrip", "rstrip", "removeprefix",
-     "removesuffix", "replace", "split", "get", "copy", "range", "len", "int", "OrderedDict"]
+     "items", "keys", "values", "format", "join", "get", "copy", "range", "len", "int", "OrderedDict"]
 )  # fmt: skip
 # functions that list the fields of a class
 _FIELDS: Final = frozenset(["fields", "asdict", "vars", "get_type_hints"])
 _OF_CLASSES: Final = frozenset(["__annotations__", "model_fields", "__dataclass_fields__", "_fields"])
+_CHANGING: Final = frozenset(["update", "append", "extend", "insert", "add", "setdefault"])
 _DEEPEST: Final = 30  # maximum number of expressions that are followed from one use
 
 
@@ -78,7 +78,7 @@ class OwnStrings:
         if name in _FIELDS and len(call.args) == 1:
             return True
         if name not in _MADE:
-            return False
+            return self._returned(name, seen)
         parts = [*call.args, *(one.value for one in call.keywords)]
         if name in ("dict", "OrderedDict"):
             parts = list(call.args)  # keywords are names, and count as strings of the program
@@ -87,6 +87,23 @@ class OwnStrings:
         if name == "get":
             parts = parts[1:]
         return bool(parts or call.keywords) and all(self._own(one, outline, seen) for one in parts)
+
+    def _returned(self, name: str, seen: frozenset[object]) -> bool:
+        """Return whether the function of this name returns only own strings, if there is one such function."""
+        found = [
+            (one, outline)
+            for outline in self._outlines
+            for one in outline.definitions
+            if isinstance(one, _Function) and one.name == name
+        ]
+        if len(found) != 1 or ("function", name) in seen:
+            return False
+        function, outline = found[0]
+        values = [
+            one.value for one in ast.walk(function) if isinstance(one, ast.Return) and one.value is not None
+        ]
+        after = seen | {("function", name)}
+        return bool(values) and all(self._own(one, outline, after) for one in values)
 
     def _module(self, expr: ast.expr, outline: Outline) -> bool:
         imported = (alias.asname or alias.name for node in ast.walk(outline.tree) if isinstance(node, ast.Import)
@@ -104,8 +121,24 @@ class OwnStrings:
             return False
         if expr.value.id in ("self", "cls") or expr.value.id in self._classes:
             values = [(one, where) for where in self._outlines for one in where.assigned.get(expr.attr, [])]
-            return bool(values) and all(self._own(one, where, after) for one, where in values)
+            filled = [(one, where) for one, where in values if not _empty(one)]
+            if len(filled) < len(values) and self._changed(expr.attr):
+                return False
+            return bool(filled) and all(self._own(one, where, after) for one, where in filled)
         return self._own(expr.value, outline, after)  # `field.name` in a loop over the fields of a class
+
+    def _changed(self, name: str) -> bool:
+        """Return whether code puts elements into a table or list of this name."""
+        return any(
+            (
+                isinstance(node, ast.Subscript)
+                and isinstance(node.ctx, ast.Store)
+                and last_name(node.value) == name
+            )
+            or (isinstance(node, ast.Attribute) and node.attr in _CHANGING and last_name(node.value) == name)
+            for outline in self._outlines
+            for node in ast.walk(outline.tree)
+        )
 
     @cached_property
     def _classes(self) -> frozenset[str]:
@@ -153,6 +186,14 @@ class OwnStrings:
             if spread or value is None or not self._own(value, outline, seen):
                 return False
         return bool(calls)
+
+
+def _empty(expr: ast.expr) -> bool:
+    """Return whether a value is an empty table, list or tuple, which a derived class replaces."""
+    match expr:
+        case ast.Dict(keys=[]) | ast.List(elts=[]) | ast.Tuple(elts=[]):
+            return True
+    return False
 
 
 def _parts(expr: ast.expr) -> list[ast.expr]:

@@ -23,18 +23,22 @@ OPEN: Final = re.compile(
 )
 
 COMMAND_LINE: Final = re.compile(r"\b(?:sys\.argv|myargv|argparse|optparse)\b")
+_GAPS: Final = re.compile(r"%[sdi]|\{[^{}]*\}")  # where a format string takes a value
 COPYING: Final = frozenset(
     ["bool", "int", "float", "str", "list", "tuple"]
 )  # functions that return the value of their argument
 
 
 def words(modules: Sequence[Module]) -> frozenset[str]:
-    """Return every string of a program, as a name without `~`, dots and slashes around it.
+    """Return every string of a program, as a name without `~` and slashes around it and dots before it.
 
     Names of fields of classes and of keywords of `dict` count as strings.
     """
     return frozenset(
-        text.strip("~/.") for module in modules for node in ast.walk(module.tree) for text in _texts(node)
+        text.strip("~/").lstrip(".")
+        for module in modules
+        for node in ast.walk(module.tree)
+        for text in _texts(node)
     )
 
 
@@ -42,6 +46,7 @@ def _texts(node: ast.AST) -> Iterator[str]:
     match node:
         case ast.Constant(value=str(text)):
             yield text
+            yield from _GAPS.split(text) if _GAPS.search(text) else ()
         case ast.ClassDef(body=body):
             yield from (
                 one.target.id

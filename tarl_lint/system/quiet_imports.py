@@ -11,10 +11,21 @@ from typing import Final
 from tarl_lint.read.source import Module
 
 _QUIET: Final = frozenset(
-    ["rospy", "rclpy", "message_filters", "actionlib", "cv_bridge", "cv2", "numpy", "scipy", "yaml", "matplotlib",
-     "PIL",
-     "roslib", "rospkg", "rosgraph", "genpy", "ament_index_python", "builtin_interfaces", "angles", "transforms3d",
-     "dynamic_reconfigure", "tf_transformations", "serial", "pandas", "torch", "sklearn", "shapely", "six", "future"]
+    ["rospy", "rclpy", "message_filters", "actionlib", "cv_bridge", "roslib", "rospkg", "rosgraph", "genpy",
+     "rosbag", "ament_index_python", "builtin_interfaces", "angles", "transforms3d", "dynamic_reconfigure",
+     "tf_transformations", "sensor_msgs_py", "laser_geometry", "image_geometry", "ros_numpy", "ros2_numpy",
+     "tf2_sensor_msgs", "tf2_kdl", "PyKDL", "urdf_parser_py", "xacro", "diagnostic_updater", "smach", "py_trees",
+     "rosidl_runtime_py", "resource_retriever", "cv2", "numpy", "scipy", "yaml", "matplotlib", "PIL", "serial",
+     "pandas", "torch", "torchvision", "sklearn", "skimage", "tensorflow", "keras", "onnxruntime",
+     "tflite_runtime", "ultralytics", "mediapipe", "numba", "casadi", "cvxpy", "osqp", "sympy", "networkx",
+     "shapely", "filterpy", "gtsam", "open3d", "trimesh", "pyproj", "utm", "geographiclib", "pymap3d",
+     "quaternion", "pyquaternion", "transformations", "six", "future", "attr", "attrs", "pydantic", "jsonschema",
+     "psutil", "tqdm", "click", "requests", "flask", "aiohttp", "websocket", "websockets", "zmq", "msgpack",
+     "paho", "simple_pid", "smbus", "smbus2", "spidev", "RPi", "gpiozero", "pigpio", "board", "busio",
+     "digitalio", "Jetson", "usb", "bluetooth", "evdev", "pygame", "pynput", "can", "pymodbus", "minimalmodbus",
+     "pynmea2", "dynamixel_sdk", "pyrealsense2", "depthai", "apriltag", "pupil_apriltags", "pyzbar", "pyaudio",
+     "sounddevice", "pyttsx3", "gtts", "playsound", "speech_recognition", "vosk", "whisper", "openai", "pytz",
+     "dateutil"]
 )  # fmt: skip
 _INTERFACES: Final = re.compile(r"\w+_(msgs|srvs|interfaces|actions?|msg|srv)$")
 _TRANSFORMS: Final = frozenset(

@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping, Sequence, Set
 from typing import Final
 
-from tarl_lint.model import Finding, Flow
+from tarl_lint.model import Finding, Flow, Sink
 from tarl_lint.read.source import Module
 
 COMMANDS: Final = frozenset(
@@ -21,11 +21,15 @@ COMMANDS: Final = frozenset(
         "AttitudeTarget",
     ]
 )
+_NUMBERS: Final = frozenset(["Float32", "Float64", "Float32MultiArray", "Float64MultiArray"])
+_MOTION: Final = re.compile(r"(?=.*(vel|speed|effort|torque|throttle|thrust)).*(cmd|command|setpoint)")
 _TIMES: Final = re.compile(
     r"\b(now|get_time|get_rostime|Time|time|monotonic|stamp|clock|timeout|wait_for_message|Duration)\b|watchdog|stale|"
     r"last_|_time\b|elapsed|_age\b|\bage\b|fresh|alive|heartbeat|deadman|counter|countdown|received|_new\b|\bnew_|updated"
 )
+# uses of the time that do not compare it: pauses, timers, and the stamps of messages
 _SLEEPS: Final = re.compile(
+    r"\bheader\.stamp\s*=(?!=)[^,\n]*|\bstamp=[^=,\n][^,\n]*\(\)|"
     r"\btime\.sleep\(|\bimport time\b|\bDuration\([^)]*\)|create_(wall_)?timer\([^)]*\)|rospy\.Timer\([^)]*\)"
 )
 
@@ -55,6 +59,13 @@ def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Findi
     )
 
 
+def commands(sink: Sink) -> bool:
+    """Return whether a publish call sends a command to move: by its type, or numbers on a topic with such a name."""
+    if sink.type in _NUMBERS:
+        return any(_MOTION.match(topic.lower()) for topic in sink.topics)
+    return sink.type in COMMANDS
+
+
 def _consumed(flow: Flow, tree: ast.Module | None) -> bool:
     """Return whether the function that publishes an attribute also resets this attribute to a constant."""
     name = flow.sink.qualname.rpartition(".")[2]
@@ -66,7 +77,7 @@ def _consumed(flow: Flow, tree: ast.Module | None) -> bool:
         for node in ast.walk(function)
         if isinstance(node, ast.Assign) and _reset(node.value)
         for target in node.targets
-        if isinstance(target, ast.Attribute)
+        if isinstance(target, ast.Attribute) and ast.unparse(target.value) == "self"
     )
 
 
@@ -79,7 +90,7 @@ def _reset(value: ast.expr) -> bool:
 
 def _repeated(flow: Flow, texts: Mapping[str, str], every: Set[str]) -> bool:
     """Return whether the publish call of a flow runs outside all callbacks of messages."""
-    if flow.kind != "explicit" or flow.sink.type not in COMMANDS or "ubscri" not in flow.source.api:
+    if flow.kind != "explicit" or not commands(flow.sink) or "ubscri" not in flow.source.api:
         return False
     callbacks = {name.strip() for name in flow.source.callback.split(",")}
     if flow.sink.qualname in every or not callbacks - {""}:

@@ -8,7 +8,7 @@ from typing import Final
 
 from tarl_lint.workspace.executables import installed, may_be_started
 from tarl_lint.workspace.folders import folders
-from tarl_lint.workspace.launch_lookup import ENDINGS, TEST
+from tarl_lint.workspace.launch_lookup import ENDINGS, TEST, is_launch_name
 from tarl_lint.workspace.manifests import Manifest, manifest
 from tarl_lint.workspace.model import INTERFACES, Hidden, Package, Problem, Workspace
 
@@ -128,6 +128,8 @@ def _is_launch_file(path: Path) -> bool:
     """Return whether a file in a folder `launch` is a launch file despite an unusual ending."""
     if path.suffix == ".xml":
         return _mentions(path, b"<launch")
+    if path.suffix in _YAML:
+        return is_launch_name(path.name) and _mentions(path, b"launch:")
     return path.suffix == ".py" and _mentions(path, b"def generate_launch_description(")
 
 

@@ -30,7 +30,6 @@ PROGRAMS = {"relay": TOP + DIRECT, "arms": TOP + TWO_ARMS, "client": CLIENT, "se
             "broken": "def f(:\n"}  # fmt: skip
 UNKNOWN = (
     "relay",
-    "arms",
 )  # a name that only the launch gives: the node is analysed again with all of its parameters
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from tarl_lint.model import Span
-from tarl_lint.system.hazards import single, spelled_alike
+from tarl_lint.system.hazards import longer_alike, single, spelled_alike
 from tarl_lint.system.model import Endpoint, Instance, Interface, Misfit, Qos, System
 from tarl_lint.workspace.launch_model import LaunchedNode, Setting
 
@@ -56,6 +56,9 @@ def messages(rule: int, *instances: Instance, file: Path = FILE) -> list[str]:
         ("/cmd_vel", "/cmd_velxy", False),
         ("/a/cmd_vel", "/b/cmd_val", False),
         ("/scan", "/scam", False),
+        ("/e_stop", "/estop", True),
+        ("/eStop", "/estop", True),
+        ("/scan_x", "/scanx_", False),
         ("/scans", "/scan", False),
         ("/imu_a", "/imu_b", False),
         ("/image_a", "/image_b", True),
@@ -68,6 +71,32 @@ def messages(rule: int, *instances: Instance, file: Path = FILE) -> list[str]:
 def test_similar_spellings_of_names_are_recognised(one, other, alike):
     assert spelled_alike(one, other) is alike
     assert spelled_alike(other, one) is alike
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "alike"),
+    [
+        ("/arm/open", "/arm/open_door", True),
+        ("/arm/door_open", "/arm/open", True),
+        ("/arm/open", "/arm/opened", False),
+        ("/open", "/open_door", False),
+        ("/arm/open", "/leg/open_door", False),
+        ("/arm/open", "/arm/open", False),
+    ],
+)
+def test_names_in_a_namespace_that_differ_by_whole_words_are_recognised(one, other, alike):
+    assert longer_alike(one, other) is longer_alike(other, one) is alike
+
+
+def test_another_private_name_of_the_same_node_is_near_even_if_other_nodes_are_unknown():
+    says = node("/speech", end("publishes", "~finish", "String"))
+    hears = node("/tour", end("subscribes", "speech/finished", "String"))
+    assert len(messages(301, says, hears)) == len(messages(301, says, hears, node("/x", unread=True))) == 1
+    takes = node("/speech", end("subscribes", "~say", "String"))
+    sends = node("/tour", end("publishes", "speech/tell", "String"))
+    assert len(messages(301, takes, sends)) == 1
+    assert messages(301, takes, sends, node("/x", unread=True)) == [], "it may publish /speech/say"
+    assert messages(301, node("/s", end("publishes", "speech/a", "String")), hears) == [], "no node /speech"
 
 
 def test_an_endpoint_has_a_single_type_if_exactly_one_type_is_known():
@@ -191,7 +220,7 @@ def test_two_nodes_that_publish_commands_on_the_same_topic_are_reported(example)
     )
     assert found == ["/a and /b both publish commands on /cmd_vel: let a multiplexer choose"]
     assert messages(305, author(example, "/a"), author(example, "/n/b")) == []
-    assert messages(305, author(example, "/a"), author(example, "/b", "Float64")) == []
+    assert messages(305, author(example, "/a"), author(example, "/b", "String")) == []
     assert messages(305, author(example, "/a"), author(example, "/b", topics=("cmd_vel", "x"))) == []
     assert messages(305, author(example, "/a"), author(example, "/b", condition="if $(arg x)")) == []
     assert messages(305, author(example, "/a"), node("/b", unread=True)) == []
@@ -230,12 +259,13 @@ NONE = "/k has no parameter {}: the launch file sets it without effect"
         (Setting("~qos_overrides.x", FILE, 1), []),
         (Setting("/gian", FILE, 1), []),
         (Setting("~inner/gain", FILE, 1), []),
-        (Setting("~gain.p", FILE, 1), []),
+        (Setting("~gain.p", FILE, 1), ["gain.p"]),
+        (Setting("~gain_2.gain", FILE, 1), []),
         (Setting("~gian.p", FILE, 1), ["gian.p"]),
         (yaml("gian: 1\ngain: 2\nb: 3"), ["gian", "b"]),
         (yaml("gian: {p: 1, i: 2}\ngain: {p: 1}"), ["gian/p", "gian/i"]),
         (yaml("k: {ros__parameters: {gian: {p: 1}, gain: 2}}"), ["gian.p"]),
-        (yaml("/**: {ros__parameters: {gian: 1}}"), []),
+        (yaml("/**: {ros__parameters: {other: 1}}"), []),
         (yaml("/other: {ros__parameters: {gian: 1}}"), []),
         (yaml("[1, 2]"), []),
         (yaml("a: ["), []),
@@ -252,6 +282,14 @@ def test_a_parameter_counts_as_absent_only_if_no_node_with_the_setting_may_decla
     assert messages(307, keeper("/k", setting), keeper("/l", setting, named=False)) == []
     assert messages(307, keeper("/k", setting), keeper("/l", setting)) == [NONE.format("gian")]
     assert messages(307, node("/k", unread=True, settings=(setting,))) == []
+
+
+def test_a_misspelt_parameter_in_a_section_for_all_nodes_is_reported_if_no_node_has_it():
+    shared = yaml("/**: {ros__parameters: {treshold: 1, other: 2}}")
+    near = keeper("/k", shared, words=("threshold",))
+    assert messages(307, near, keeper("/l", shared)) == [NONE.format("treshold")]
+    assert messages(307, near, keeper("/l", shared, words=("treshold",))) == []
+    assert messages(307, near, node("/l", unread=True, settings=(shared,))) == []
 
 
 def test_a_section_of_a_shared_parameter_file_is_meant_for_the_node_of_its_name():

@@ -16,7 +16,7 @@ from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Qos
 from tarl_lint.system.parameters import deciding, reads_named_parameters, words
 from tarl_lint.system.qos import of_call
-from tarl_lint.system.staleness import stale
+from tarl_lint.system.staleness import commands, stale
 from tarl_lint.workspace.read import read
 
 
@@ -38,6 +38,9 @@ PROFILES = [
     ("self.create_client(F, 'a', 10)", None),
     ("create_publisher(F, 'a', 10)", None),
     (SUBSCRIBED.format("qos_profile_sensor_data"), EFFORT),
+    (SUBSCRIBED.format("QoSPresetProfiles.SENSOR_DATA.value"), EFFORT),
+    (SUBSCRIBED.format("QoSPresetProfiles.get_from_short_key('sensor_data')"), EFFORT),
+    (SUBSCRIBED.format("QoSPresetProfiles.OTHER.value"), None),
     (SUBSCRIBED.format("rclpy.qos.qos_profile_sensor_data"), EFFORT),
     (SUBSCRIBED.format("qos_profile_system_default"), Qos()),
     (SUBSCRIBED.format("qos_profile_default"), RELIABLE),
@@ -85,6 +88,17 @@ def test_the_quality_of_service_of_a_call_is_read_if_it_is_constant(call, found)
 def test_a_profile_in_a_variable_is_followed_with_the_policies_assigned_to_it(before, found):
     assert quality(f"{before}\n{SUBSCRIBED.format('p')}") == found
     assert quality(f"{before}\n{SUBSCRIBED.format('self.p')}") == found
+
+
+def test_a_profile_may_be_imported_under_another_name_or_from_another_module_of_the_program():
+    assert quality("from rclpy.qos import qos_profile_sensor_data as S\n" + SUBSCRIBED.format("S")) == EFFORT
+    call = ast.parse(SUBSCRIBED.format("profiles.FAST"))
+    place = call.body[0]
+    at = (place.lineno, place.col_offset, place.end_lineno or 0, place.end_col_offset or 0)
+    profiles = Outline(ast.parse("FAST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)"))
+    assert of_call(Outline(call), at, [profiles]) == EFFORT
+    assert of_call(Outline(call), at, [profiles, profiles, Outline(ast.parse("FAST = 1"))]) is None
+    assert of_call(Outline(call), at) is None
 
 
 def test_no_quality_of_service_is_read_at_a_position_without_a_call():
@@ -170,6 +184,12 @@ READS = [
     ("with open(x) as names: get_param(names)", False),
     ("get_param('a' if x else 'b')", True),
     ("g = lambda name: get_param(name)", False),
+    (
+        "def own(n): return '~' + n\nclass A: T = {}\nclass B(A): T = {'a': 1}\nfor k in B.T: get_param(own(k))",
+        True,
+    ),
+    ("class A:\n    T = {}\nA.T.update(x)\nA.T = {'a': 1}\nfor k in A.T: get_param(k)", False),
+    ("for k in ['a']: get_param(k.upper())", False),
     ("self.declare_parameters('ns', [])", True),
     ("self.get_parameters(['a', b])", False),
     ("self.get_parameters([b])", False),
@@ -182,6 +202,10 @@ READS = [
 @pytest.mark.parametrize(("text", "named"), READS)
 def test_a_program_reads_only_parameters_that_it_names(text, named):
     assert reads_named_parameters([module("x = 1"), module(text)]) is named
+
+
+def test_parts_of_format_strings_are_words():
+    assert words([module("'%s_max' % a; '{}.kp'.format(a)")]) == {"%s_max", "_max", "{}.kp", "kp", ""}
 
 
 def test_each_string_of_a_program_may_be_a_name_that_the_program_uses():
@@ -262,6 +286,13 @@ def test_a_command_that_a_timer_repeats_is_stale(example):
     assert stale([found], [module(CONTROL)]) == (found,)
 
 
+def test_numbers_are_commands_to_move_on_a_topic_with_such_a_name(example):
+    sink = command(example, type="Float64").flow.sink
+    names = {"wheel_velocity/command": True, "cmd_vel": True, "arm/command": False, "speed": False}
+    assert {one: commands(replace(sink, topics=(one,))) for one in names} == names
+    assert not commands(replace(sink, type="String", topics=("cmd_vel",)))
+
+
 @pytest.mark.parametrize(
     "given",
     [{"kind": "implicit"}, {"type": "Float64"}, {"api": "rospy.Service"}, {"qualname": "C.on"}, {"callback": ""},
@@ -278,6 +309,7 @@ def test_other_flows_are_not_stale(example, given):
         ("    def stop(self):\n            self.other = None\n", True),
         ("    def stop(self):\n            self.tick()\n", False),
         ("    def stop(self):\n            self.stamp = rospy.Time.now()\n", False),
+        ("    def stop(self):\n            cmd.header.stamp = rospy.Time.now()\n", True),
         ("    def stop(self):\n            self.last_seen = 1\n", False),
         ("    def stop(self):\n            self.elapsed = 1\n", False),
         ("    def stop(self):\n            time.sleep(1.0)\n", True),

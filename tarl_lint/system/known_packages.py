@@ -1,0 +1,162 @@
+"""Message and service types of well-known packages, and the typed topics of some of their programs.
+
+The packages are usually installed without source. The types tell which ends of a topic an unread node may have: a
+laser driver does not publish velocities. Transforms, diagnostics, parameters and states of lifecycle nodes do not
+count, since no rule examines them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from tarl_lint.model import Span
+from tarl_lint.system.model import Endpoint, Instance, Role, Seen, place_of
+from tarl_lint.workspace.launch_model import LaunchedNode
+from tarl_lint.workspace.ros_arguments import plain
+
+_CAMERA: Final = "Image CompressedImage CameraInfo Packet Empty SetBool SetCameraInfo"
+_PICTURES: Final = f"{_CAMERA} PointCloud2 DisparityImage Trigger"
+_SCANNER: Final = "LaserScan MultiEchoLaserScan PointCloud PointCloud2 Empty Trigger Status"
+_INERTIAL: Final = "Imu MagneticField Vector3Stamped Vector3 Temperature Empty Trigger Bool"
+_VELOCITY: Final = "Twist TwistStamped Joy Bool String Odometry Marker"
+_POSES: Final = "PoseStamped PoseWithCovarianceStamped PoseArray PointStamped"
+_MAPPING: Final = (
+    f"LaserScan MultiEchoLaserScan PointCloud2 Odometry Imu OccupancyGrid MapMetaData Float64 String Path {_POSES} "
+    "MarkerArray Marker NavSatFix Empty GetMap SetMap LoadMap SaveMap Trigger LandmarkList SubmapList InteractiveMarker"
+)
+_NAVIGATION: Final = (
+    f"{_MAPPING} Twist TwistStamped OccupancyGridUpdate Costmap CostmapUpdate VoxelGrid Range PointCloud Polygon "
+    "PolygonStamped SpeedLimit BehaviorTreeLog CostmapFilterInfo Bool GetPlan ClearEntireCostmap GridCells "
+    "ManageLifecycleNodes GetCostmap IsPathValid ParticleCloud"
+)
+_FUSION: Final = (
+    "Odometry Imu NavSatFix PoseStamped PoseWithCovarianceStamped Twist TwistStamped TwistWithCovarianceStamped "
+    "AccelWithCovarianceStamped SetPose Empty SetDatum ToLL FromLL ToggleFilterProcessing GetState SetUTMZone"
+)
+_MARKERS: Final = (
+    f"{_CAMERA} PoseStamped PoseArray TransformStamped Vector3Stamped PointStamped Marker MarkerArray"
+)
+# package → types that its programs use
+_PACKAGES: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("joy", "joy_linux"), "Joy JoyFeedback JoyFeedbackArray"),
+    **dict.fromkeys(("teleop_twist_joy", "teleop_twist_keyboard", "twist_mux", "twist_stamper", "key_teleop",
+                     "yocs_velocity_smoother", "yocs_cmd_vel_mux", "rqt_robot_steering"), _VELOCITY),
+    **dict.fromkeys(("usb_cam", "v4l2_camera", "cv_camera", "gscam", "uvc_camera", "libuvc_camera", "camera_ros",
+                     "image_publisher", "web_video_server"), _CAMERA),
+    **dict.fromkeys(("image_proc", "depth_image_proc", "stereo_image_proc", "image_view", "image_rotate",
+                     "image_transport", "depthimage_to_laserscan"), f"{_PICTURES} LaserScan"),
+    "realsense2_camera": f"{_PICTURES} Imu Extrinsics IMUInfo Metadata RGBD DeviceInfo",
+    **dict.fromkeys(("urg_node", "urg_node2", "rplidar_ros", "sllidar_ros2", "ydlidar_ros", "ydlidar_ros2_driver",
+                     "hls_lfcd_lds_driver", "ldlidar_stl_ros2", "laser_filters", "pointcloud_to_laserscan"), _SCANNER),
+    **dict.fromkeys(("velodyne_driver", "velodyne_pointcloud", "velodyne_laserscan"),
+                    "VelodyneScan VelodynePacket PointCloud2 LaserScan"),
+    "pcl_ros": "PointCloud2 PointIndices ModelCoefficients PolygonStamped",
+    **dict.fromkeys(("imu_filter_madgwick", "imu_complementary_filter", "imu_transformer", "imu_calib"), _INERTIAL),
+    "nmea_navsat_driver": "NavSatFix TwistStamped TimeReference QuaternionStamped Sentence",
+    "robot_localization": _FUSION,
+    **dict.fromkeys(("amcl", "map_server", "gmapping", "hector_mapping", "slam_toolbox", "cartographer_ros"), _MAPPING),
+    "move_base": _NAVIGATION,
+    **dict.fromkeys(("nav2_amcl", "nav2_map_server", "nav2_controller", "nav2_planner", "nav2_behaviors",
+                     "nav2_recoveries", "nav2_bt_navigator", "nav2_waypoint_follower", "nav2_velocity_smoother",
+                     "nav2_smoother", "nav2_lifecycle_manager", "nav2_collision_monitor",
+                     "nav2_costmap_2d"), _NAVIGATION),
+    "octomap_server": "PointCloud2 Octomap MarkerArray OccupancyGrid Empty GetOctomap BoundingBoxQuery",
+    **dict.fromkeys(("apriltag_ros", "aruco_ros", "ar_track_alvar"),
+                    f"{_MARKERS} AprilTagDetectionArray AlvarMarkers MarkerArray PointCloud2"),
+    "turtlesim": "Twist Pose Color Empty Kill Spawn SetPen TeleportAbsolute TeleportRelative",
+    "rosapi": "",
+    "tf2_web_republisher": "",
+}  # fmt: skip
+# programs that use no topics of the types that rules examine
+_QUIET: Final = frozenset(
+    ["nodelet/manager", "rqt_reconfigure/rqt_reconfigure", "gazebo_ros/spawn_model", "gazebo_ros/spawn_entity.py",
+     "ros_gz_sim/create", "controller_manager/spawner", "controller_manager/unspawner", "rosbag/record",
+     "diagnostic_aggregator/aggregator_node", "rqt_robot_monitor/rqt_robot_monitor", "rqt_tf_tree/rqt_tf_tree",
+     "map_server/map_saver", "image_view/image_view"]
+)  # fmt: skip
+
+_Typed = tuple[str, str]
+_SCAN: Final[_Typed] = ("", "scan:LaserScan")
+_FILTERED: Final[_Typed] = ("", "odometry/filtered:Odometry")
+# program → the subscribed and the published topics whose types are known
+_TYPED: Final[Mapping[str, _Typed]] = {
+    **dict.fromkeys(("joy/joy_node", "joy_linux/joy_linux_node"), ("", "joy:Joy")),
+    "teleop_twist_joy/teleop_node": ("joy:Joy", "cmd_vel:Twist"),
+    "teleop_twist_keyboard/teleop_twist_keyboard": ("", "cmd_vel:Twist"),
+    "teleop_twist_keyboard/teleop_twist_keyboard.py": ("", "cmd_vel:Twist"),
+    "twist_mux/twist_mux": ("", "cmd_vel_out:Twist"),
+    "move_base/move_base": ("odom:Odometry", "cmd_vel:Twist"),
+    **dict.fromkeys(("urg_node/urg_node", "urg_node/urg_node_driver", "rplidar_ros/rplidarNode",
+                     "rplidar_ros/rplidar_node", "sllidar_ros2/sllidar_node"), _SCAN),
+    "amcl/amcl": ("scan:LaserScan initialpose:PoseWithCovarianceStamped", "amcl_pose:PoseWithCovarianceStamped"),
+    "map_server/map_server": ("", "map:OccupancyGrid"),
+    **dict.fromkeys((f"robot_localization/{name}" for name in
+                     ("ekf_node", "ukf_node", "ekf_localization_node", "ukf_localization_node")), _FILTERED),
+    "usb_cam/usb_cam_node_exe": ("", "image_raw:Image camera_info:CameraInfo"),
+    "usb_cam/usb_cam_node": ("", "~image_raw:Image ~camera_info:CameraInfo"),
+    "v4l2_camera/v4l2_camera_node": ("", "image_raw:Image camera_info:CameraInfo"),
+}  # fmt: skip
+# parameters with which a program publishes TwistStamped in place of Twist
+_STAMPED: Final = ("use_stamped", "publish_stamped_twist", "stamped")
+_UNSTAMPED: Final = "Twist"
+
+
+def kinds(node: LaunchedNode) -> frozenset[str] | None:
+    """Return the types of messages and services that a program may use; None if it is unknown."""
+    package, program = _identity(node)
+    if f"{package}/{program}" in _QUIET or node.kind == "container":
+        return frozenset()
+    types = _PACKAGES.get(package)
+    return None if types is None else frozenset(types.split())
+
+
+def typed(instance: Instance, values: Mapping[str, Any]) -> Seen:
+    """Return the topics with known types of a program. `values` are its parameters."""
+    package, program = _identity(instance.node)
+    topics = _TYPED.get(f"{package}/{program}")
+    if topics is None:
+        return Seen()
+    stamped = next((values[one] for one in _STAMPED if one in values), False)
+    span = place_of(instance)
+    ends = [*_ends("subscribes", topics[0], stamped, span), *_ends("publishes", topics[1], stamped, span)]
+    if package == "twist_mux":
+        ends += [
+            Endpoint("subscribes", (one,), _velocity(stamped), span)
+            for one in _multiplexed(values.get("topics"))
+        ]
+    return Seen(tuple(ends))
+
+
+def _ends(role: Role, topics: str, stamped: object, span: Span) -> Iterator[Endpoint]:
+    for topic in topics.split():
+        name, _, kind = topic.partition(":")
+        yield Endpoint(role, (name,), _velocity(stamped) if kind == _UNSTAMPED else kind, span)
+
+
+def _velocity(stamped: object) -> str:
+    """Return the type of velocities; "" if only the robot knows it."""
+    return "TwistStamped" if stamped is True else _UNSTAMPED if stamped is False else ""
+
+
+def _multiplexed(topics: object) -> Iterator[str]:
+    """Yield the inputs of a multiplexer: in ROS 1 a list of mappings, in ROS 2 a mapping of mappings."""
+    rows = topics if isinstance(topics, list) else list(topics.values()) if isinstance(topics, dict) else []
+    for row in rows:
+        name = row.get("topic") if isinstance(row, dict) else None
+        if isinstance(name, str) and name and "$(" not in name:
+            yield name
+
+
+def _identity(node: LaunchedNode) -> tuple[str, str]:
+    """Return package and program; of a nodelet or component, the package of its class."""
+    if node.package == "nodelet" and node.executable == "nodelet":
+        words = plain(node.arguments, for_ros2=False)
+        if words and words[0] == "manager":
+            return "nodelet", "manager"
+        package, _, name = (words[1] if len(words) > 1 else "").partition("/")
+        return package, name
+    if "::" in node.executable:
+        package, _, name = node.executable.partition("::")
+        return package, name
+    return node.package, node.executable
