@@ -1,17 +1,17 @@
 """TARL301: a subscription has no publisher, and a publisher with a similar name has no subscriber.
 
-The two ends were probably meant to be connected. The types of both ends are equal, and the names differ only
-by a namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error and does
-not move. For this reason, the keyboard teleoperation of the Kobuki had no effect
-(https://github.com/aliasrobotics/RVD/issues/581). Robots also stand still if they are launched in a namespace
-but their code publishes on `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
+The two ends were probably meant to be connected. The types of both ends are equal, and the names differ only by a
+namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error and does not move. For
+this reason, the keyboard teleoperation of the Kobuki had no effect (https://github.com/aliasrobotics/RVD/issues/581).
+Robots also stand still if they are launched in a namespace but their code publishes on `/cmd_vel`
+(https://github.com/UoY-RoboStar/AURO/issues/5).
 
 Two private names of the same node are similar too, such as `/speech/finished` and `/speech/finish`.
 
 The rule reports nothing if a node of the launch file was not read and may use the type, or computes the names of its
 topics, or if an included launch file is not in the workspace, because the other end might be there. The types of
-well-known packages are known: a laser driver does not publish `Twist`. The rule also reports nothing if no publisher has
-a similar name, because sensors and simulators are often started elsewhere.
+well-known packages are known: a laser driver does not publish `Twist`. The rule also reports nothing if no publisher
+has a similar name, because sensors and simulators are often started elsewhere.
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
 """TARL304: a service that is called has no server, and a server with a similar name is never called.
 
-The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason:
-a service `~home` of the node `arm` is `/arm/home`, not `/home`. In one namespace, `open` and `open_door` are similar as
+The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason: a
+service `~home` of the node `arm` is `/arm/home`, not `/home`. In one namespace, `open` and `open_door` are similar as
 well.
 
-The rule reports nothing if a node of the launch file was not read and may use the type, or if an included launch file is
-not in the workspace. The rule also reports nothing if no server has a similar name, because the server may be started
-elsewhere.
+The rule reports nothing if a node of the launch file was not read and may use the type, or if an included launch file
+is not in the workspace. The rule also reports nothing if no server has a similar name, because the server may be
+started elsewhere.
 """
 
 from __future__ import annotations

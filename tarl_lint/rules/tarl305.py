@@ -4,9 +4,9 @@ The last message wins, so the robot jerks as it follows both nodes in turn. Give
 a multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: the game controller and the autonomous
 control published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
 
-The rule covers commands such as `Twist`, and numbers on topics such as `wheel_velocity/command`, if the commands of each
-node depend on a subscribed topic. The rule does not cover nodes that are started under a condition known only on the
-robot, because one of them may replace the other.
+The rule covers commands such as `Twist`, and numbers on topics such as `wheel_velocity/command`, if the commands of
+each node depend on a subscribed topic. The rule does not cover nodes that are started under a condition known only on
+the robot, because one of them may replace the other.
 """
 
 from __future__ import annotations

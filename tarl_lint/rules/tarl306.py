@@ -1,15 +1,15 @@
 """TARL306: a loop continues to publish commands after its messages stop.
 
-A callback stores what it receives. A loop or timer computes a command from the stored value and publishes it
-again and again. If the messages stop because a sensor hangs, a cable breaks or a node crashes, the robot
-continues with the last command. For this reason, a Pioneer robot collided with expensive equipment
-(https://github.com/amor-ros-pkg/rosaria/pull/51). Store the time of the last message, and stop the robot when
-the message is too old.
+A callback stores what it receives. A loop or timer computes a command from the stored value and publishes it again
+and again. If the messages stop because a sensor hangs, a cable breaks or a node crashes, the robot continues with the
+last command. For this reason, a Pioneer robot collided with expensive equipment
+(https://github.com/amor-ros-pkg/rosaria/pull/51). Store the time of the last message, and stop the robot when the
+message is too old.
 
-The rule reports nothing if the program reads the time anywhere, except for the stamp of a message, or resets the values that the callback stored: to
-`None`, or to a constant in the function that publishes. The rule also reports nothing if the program contains words
-such as `timeout`, `last_` and `counter`, because such words suggest that the program detects old messages in another
-way.
+The rule reports nothing if the program reads the time anywhere, except for the stamp of a message, or resets the
+values that the callback stored: to `None`, or to a constant in the function that publishes. The rule also reports
+nothing if the program contains words such as `timeout`, `last_` and `counter`, because such words suggest that the
+program detects old messages in another way.
 """
 
 from __future__ import annotations
