@@ -7,7 +7,7 @@ name. If all parts are strings of the program, the program still states every na
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
 from typing import Final
 
@@ -141,6 +141,15 @@ class OwnStrings:
         )
 
     @cached_property
+    def _texts(self) -> frozenset[str]:
+        return frozenset(
+            name
+            for outline in self._outlines
+            for name, values in outline.assigned.items()
+            if name and any(isinstance(one, ast.Constant) and isinstance(one.value, str) for one in values)
+        )
+
+    @cached_property
     def _classes(self) -> frozenset[str]:
         return frozenset(one.name for outline in self._outlines for one in outline.definitions
                          if isinstance(one, ast.ClassDef))  # fmt: skip
@@ -160,7 +169,7 @@ class OwnStrings:
             return False
         places = [(outline, scope)] if scope is not None else [(one, None) for one in self._outlines]
         bound = [(one, where) for where, inside in places for one in _values(where.tree if inside is None else inside,
-                                                                            name.id)]  # fmt: skip
+                                                                            name.id, self._texts)]  # fmt: skip
         passed = scope is not None and name.id in _arguments(scope)
         return (passed or bool(bound)) and all(
             value is not None and self._own(value, where, after) for value, where in bound
@@ -232,8 +241,11 @@ def _binds(function: _Function | ast.Lambda, name: str) -> bool:
     )
 
 
-def _values(inside: ast.AST, name: str) -> Iterator[ast.expr | None]:
-    """Yield the values that statements bind to a name: assigned ones, and what loops iterate over; None if unknown."""
+def _values(inside: ast.AST, name: str, texts: Collection[str]) -> Iterator[ast.expr | None]:
+    """Yield the values that statements bind to a name: assigned ones, and what loops iterate over; None if unknown.
+
+    `texts` are names of variables that hold one text.
+    """
     for node in ast.walk(inside):
         match node:
             case ast.Assign(targets=targets, value=value) if any(_names(one, name) for one in targets):
@@ -247,7 +259,8 @@ def _values(inside: ast.AST, name: str) -> Iterator[ast.expr | None]:
             case ast.For(target=target, iter=over) | ast.comprehension(target=target, iter=over) if _names(
                 target, name
             ):
-                yield over
+                # the letters of a text in a variable are no strings of the program
+                yield None if last_name(over) in texts else over
             case ast.withitem(optional_vars=target) if target is not None and _names(target, name):
                 yield None
 

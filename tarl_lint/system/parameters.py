@@ -47,6 +47,11 @@ def _texts(node: ast.AST) -> Iterator[str]:
         case ast.Constant(value=str(text)):
             yield text
             yield from _GAPS.split(text) if _GAPS.search(text) else ()
+        case (
+            ast.For(iter=ast.Constant(value=str(letters)))
+            | ast.comprehension(iter=ast.Constant(value=str(letters)))
+        ):
+            yield from letters
         case ast.ClassDef(body=body):
             yield from (
                 one.target.id

@@ -190,6 +190,8 @@ READS = [
     ),
     ("class A:\n    T = {}\nA.T.update(x)\nA.T = {'a': 1}\nfor k in A.T: get_param(k)", False),
     ("for k in ['a']: get_param(k.upper())", False),
+    ("for k in 'ab': get_param(k)", True),
+    ("K = 'ab'\nfor k in K: get_param(k)", False),
     ("self.declare_parameters('ns', [])", True),
     ("self.get_parameters(['a', b])", False),
     ("self.get_parameters([b])", False),
@@ -206,6 +208,7 @@ def test_a_program_reads_only_parameters_that_it_names(text, named):
 
 def test_parts_of_format_strings_are_words():
     assert words([module("'%s_max' % a; '{}.kp'.format(a)")]) == {"%s_max", "_max", "{}.kp", "kp", ""}
+    assert words([module("for a in 'xy': f(a)\n[b for b in 'z']")]) == {"xy", "x", "y", "z"}
 
 
 def test_each_string_of_a_program_may_be_a_name_that_the_program_uses():
