@@ -108,12 +108,13 @@ def integral(state: dict[str, float], x: float) -> float:
 
 
 def derivative(state: dict[str, float], x: float) -> float:
-    before, state["before"] = state.get("before", 0.0), x
+    before, state["before"] = state.get("before", x), x
     return x + 3.5 * (x - before)
 
 
 def low_pass(state: dict[str, float], x: float) -> float:
-    state["smooth"] = state.get("smooth", 0.0) + 0.15 * (x - state.get("smooth", 0.0))
+    last = state.get("smooth", x)
+    state["smooth"] = last + 0.15 * (x - last)
     return state["smooth"]
 
 
