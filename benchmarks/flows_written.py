@@ -1,0 +1,161 @@
+"""Compare the flows that tarl-lint reports with those of workspaces that were written and judged without it.
+
+    python benchmarks/flows_written.py [benchmarks/flows_written/judge]... [--show]
+
+Each workspace is one text: its files follow each other, each after a line `--- path`. The JSON beside it was written
+before the linter was run. For each publish call, it names the subscriptions, services and look-ups of transforms that
+reach the call: with their data (`data`), by a decision (`control`), or only by the fact that a message arrives
+(`event`). `also` lists other kinds that count as right; `weak` marks what does not count.
+
+The linter runs with `tf2 = true`. Responses of services and results of actions that a node asks for are sources for
+the author of the workspaces, but not for the linter; they are counted apart, as events are.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from tarl_lint.model import Flow, Source
+from tarl_lint.run.runner import run
+from tarl_lint.settings.config import Config, Options
+
+FOLDER: Final = Path(__file__).with_suffix("")
+KINDS: Final = {"explicit": "data", "implicit": "control"}
+ANSWERS: Final = ("service.", "action.")  # beginnings of `Sink.api` of responses, which were not judged
+_FILE: Final = re.compile(r"^--- (\S+)\n", re.MULTILINE)
+_ASKS: Final = re.compile(r"\b(create_client|ServiceProxy|\w*ActionClient)\(")
+Pairs = dict[str, dict[str, str]]  # publish call → source → kind
+
+
+@dataclass
+class Counts:
+    """The counts of a folder, and a remark on each difference."""
+
+    of: Counter[str] = field(default_factory=Counter)
+    remarks: list[str] = field(default_factory=list)
+
+    def compare(
+        self, call: str, judged: Sequence[Mapping[str, Any]], found: Mapping[str, str], texts: Texts
+    ) -> None:
+        """Compare the sources of one publish call with the judgement."""
+        right = True
+        for one in judged:
+            if one.get("weak"):
+                continue
+            name = "asked for" if _ASKS.search(texts.line(one["at"])) else one["kind"]
+            kind = found.get(one["at"])
+            self.of[name] += 1
+            if kind in (one["kind"], *one.get("also", [])):
+                self.of[f"{name}, found"] += 1
+            elif name in KINDS.values():
+                right = False
+                self.remarks.append(f"{call}: {name} from {one['at']} is {kind or 'missed'}")
+        surplus = sorted(found.keys() - {one["at"] for one in judged})
+        self.of["surplus"] += len(surplus)
+        self.remarks += [f"{call}: surplus {found[one]} from {one}" for one in surplus]
+        self.of["calls"] += 1
+        self.of["calls, right"] += right and not surplus
+
+
+@dataclass(frozen=True)
+class Texts:
+    """The files of a workspace by name."""
+
+    files: Mapping[str, str]
+
+    @classmethod
+    def read(cls, path: Path) -> Texts:
+        """Return the files that follow each other in a text."""
+        parts = _FILE.split(path.read_text("utf-8"))
+        return cls(dict(zip(parts[1::2], parts[2::2], strict=True)))
+
+    def unpack(self, root: Path) -> None:
+        """Write the files below a folder."""
+        for name, text in self.files.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text, "utf-8")
+
+    def line(self, place: str) -> str:
+        """Return the line `path:number`."""
+        path, _, number = place.rpartition(":")
+        return self.files[path].splitlines()[int(number) - 1]
+
+
+def reported(texts: Texts, known: Mapping[str, str]) -> Pairs:
+    """Return the reported pairs, with sources at the places that the judgement knows where these are the same."""
+    pairs: Pairs = {}
+    with tempfile.TemporaryDirectory() as place:
+        root = Path(place).resolve()
+        texts.unpack(root)
+        for finding in run(Options((root,), jobs=1, cache=False), Config(root=root, tf2=True)).findings:
+            flow = finding.flow
+            if flow is not None and not flow.sink.api.startswith(ANSWERS):
+                call, source = (
+                    _place(root, flow.sink.span.path, flow.sink.span.line),
+                    _source(root, flow, known),
+                )
+                kinds = pairs.setdefault(call, {})
+                kinds[source] = min(
+                    KINDS[flow.kind], kinds.get(source, "control"), key=["data", "control"].index
+                )
+    return pairs
+
+
+def _source(root: Path, flow: Flow, known: Mapping[str, str]) -> str:
+    places = [_place(root, path, line) for path, line in _spots(flow.source)]
+    return next(
+        (one for one in places if one in known), next(iter(_near(places, known, flow.source)), places[0])
+    )
+
+
+def _spots(source: Source) -> Iterator[tuple[str, int]]:
+    for span in (source.span, *source.registered, *source.via):
+        yield span.path, span.line
+
+
+def _near(places: Sequence[str], known: Mapping[str, str], source: Source) -> Iterator[str]:
+    """Yield the judged sources within three lines that have the same topic; their author named another line."""
+    topics = {topic.lstrip("~/") for topic in source.topics}
+    for place in places:
+        path, _, number = place.rpartition(":")
+        for one, topic in known.items():
+            other, _, line = one.rpartition(":")
+            if other == path and abs(int(line) - int(number)) <= 3 and topic.lstrip("~/") in topics:
+                yield one
+
+
+def _place(root: Path, path: str, line: int) -> str:
+    return f"{Path(path).resolve().relative_to(root).as_posix()}:{line}"
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print the counts of each folder."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("folders", type=Path, nargs="*")
+    parser.add_argument("--show", action="store_true", help="print each difference")
+    options = parser.parse_args(arguments)
+    for folder in options.folders or sorted(one for one in FOLDER.iterdir() if one.is_dir()):
+        counts = Counts()
+        for file in sorted(folder.glob("*.json")):
+            truth, texts = json.loads(file.read_text("utf-8")), Texts.read(file.with_suffix(".txt"))
+            pairs = reported(texts, truth["sources"])
+            for call, judged in truth["calls"].items():
+                counts.compare(call, judged, pairs.get(call, {}), texts)
+        print(folder.name)
+        for name in ("calls, right", "data, found", "control, found", "event, found", "asked for, found"):
+            print(f"{name:>20}: {counts.of[name]} of {counts.of[name.partition(',')[0]]}")
+        print(f"{'surplus':>20}: {counts.of['surplus']}")
+        for remark in counts.remarks if options.show else ():
+            print(f"    {remark}")
+
+
+if __name__ == "__main__":
+    main()
