@@ -51,7 +51,7 @@ class Examiner:
         self.order = mutants.order
         self.guards = guards
         self.placing = Placing(mutants)
-        self.ranged: dict[Candidate, Ranged] = {}  # for drifts with a range
+        self.ranged: dict[Candidate, Ranged] = {}  # results by part of the range, for drifts with a range
         self.ledger = Ledger()
         # candidates that pass on known seeds; they wait because `SHARE` others of the same operands have been tested
         self.waiting: list[Candidate] = []
@@ -126,7 +126,7 @@ class Examiner:
     def _other_values(
         self, candidate: Candidate, examined: Tried, weak: list[Guard], trials: Trials
     ) -> Iterator[OtherValues]:
-        """Yield the other values of a candidate that come before its further guards; update `weak`."""
+        """Yield the other values of a candidate that are tried before its next guard; update `weak`."""
         guard = examined.candidate.guard
         if guard == candidates.ALWAYS and examined.reason in (*WEAK, *STRONG):
             yield self.others.unguarded(candidate, examined.reason, trials)

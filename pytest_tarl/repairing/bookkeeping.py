@@ -13,8 +13,8 @@ from functools import cache
 from pytest_tarl.patching.document import Document
 from tarl_lint.api import Analysis
 
-STAMPS = ("Time", "Time.from_sec", "Time.from_seconds")  # endings of calls that make a time stamp
-# calls whose positional arguments from this index on are time stamps, timeouts or lengths of queues
+STAMPS = ("Time", "Time.from_sec", "Time.from_seconds")  # endings of names of calls that create time stamps
+# call → index of the first positional argument that is a time stamp, a timeout or a queue length
 MIDDLEWARE = {
     **dict.fromkeys(
         ("lookup_transform", "lookupTransform", "can_transform", "canTransform", "lookup_twist"), 2
@@ -25,7 +25,7 @@ MIDDLEWARE = {
     **dict.fromkeys(("Buffer", "TransformListener", "BufferClient"), 0),
     **dict.fromkeys(("QoSProfile", "Cache", "TimeSynchronizer"), 0),
 }
-# keyword arguments with such values, of any call
+# keyword arguments that hold such values in any call
 KEYWORDS = (
     "timeout",
     "timeout_sec",
@@ -36,8 +36,9 @@ KEYWORDS = (
     "history_depth",
     "qos_profile",
 )
-IDENTITIES = ("seq", "stamp", "frame_id", "id")  # fields of messages that name or date a message
-TIMERS = {"Timer": 1, "create_timer": 1, "create_wall_timer": 1}  # timers, and the index of their callback
+IDENTITIES = ("seq", "stamp", "frame_id", "id")  # message fields that hold an ID or a time stamp
+# function that creates a timer → index of its callback argument
+TIMERS = {"Timer": 1, "create_timer": 1, "create_wall_timer": 1}
 
 
 def is_bookkeeping(analysis: Analysis, source: Document, node: ast.expr) -> bool:

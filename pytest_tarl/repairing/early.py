@@ -23,10 +23,11 @@ from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
 FROM = 60  # number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
-LATER = 100  # the same if a constant gains at least `PARTLY`, because it may only need another value or a second one
-PARTLY = 0.2  # share of the wanted gain
-SEEDS = 2  # number of seeds on which a correction of a reading is tried; some are hard by design
-HALF = 0.5  # corrections of readings are tried unless a constant gains this share of the wanted gain
+# the same if a constant gains at least `PARTLY`: it may only need another value or a second constant
+LATER = 100
+PARTLY = 0.2  # share of the wanted gain that a constant must reach for `LATER`
+SEEDS = 2  # number of seeds on which a correction of a reading is tried; a seed may be hard in any world
+HALF = 0.5  # corrections of readings are tried unless a constant gains at least this share of the wanted gain
 MOST = 45  # number of episodes for the changes; half as many more if one of them gains much
 
 
@@ -107,5 +108,5 @@ class Early:
         return self._recorded
 
     def effects(self) -> Mapping[str, Sequence[OperandEffect]]:
-        """Return, for each site, the gains of each template's best values."""
+        """Return the gains of the best values of each template, for each site."""
         return MappingProxyType({}) if self._structures is None else self._structures.effects()

@@ -24,11 +24,11 @@ from pytest_tarl.searching.confirming import CONFIRMATIONS
 from pytest_tarl.searching.search import BudgetSpentError, Goal, Pair, Trials
 
 ENOUGH = 1 + CONFIRMATIONS  # number of seeds with a loss that a search needs
-LOOKED_AT = 12  # maximum number of recorded missions that are run under the drift to find such seeds
+LOOKED_AT = 12  # maximum number of recorded missions that are run under the drift to find seeds with a loss
 SELECTED = 0.5  # if at least this share of the episodes fails, the failing episodes represent all episodes
 SHARE = 0.6  # share of the margin that the selected missions may use up
 HALF = 0.5  # a repaired mission may still have at most this share of its loss
-CONTROLS = 2  # number of drifted episodes without loss, in which a candidate must not lose reward
+CONTROLS = 2  # number of episodes without a loss under the drift; a candidate must not lose reward in them
 
 
 def enriched(mutants: Mutants, trials: Trials) -> Goal:

@@ -24,7 +24,8 @@ def exceeding(comparison: Comparison, totals: Mapping[str, Sequence[float]]) -> 
         "repaired": f"in {world_name(comparison)}",
     }
     for world, place in places.items():
-        low = loss_between(totals[world], designed, CONFIDENCE).low  # loss of the designed program
+        # loss of the unrepaired program in the designed world
+        low = loss_between(totals[world], designed, CONFIDENCE).low
         if low > comparison.verdict.tolerance:
             earned, before = (sum(one) / len(one) for one in (totals[world], designed))
             told = (

@@ -9,7 +9,7 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.search import Candidate, Trials
 
-QUICK = 3  # number of known seeds of each world on which a guard is tried
+QUICK = 3  # number of known seeds on which a guard is tried, in each world
 
 
 def known_to_fail(mutants: Mutants, candidate: Candidate, trials: Trials, missed: Missed) -> Reason:

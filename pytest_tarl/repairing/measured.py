@@ -24,9 +24,9 @@ from tarl_lint.model import Operand
 
 MOST = 6  # maximum number of hints
 LEAST = 0.05  # minimum change of a value, as a logarithm or as a share of its designed size
-AGREE = 0.25  # maximum disagreement of the pairs, as a share of the change
-ALIKE = 0.05  # maximum difference of the logarithms of two factors that count as one
-LARGEST = 20.0  # maximum factor of a hint, and its inverse
+AGREE = 0.25  # maximum difference between mission pairs, as a share of the change
+ALIKE = 0.05  # maximum difference between the logarithms of two factors that count as equal
+LARGEST = 20.0  # hints have a factor of at most this, and at least its inverse
 
 
 @dataclass(frozen=True)

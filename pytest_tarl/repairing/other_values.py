@@ -69,7 +69,7 @@ class Others:
                 return
 
     def unguarded(self, candidate: Candidate, reason: Reason, trials: Trials) -> OtherValues:
-        """Propose smaller changes that may hold in both worlds without the condition of a candidate.
+        """Propose smaller changes that may work in both worlds without the condition of a candidate.
 
         A lower threshold may suit both worlds although the value found under the condition goes too far in the rest of
         a mission. Bisect between the original value and the one found: if a value fails without the condition, the same
@@ -86,7 +86,7 @@ class Others:
                 return
             if self._reaches(middle, trials):
                 examined = yield self._amid(between, middle, reason in STRONG, trials)
-                # the tests left are for the candidate under its condition
+                # keep the remaining tests for the candidate under its condition
                 if examined.fresh or not between.told(examined.reason):
                     return
                 continue
@@ -96,7 +96,7 @@ class Others:
     def _amid(self, between: Between, good: Candidate, harmful: bool, trials: Trials) -> Candidate:
         """Return a value in the middle of those that reach the goal: `good`, one halfway inward and one outward.
 
-        If larger changes are harmful in the designed world, none goes further outward.
+        If larger changes are harmful in the designed world, do not try the one outward.
         """
         low, high = (between.weak + between.share) / 2, (between.share + between.strong) / 2
         beside = (low,) if harmful else (low, high)

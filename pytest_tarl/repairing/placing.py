@@ -22,7 +22,7 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
-LOOKED_AT = 3  # number of seeds on which a repair at the definition must pass
+LOOKED_AT = 3  # number of seeds on which a repair must pass if it is moved to the definition
 MOST_PLACES = 6  # maximum number of configuration files to try for one parameter
 MOST_NAMED = 5  # maximum number of other users of a constant that a note names
 

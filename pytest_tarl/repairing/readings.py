@@ -1,8 +1,8 @@
 """Corrections of sensor readings that are wrong from the start: an offset or a factor, seen in recorded missions.
 
 Both missions of a pair begin in the same state, and no command has had an effect when the first message arrives. If the
-first value of a statement differs by the same amount or by the same factor in all pairs, then the sensor does: a lidar
-is bent, or a scale has lost its zero.
+first value of a statement differs by the same amount or by the same factor in all pairs, then the sensor is wrong: for
+example, a lidar is bent, or a scale has lost its zero.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from pytest_tarl.symptoms.series import Series
 
 OFFSET, GAIN = "offset", "gain"  # templates that correct a reading
 MOST = 2  # maximum number of readings that are corrected
-FIRST = 2  # a first value that comes later, in steps, may already be an effect of commands
-AGREE = 0.1  # maximum disagreement of the pairs, as a share of the change
+FIRST = 2  # number of steps before which a first value cannot be an effect of commands
+AGREE = 0.1  # maximum difference between mission pairs, as a share of the change
 LEAST = 0.02  # minimum change, as a share of the first value's size
 
 
@@ -71,7 +71,7 @@ def _first(values: Series) -> float | None:
 
 
 def _correction(firsts: Sequence[tuple[float, float]]) -> Correction | None:
-    """Return the correction by an offset or by a factor, whichever explains (designed, drifted) values better."""
+    """Return a correction by an offset or by a factor, whichever fits the (designed, drifted) values better."""
     size = max(abs(designed) for designed, _ in firsts)
     offsets = [designed - drifted for designed, drifted in firsts]
     explained: list[tuple[float, Correction | None]] = []

@@ -53,7 +53,7 @@ class Order:
     )
     world: Drift | None = None  # the declaration of the drift
     declared: tuple[float, float] | None = None  # declared range of the total reward of an episode
-    searched: Goal | None = None  # the goal with the additional seeds of `enriching`, if it ran
+    searched: Goal | None = None  # the goal after `enriching` has added seeds, if it ran
 
     @property
     def comparison(self) -> Comparison:

@@ -17,7 +17,7 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.typical_sizes import TypicalSizes
 from tarl_lint.model import Operand
 
-NEARLY_ALL = 0.8  # from this share on, the distance to 1 is a better scale than the share
+NEARLY_ALL = 0.8  # for shares above this, the distance to 1 is a better scale than the share
 
 
 def charts(order: Order, operands: Sequence[Operand]) -> Mapping[Operand, Chart]:

@@ -26,7 +26,8 @@ from pytest_tarl.sensors import Sensor
 from tarl_lint.model import Operand
 
 COMMANDED = ("stored", "sent")  # kinds of expressions that go into a published message
-RESPONDS = 0.2  # minimum gain of a constant whose statement responds, as a share of the wanted gain
+# a statement responds if one of its constants gains at least this share of the wanted gain
+RESPONDS = 0.2
 FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
@@ -159,7 +160,7 @@ class Structures:
         trials.reserve = min(reserve, whole - trials.budget)
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, for each site, the gains of each template's best values."""
+        """Return the gains of the best values of each template, for each site."""
         found: dict[str, list[OperandEffect]] = {}
         for sweep in self._sweeps:
             for site, effects in sweep.effects().items():
@@ -266,8 +267,8 @@ class Structures:
 def _responding(effects: Mapping[str, Sequence[OperandEffect]], wanted: float) -> tuple[str, ...]:
     """Return the IDs of the statements that respond (see RESPONDS), largest gain first.
 
-    Operands without a known value are left out: they stand for several constants, such as the parameters that a helper
-    function looks up, so that their gain does not say where to change the program.
+    Operands without a known value are left out: they represent several constants, such as the parameters that a helper
+    function looks up, so their gain does not show where to change the program.
     """
     known = {site: [one.effect for one in each if one.value is not None] for site, each in effects.items()}
     gains = {site: max(gains, default=0.0) for site, gains in known.items()}

@@ -25,7 +25,7 @@ MOST = {
     "sensor": 3,
     "sent by sensor": 2,
 }  # maximum number of expressions at which to try a template, by the template's kind
-NUMBERS = ("value", "input", "stored", "sent")  # kinds of expressions that templates for any number fit
+NUMBERS = ("value", "input", "stored", "sent")  # kinds of expressions to which templates for any number apply
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
 
 

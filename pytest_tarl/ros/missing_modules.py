@@ -96,7 +96,7 @@ def _in_workspace(root: str) -> str:
 
 
 def _elsewhere(root: str) -> str:
-    """Return a sentence for a module that comes from outside of the workspace."""
+    """Return a sentence for a module that comes from outside the workspace."""
     if root in _OF_PYTHON_2:
         return PYTHON_2
     missing = f"No package of the workspace {_workspaces()} installs {root}, and it is not installed here"

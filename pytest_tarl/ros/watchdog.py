@@ -12,7 +12,7 @@ from contextlib import suppress
 from pytest_tarl.held_interpreter import allow
 
 DEFAULT_LIMIT = 10.0  # limit of CPU time without progress of virtual time (s)
-_PATIENCE = 12  # multiple of the limit for waits outside of ROS, which use no CPU time
+_PATIENCE = 12  # multiple of the limit for waits outside ROS, which use no CPU time
 _HOLD = 12  # multiple of the limit for a node that holds the interpreter lock
 _INTERVAL = 0.1  # time between two checks (s)
 _IDLE_EXIT = 50  # number of checks after which an unused watching thread ends
@@ -44,7 +44,7 @@ class Watchdog:
         self._watching = False
         self._allowed = False  # whether the kernel's CPU timer runs as well
         self.fired = False
-        self.hung = False  # whether it fired because of a wait outside of ROS, not because of computing
+        self.hung = False  # whether it fired because of a wait outside ROS, not because of computing
 
     def arm(self, limit: float) -> None:
         """Watch the calling thread: fire after `limit` CPU seconds without `beat`."""

@@ -10,7 +10,7 @@ from pytest_tarl.searching.search import Candidate, Goal, Trials
 from pytest_tarl.searching.units import Unit
 
 SEEDS = 4  # number of seeds on which published messages are compared with those of the unchanged program
-CHANGES = 8  # number of changes of a unit that are looked at
+CHANGES = 8  # number of changes of a unit whose published messages are compared
 
 
 class Acting:

@@ -20,8 +20,9 @@ from tarl_lint.model import Operand
 ROUNDS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
 LEAST = 0.5  # minimum gain of a unit whose exact value is searched, as a share of the wanted gain
 REFINED = 8  # maximum number of runs that refine one operand
-IDLE = 2  # maximum number of consecutive refinements without a larger gain of an operand that gains less
-# ratio of the factors on both sides of a named constant's sharp peak, from which on it is refined nevertheless
+# maximum number of consecutive refinements without progress, for an operand that gains less than `PROMISING`
+IDLE = 2
+# a named constant with a sharp peak is refined nevertheless if the factors on both sides of it have at least this ratio
 WIDE = 1.4
 MORE = 0.05  # minimum increase of the gain, as a share of the wanted gain
 
@@ -54,7 +55,7 @@ class Adjusting:
     def __init__(self, search: Search) -> None:
         self.search = search
         self.refined: Counter[tuple[Unit, Guard]] = Counter()
-        self._idle: Counter[tuple[Unit, Guard]] = Counter()  # refinements without a larger gain
+        self._idle: Counter[tuple[Unit, Guard]] = Counter()  # refinements since the gain last increased
         self._exact: set[tuple[Unit, Guard]] = set()
         self._varied: set[tuple[Unit, Guard, float]] = set()
 

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     import numpy as np
 
 FLIP = -1.0  # factor that flips the sign
-# maximum number of units to try with the other sign, among those that gained with a smaller value
+# maximum number of units to try with the opposite sign; only those that gained with a smaller value
 FLIPPED = 3
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
-EASY = 3  # number of pairs on whose seeds changes run while nothing gains
-LOST = 0.5  # minimum loss of an easy pair, as a share of the wanted gain
+EASY = 3  # maximum number of easy pairs; changes run on their seeds until one gains
+LOST = 0.5  # a pair can be easy if its loss is at least this share of the wanted gain
 
 
 class Attempts:
@@ -83,12 +83,12 @@ class Attempts:
         self.combining = Combining(self)
         self.adjusting = Adjusting(self)
         self._easy = easy(goal)
-        self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # the pair of each change's first run
+        self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # change → pair of its first run
         self._tried: set[Candidate] = set()
         self._settled = Settled()
 
     def interlude(self, gain: float) -> Iterator[Candidate]:
-        """Yield structural changes, before the first one the constants that gained; `gain` is the largest so far."""
+        """Yield structural changes, but first the constants that gained; `gain` is the largest gain so far."""
         yield from constants_first(self._structures(gain), self, self.trials, self.goal)
 
     @property

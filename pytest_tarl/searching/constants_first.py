@@ -1,7 +1,7 @@
-"""Before a structural change is yielded, give the constants that gained a last chance: a maintainer prefers them.
+"""Before a structural change is yielded, refine the constants that gained: a maintainer prefers to change a constant.
 
-A template that uses a sensor can fit the few values that the sensor has in both worlds, without a reason. The constant
-that is wrong often gained a little, between two factors that gained nothing.
+A template that uses a sensor can fit the few values that the sensor has in both worlds by chance. The constant that is
+wrong often gained a little at one factor, while the factors on both sides of it gained nothing.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ EPISODES = 8  # maximum number of episodes for each of them, without confirmatio
 
 
 class Search(Protocol):
-    """The parts of the search of constants that are read here."""
+    """The parts of the search of constants that `constants_first` uses."""
 
     mutate: Mutate
     gains: Gains

@@ -10,7 +10,7 @@ from pytest_tarl.searching.attempts import Attempts
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import Unit
 
-CLEARLY = 0.3  # gain, as a share of the wanted gain, that ends the finer steps on a few constants
+CLEARLY = 0.3  # the finer steps on a few constants end at this gain (share of the wanted gain)
 
 
 class Crossing:

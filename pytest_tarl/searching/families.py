@@ -14,7 +14,7 @@ from pytest_tarl.searching.plainness import Oddness, kind
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
-SIMILAR = 4.0  # maximum ratio of two values of a family
+SIMILAR = 4.0  # maximum ratio between two values in a family
 FEWEST, MOST = 2, 8  # minimum and maximum number of constants in a family
 PLACES = frozenset(
     (

@@ -24,7 +24,8 @@ BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
 # steps for named constants that clearly lose with each of the steps before: their good values are close to the old one
 SENSITIVE = ((1.1, 0.91), (1.05, 0.95), (1.025, 0.975))
-HALF = 0.5  # gain of a change, as a share of the wanted gain, from which on others get no `FINER` steps
+# if a change gains at least this share of the wanted gain, other constants get no `FINER` steps
+HALF = 0.5
 
 
 class FirstSteps:

@@ -31,7 +31,7 @@ DIMENSIONS = 8  # maximum number of constants to move
 LEAST = 2  # minimum number of constants to move
 EPISODES = 50  # maximum number of trials
 PATIENCE = 25  # maximum number of consecutive trials without an improvement
-# the same if all of them earn the same, more than the unrepaired program: they only avoid what costs reward
+# the same if all these trials earn one reward, above that of the unrepaired program: they only avoid what costs reward
 FLAT = 12
 FARTHEST = 3.0  # maximum |log(step)|; a step of e³ is a factor of 20
 CHANGED = 3  # maximum number of constants in which a trial differs from the point where it starts
@@ -41,7 +41,7 @@ STARTS = 4  # number of best points to start from
 ASUNDER = 0.2  # minimum difference, in at least one log step, between two points to start from
 # maximum number of hidden constants, which are moved although alone they hardly changed the reward
 HIDDEN = 2
-SELDOM = 0.25  # how often hidden constants are moved, relative to the other constants
+SELDOM = 0.25  # frequency with which hidden constants are moved, relative to the others
 LENGTHS = (0.4, 1.0, 2.5, 8.0)  # possible length scales of a constant, in units of its log step
 REFITTED = 4  # number of trials between two fits of the length scales
 NOISES = (0.05, 0.2)  # possible noise levels of a trial, as a share of the standard deviation of all trials

@@ -1,7 +1,7 @@
 """Decide when a change is extreme, and which moderate changes of other constants to try before it.
 
-For example, a loaded robot overshoots its stops by a few centimetres. Eleven times the speed hides that by chance;
-the ticks per metre only have to grow by 4 %.
+For example, a loaded robot overshoots its stops by a few centimetres. Eleven times the speed hides this by chance;
+the right repair increases the ticks per metre by 4 %.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit, change_size
 
-LARGE = 8.0  # factor from which on a change of a constant is unusually large
+LARGE = 8.0  # minimum factor of a change that counts as unusually large
 STEPS = (1.1, 0.91, 1.05, 0.95)  # factors of the moderate changes
-MODERATE = 12  # number of episodes after which no further one is tried
+MODERATE = 12  # number of episodes after which no further moderate change is tried
 
 
 def extreme(unit: Unit, factor: float) -> bool:

@@ -38,8 +38,8 @@ from pytest_tarl.searching.smaller import (
 from pytest_tarl.searching.units import NEAR, Unit
 
 PLAINER_ROUNDS = 2  # number of refinements of each constant whose change a maintainer would prefer
-FUNCTIONS = 2  # maximum number of functions whose constants are compared by their missions' course
-PLAINER = 12  # maximum number of episodes for all such constants
+FUNCTIONS = 2  # maximum number of functions whose constants are compared by the course of their missions
+PLAINER = 12  # maximum number of episodes for trying constants whose change a maintainer would prefer
 
 
 class Search(Protocol):

@@ -12,8 +12,8 @@ FINEST = 1.1  # ratio of two factors below which no factor between them is tried
 # minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
 ALMOST = 0.9
 NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
-# minimum height of a sharp peak (see SHARP) above 0 or a neighbour that is refined as finely, and minimum gain of
-# other promising factors, as a share of the wanted gain
+# a sharp peak (see SHARP) is also refined down to `NARROWEST` if it exceeds 0 or a neighbour by at least this share of
+# the wanted gain; other factors are promising if they gain at least this share
 PROMISING = 0.4
 SHARP = 0.5  # a peak is sharp if both neighbouring factors gain at most this share of its gain
 
@@ -58,5 +58,5 @@ def _narrow(
         return True
     known = [gains[one] for one in neighbours if one in gains]
     sharp = len(known) == 2 and max(known) <= SHARP * most
-    # a reward that falls far between two close factors tells as much as a large gain
+    # a reward that falls far between two close factors shows a narrow range as well as a large gain does
     return sharp and most - min(0.0, *known) >= PROMISING * wanted

@@ -123,10 +123,9 @@ class Trials:
     budget: int
     beside: int = 0
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
-    # extra episodes, added to the budget once a candidate has gained the share `FAR` of the gain that `worth`
-    # wants
+    # extra episodes, added to the budget once a candidate has gained the share `FAR` of the wanted gain
     reserve: int = 0
-    worth: Goal | None = None  # the goal that states the wanted gain for `reserve`
+    worth: Goal | None = None  # goal whose wanted gain decides when `reserve` is released
     # returns whether a candidate loses missions that were lost by rejected candidates
     loses: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world

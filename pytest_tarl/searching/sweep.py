@@ -41,7 +41,7 @@ FINE = (*FINER, 1.1, 0.91)  # factors for operands that change the reward but ga
 # factors for named constants, if the `FINE` steps gain nothing either
 BETWEEN_FINE = (1.16, 0.86, 1.05, 0.95, 1.35, 0.74)
 LAST = (10.0, 0.05)
-BRIEFLY = 0.3  # minimum gain, as a share of the wanted gain, with which a brief search goes on
+BRIEFLY = 0.3  # a brief search continues if a change gains at least this share of the wanted gain
 
 
 class Sweep:
@@ -108,7 +108,7 @@ class Sweep:
         self.crossing = Crossing(self.attempts)
         self.first_steps = FirstSteps(self.attempts, self.crossing, responding, measured)
         self._families: tuple[Unit, ...] = ()
-        self._swept: frozenset[Unit] = frozenset()  # units whose first steps came before a screening
+        self._swept: frozenset[Unit] = frozenset()  # units that got their first steps before a screening
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield confirmed candidates."""

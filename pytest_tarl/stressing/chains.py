@@ -26,12 +26,14 @@ LIKELY, UNLIKELY = 0.5, 0.05
 ALIKE = 0.02  # probabilities whose difference is at most this count as the same
 VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
 POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a drift beyond the near end
-# multiples of the near end of a chain that are tested as well: before it, if the same seeds fail under all drifts;
-# before it, if the chain is not only about the rate of failures; and after it
+# Multiples of the near end of a chain that are tested as well:
+# before it, if the chain is about the failure rate alone and the same seeds fail under all drifts
 OUTWARD = (1.12, 1.08, 1.04)
+# before it, if the chain is not about the failure rate alone
 BEFORE = (1.03,)
+# after it
 INWARD = tuple(0.96**step for step in range(1, 17))
-FINE = tuple(0.985**step for step in range(16))  # multiples of the first drift of a chain in small steps
+FINE = tuple(0.985**step for step in range(16))  # in a chain of small steps, multiples of its first drift
 # multiples of the drift at the near end of a chain that may become drifts of the chain
 STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
 
@@ -51,7 +53,7 @@ class Plan:
     steps: tuple[tuple[float, float], ...]
 
 
-# the plan while no drift in several directions is confirmed
+# plan of chains until a drift in several directions is confirmed, and afterwards
 FIRST = Plan(0.5, 1.2, ((0.9, 1.06), (0.95, 1.06), (0.98, 1.2)))
 NEXT = Plan(0.35, 1.05, ((0.9, 1.03),))
 

@@ -27,9 +27,9 @@ FIRST = 0.44  # share of the budget for the first search for the nearest failing
 CONFIRMED = 0.85
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 ALONE = 3  # number of rounds of the search with nominal options before the others are searched
-REFINED = 0.08  # share of the budget for the search between the first chains of tests
+REFINED = 0.08  # share of the budget for the search that runs between the first two chains of tests
 ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first chain that confirms a drift
-# shares of the whole risk that the first chains get; each further chain gets half of the rest
+# shares of the whole risk for the first chains; each further chain gets half of the rest
 SHARES = (0.4, 0.3, 0.15, 0.05)
 QUICK = SIZES[0]  # number of episodes that the search runs at a confirmed failure
 
@@ -40,8 +40,9 @@ class Together:
 
     risk: float
     curves: Sequence[Curve]
-    found: list[Failure] = field(default_factory=list)  # without those that hardly differ from a nearer one
-    every: list[Failure] = field(default_factory=list)  # all of them
+    # failures without those that hardly differ from a nearer one
+    found: list[Failure] = field(default_factory=list)
+    every: list[Failure] = field(default_factory=list)  # all failures
     tried: int = 0  # number of drifts in several directions that the search tried
     margin_map: MarginMap | None = None
     chains: int = 0  # number of chains tested so far
@@ -211,7 +212,7 @@ class Combined:
             if best is None or any(
                 other is not one and other.coordinates.covers(best) for other in self.options
             ):
-                continue  # the model of the other search decides
+                continue  # the model of the search with these options decides
             if one.distance(best) < least:
                 leading, least = one, one.distance(best)
         return leading
@@ -224,7 +225,7 @@ class Combined:
     def _approach_confirmed(self) -> None:
         """Test chains in small steps from the nearest confirmed drift, until one confirms none. Raise BudgetSpentError.
 
-        The chains before have larger steps, so they end farther from the boundary than the model's errors require.
+        The previous chains have larger steps, so they end farther from the boundary than the model's errors require.
         """
         while known := self.together.confirmed:
             near = min(known, key=lambda one: (one.distance, one.names)).point

@@ -35,7 +35,7 @@ NEARER = 0.98  # maximum distance of the next failing drift, as a share of the b
 LARGEST = 2.0  # maximum distance of the drifts that are searched
 PREDICTED = 3  # number of predicted drifts to try in a row
 GAIN = 0.01  # minimum expected reduction of the distance, as a share of the best distance, for a drift to be tried
-# numbers of standard deviations by which successive predictions are optimistic
+# numbers of standard deviations by which successive predictions assume larger losses, in turn
 BOLD = (0.0, 1.0, 0.0, 0.5)
 # the predicted excess loss of a drift that counts as failing may be smaller than the detectable one by this share
 SURE = 0.5
@@ -65,7 +65,7 @@ SHALLOW, DEEP = 0.03, 1.2
 # components below this share of the distance may be noise, so they are dropped before confirmation
 TRIFLE = 0.15
 
-Steps = Sequence[tuple[float, float]]  # pairs as in EXPECTED: number of standard deviations, and excess
+Steps = Sequence[tuple[float, float]]  # (number of standard deviations, excess), as in EXPECTED
 
 
 @dataclass
@@ -168,7 +168,7 @@ class Nearest:
         return margin_map(self.curves, self.model(), self.coordinates)
 
     def _fails(self, point: Point) -> bool:
-        """Return whether a point's own episodes show a failure; run a few more if they suggest one.
+        """Return whether a point's own episodes show a failure; run a few more episodes if they suggest one.
 
         A point whose missing episodes exceed the budget does not count as failing.
         """

@@ -33,15 +33,15 @@ DRAWN = 400  # number of random drifts that the model compares
 PART = 0.75  # probability that a direction changes in a random drift
 # number of refinements around the best drift; initial standard deviation, which each refinement halves
 ROUNDS, SPREAD = 5, 0.15
-STRETCHED = (0.9, 1.0, 1.1)  # multiples of the vectors of tried drifts that are compared as well
+STRETCHED = (0.9, 1.0, 1.1)  # tried drifts are also compared at these multiples of their vectors
 RAREST = 0.007  # minimum failure rate that the model assumes at nominal
 # possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
 SCALES = (9.0, 36.0, 144.0)
 # possible variances of the effect that a seed has on the logit under all drifts, besides none
 LUCK = (1.0, 4.0)
 IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
-LEAST_LOSS = 0.25  # minimum predicted loss of a drift that shows by which factor a seed changes the losses
-LOGIT = 4.0  # this difference of logits counts as much as the whole tolerated loss
+LEAST_LOSS = 0.25  # minimum predicted loss of a drift that is used to estimate the factors of seeds
+LOGIT = 4.0  # difference of logits that is equivalent to the whole tolerated loss
 
 
 @dataclass(frozen=True)

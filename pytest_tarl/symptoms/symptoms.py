@@ -1,7 +1,7 @@
 """The symptoms, each a function of a statement's series in a few mission pairs.
 
 A symptom returns its strength from 0 (no sign of it) to 1. Values are compared with the designed missions, because a
-program may be noisy or swing by design.
+program may also be noisy or swing in the designed world.
 """
 
 from __future__ import annotations
@@ -18,18 +18,19 @@ Symptom = Callable[[Sequence[Pair]], float]
 
 TALL = 0.25  # minimum height of a spike, as a share of the range of the values
 BACK = 0.5  # maximum change across a spike, as a share of its height
-SPIKES = 0.04  # growth of the share of spikes from which on the symptom is certain
+SPIKES = 0.04  # growth of the share of spikes at which the symptom is certain
 ROUGH = 0.01  # roughness that does not matter, as a share of the range of the values
 ROUGHER = (1.5, 6.0)  # growth of the roughness at which noise begins, and at which it is certain
-SWITCHES = 0.1  # growth of the share of steps with a switch from which on the symptom is certain
+SWITCHES = 0.1  # growth of the share of steps with a switch at which the symptom is certain
 JUMP = 0.4  # minimum change from one value to the next that counts as a jump, as a share of the range
 SOON = 5  # maximum number of steps from a jump to the loss that it causes
 LOSS = 0.02  # minimum additional loss of a step that counts, as a share of a designed mission's reward
 STEADY = 0.02  # standard deviation at the end of a mission that does not matter, as a share of the range
 SWINGS = (2.0, 6.0)  # growth of that standard deviation at which a swing begins, and at which it is certain
 CROSSINGS = 3  # minimum number of times that a swing crosses its mean
-ASIDE = 0.5  # growth of the mean at the end from which on an offset is certain, as a share of the range
-BESIDE = 0.25  # the same for differences at the same time of a mission
+ASIDE = 0.5  # growth of the mean at the end at which an offset is certain, as a share of the range
+# difference at the same time of a mission at which an offset is certain, as a share of the range
+BESIDE = 0.25
 GROWTH = 0.2  # (end - start) / (end + start) of a value that certainly runs away
 FEWEST = 6  # minimum number of values in a series
 
@@ -73,10 +74,10 @@ def jumps(pairs: Sequence[Pair]) -> float:
 
 
 def offset(pairs: Sequence[Pair]) -> float:
-    """Return how far the value stays on one side of zero in the second half, while it nears zero by design.
+    """Return how far the value stays on one side of zero in the second half, unlike in the designed world.
 
-    The value may swing by design, for example while a vehicle follows its course. The differences from the designed
-    missions at the same time then show an offset that stays.
+    The value may also swing in the designed world, for example while a vehicle follows its course. The differences from
+    the designed missions at the same time then show a lasting offset.
     """
     both = [pair.together() for pair in pairs]
     size = scale(both)
@@ -101,7 +102,7 @@ def swing(pairs: Sequence[Pair]) -> float:
 
 
 def runaway(pairs: Sequence[Pair]) -> float:
-    """Return how much the value's size grows during a mission, while it shrinks by design."""
+    """Return how much the value's size grows during a mission, compared with the designed missions."""
     both = [pair.together() for pair in pairs]
     grown = fmean(_growth(pair.drifted.values) - max(_growth(pair.designed.values), 0.0) for pair in both)
     return float(np.clip(grown / GROWTH, 0.0, 1.0)) * fmean(
@@ -179,8 +180,8 @@ def _largest(values: Floats) -> float:
 def _apart(pair: Pair, size: float) -> float:
     """Return how far a value stays on one side of its designed course in the second half, away from zero.
 
-    A difference is certain from `BESIDE` of the range of the values on, and from their designed root mean square. Only
-    values that swing by design count; for others, their own mean shows as much.
+    An offset is certain if the difference is at least `BESIDE` of the range of the values and at least their root mean
+    square in the designed world. Only values that swing in the designed world count; for others, the mean suffices.
     """
     steps = min(pair.designed.values.size, pair.drifted.values.size)
     designed, drifted = (_late(one.values[:steps]) for one in (pair.designed, pair.drifted))

@@ -15,8 +15,8 @@ class Entrance(NamedTuple):
     """A condition that chooses a value."""
 
     condition: int
-    frame: Frame  # the value's
-    outer: Frame  # the condition's
+    frame: Frame  # the frame of the value
+    outer: Frame  # the frame of the condition
     value: int  # the node that uses the value, or the value itself if the node uses it without conditions
 
 

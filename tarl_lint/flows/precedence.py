@@ -74,7 +74,7 @@ class Precedence:
             self.add(formers & ~together.get(id(function.get(head)), 0), head)
 
     def _all_before(self, keys: int, known: dict[int, int]) -> int:
-        """Return the keys, and all that precede them directly or not; as bits.
+        """Return the keys and all that precede them, directly or not, as bits.
 
         `known` maps numbers of keys to earlier results for these keys alone, and is extended.
         """

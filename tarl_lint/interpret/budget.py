@@ -1,4 +1,4 @@
-"""Limits on the work of the interpretation, which ends in reasonable time on every program.
+"""Limits on the work of the interpretation, so that it ends in reasonable time on every program.
 
 The unit is an executed statement; other work is converted to statements. A program is a file that is run, with its
 imports; each has its own budget. A root is a module's top level, a callback, a timer, a thread or an entry point.

@@ -15,7 +15,7 @@ METHODS: Final = frozenset(["__get__", "__set__", "__set_name__", "__setattr__"]
 
 
 def note(ctx: Interpreter, name: str) -> None:
-    """Note that a class defines a method; only then are its attributes searched for descriptors."""
+    """Record that a class defines a method; only then are its attributes searched for descriptors."""
     if name in METHODS:
         ctx.nullness.setters.add(name)
 

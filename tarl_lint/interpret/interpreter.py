@@ -87,11 +87,11 @@ class Interpreter:
         # for each instance made by methods: allocation sites and objects, from the first maker to the instance itself
         self.chains: dict[Obj, tuple[tuple[Hashable, Obj], ...]] = {}
         self.made: set[Hashable] = set()  # keys of instantiated classes
-        self.guests: set[object] = set()  # classes that only code outside of the analysed files instantiates
+        self.guests: set[object] = set()  # classes that only code outside the analysed files instantiates
         self.plugins: set[object] = set()  # classes that a package declares as plugins
         self.looked_up: set[Obj] = set()  # classes whose instances a library looks up
         self.handed_over: set[Obj] = set()  # functions with a decorator of a package that is not analysed
-        # names of classes outside of the analysed files whose methods receive data or callbacks
+        # names of classes outside the analysed files whose methods receive data or callbacks
         self.ended: set[str] = set()
         self.checking = os.environ.get(CHECK, "") not in ("", "0")
         # ROS parameters whose values are names of topics or nodes; None if the run does not collect them

@@ -46,11 +46,11 @@ class Work:
 
     spent: int = 0  # number of statements of work in this run
     saved: int = 0  # the part of `spent` that was done in replayed calls
-    # number of values that this run looked up, compared or copied to search data, to record calls and to leave them
+    # number of values that this run looked up, compared or copied to search data, record calls and return from them
     handled: int = 0
     idled: int = 0  # the part of `spent` that was done in calls into modules without ROS calls
     limit: int = MAX_STATEMENTS
-    # value of `spent` at which the current call into a module without ROS calls ends; None outside of such a call
+    # value of `spent` at which the current call into a module without ROS calls ends; None outside such a call
     call_limit: int | None = None
     # function → number of its executions in this run
     activations: dict[ir.Function, int] = field(default_factory=dict)
@@ -60,7 +60,7 @@ class Work:
     nodes_of: dict[str, int] = field(default_factory=dict)  # program → number of nodes that it has made
     frames_of: dict[str, int] = field(default_factory=dict)  # program → number of its call contexts
 
-    # file that is no program → the files that import it, and whether each is the `__init__.py` of a package
+    # file that is not a program → the files that import it, and whether each is the `__init__.py` of a package
     importers: dict[str, dict[str, bool]] = field(default_factory=dict)
     owners: dict[str, str] = field(default_factory=dict)  # cache of `charged_to`
 

@@ -1,4 +1,4 @@
-"""Callables passed to libraries: what they return can be part of what the library returns, now or later."""
+"""Callables passed to libraries: their results can be part of the library's results, now or later."""
 
 from __future__ import annotations
 

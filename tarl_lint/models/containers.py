@@ -40,7 +40,7 @@ NAMED = (
     "io.",
     "subprocess.Popen",
     "pexpect.spawn",
-)  # library classes whose objects keep the name of their class
+)  # library classes whose objects record the name of their class
 FLAG = "<flag>"  # field of an event: whether it is set
 APPENDED = "<appended>"  # field of a list: its length before the first subscriber was appended
 MOVING = frozenset(
@@ -232,7 +232,7 @@ def _take_out(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _removed(ctx: Interpreter, it: Invocation) -> Value:
-    """Remove an element by its value, which decides about the elements that are left; `discard` may find none."""
+    """Remove an element by its value; the remaining ones depend on the value. `discard` may find none."""
     decides = call_contexts.all_used(ctx, it.arguments) | ctx.use(elements_of_any(ctx, it.base))
     counts = it.base.deps | (decides if it.name == "discard" else NONE)
     decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=counts)
