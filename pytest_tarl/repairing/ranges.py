@@ -112,7 +112,7 @@ def bands_in_words(ranged: Ranged) -> str:
     """Describe the parts of the range in which a candidate passed."""
     held, lost = (" and ".join(map(str, bands)) for bands in (ranged.held, ranged.lost))
     return (
-        f"it holds for {held}, but not for {lost}" if held else f"it holds for no part of the range ({lost})"
+        f"it works for {held}, but not for {lost}" if held else f"it works in no part of the range ({lost})"
     )
 
 

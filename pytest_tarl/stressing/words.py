@@ -289,7 +289,11 @@ def _side(name: str, curve: Curve) -> str:
 
 
 def _uncertainty(ray: Ray, boundary: Boundary) -> str:
-    monotone = "monotone: checked" if boundary.monotone else "not monotone: the guarantee holds again beyond"
+    monotone = (
+        "monotone: checked"
+        if boundary.monotone
+        else "not monotone: the guarantee holds again at larger drifts"
+    )
     if boundary.near is None:
         return f"boundary not beyond {_number(ray, boundary.far)}, {monotone}"
     low, high = sorted((ray.value(boundary.near), ray.value(boundary.far)))

@@ -194,7 +194,7 @@ def test_a_structural_search_gets_the_symptoms_and_outcomes_of_the_previous_sear
     assert examiner.turns == 2  # it may use as many tests as the search before
 
 
-def test_a_constant_that_is_accepted_in_the_structural_search_is_no_structure(
+def test_a_constant_accepted_in_the_structural_search_is_not_counted_as_a_structure(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     found, _, _ = restructured(monkeypatch, None, structural=False)
@@ -323,7 +323,7 @@ def test_candidates_that_work_in_a_part_of_the_range_are_named_once(monkeypatch:
     ranged = {ONE: Ranged((), (Band("", 0.0, 1.0),), (Band("", 1.0, 2.0),)), TWO: Ranged()}
     examiner: Any = Examiner(tried=tried, ranged=ranged)
     assert [*_of_the_range(of, examiner, watch)] == [
-        "line 3: 2.0 → 5: it holds for sizes 0 to 1, but not for sizes 1 to 2",
+        "line 3: 2.0 → 5: it works for sizes 0 to 1, but not for sizes 1 to 2",
         f"line 9: 2.0 → 7: {repair.NAMED_FROM + 1} runs",
     ]
 

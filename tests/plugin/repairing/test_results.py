@@ -475,9 +475,9 @@ def test_a_candidate_that_works_at_one_end_of_a_range_is_described_by_its_sizes(
 def test_the_sizes_for_which_a_repair_holds_or_fails_are_listed_in_words() -> None:
     one, two, three = BANDS
     assert bands_in_words(Ranged((), (one, two), (three,))) == (
-        "it holds for sizes 0 to 1 and sizes 1 to 2, but not for sizes 2 to 3"
+        "it works for sizes 0 to 1 and sizes 1 to 2, but not for sizes 2 to 3"
     )
-    assert bands_in_words(Ranged((), (), (three,))) == "it holds for no part of the range (sizes 2 to 3)"
+    assert bands_in_words(Ranged((), (), (three,))) == "it works in no part of the range (sizes 2 to 3)"
 
 
 @pytest.mark.usefixtures("drawn")

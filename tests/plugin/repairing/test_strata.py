@@ -145,7 +145,7 @@ def test_the_description_names_the_part_of_the_drift_if_it_has_a_name() -> None:
 
 
 def test_intervals_of_drift_sizes_are_described_in_words() -> None:
-    assert bands_in_words(Ranged((), (LOW,), (HIGH,))) == f"it holds for {LOW}, but not for {HIGH}"
+    assert bands_in_words(Ranged((), (LOW,), (HIGH,))) == f"it works for {LOW}, but not for {HIGH}"
     assert (
-        bands_in_words(Ranged((), (), (LOW, HIGH))) == f"it holds for no part of the range ({LOW} and {HIGH})"
+        bands_in_words(Ranged((), (), (LOW, HIGH))) == f"it works in no part of the range ({LOW} and {HIGH})"
     )

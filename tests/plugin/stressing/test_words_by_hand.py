@@ -94,7 +94,7 @@ def test_a_curve_is_monotone_if_no_point_beyond_its_first_failure_holds() -> Non
          "No failure found while slope ≥ -0.688 (boundary -0.75 to -0.5 at 90 %, monotone: checked)."),
         (curve(FLAT, {0.5: -1.0, 1.0: 1.0}, confirmed=0.5),
          ("No failure found while slope ≥ -0.25 "
-          "(boundary not beyond -0.5, not monotone: the guarantee holds again beyond).")),
+          "(boundary not beyond -0.5, not monotone: the guarantee holds again at larger drifts).")),
         (curve(FLAT, GOOD),
          "No failure confirmed while slope ≥ -1; suspicious from slope = -0.75 on."),
         (curve(FLAT, swept=False), "Not examined from 0 to -1."),
