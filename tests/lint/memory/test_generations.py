@@ -72,7 +72,7 @@ CASES = dict(part.split("\n", 1) for part in PROGRAMS.split("### ")[1:])
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_chains_of_objects_end(title):
+def test_programs_with_chains_of_objects_have_the_marked_flows(title):
     assert differing(HEAD + CASES[title]) == {}
 
 
@@ -93,7 +93,7 @@ def test_the_last_object_of_a_long_chain_represents_all_further_ones(ctx, frame)
     assert [obj.many for obj in chain] == [False, False, True]
 
 
-def test_an_object_that_stands_for_several_makes_the_roots_run_again_that_took_it_for_one(ctx):
+def test_roots_that_treated_an_object_as_one_run_again_when_it_stands_for_several(ctx):
     obj = recency.intern(ctx, "instance", "a")
     assert recency.single(ctx, obj)
     recency.one_of_many(ctx, obj)

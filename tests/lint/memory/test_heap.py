@@ -615,7 +615,7 @@ def test_the_default_of_a_parameter_is_a_name_that_the_robot_may_replace():
     assert symbolic_names.with_default(pointer(Obj("lib", 1))) is None
 
 
-def test_the_newest_object_becomes_an_older_one_when_its_allocation_site_creates_the_next(ctx, frame):
+def test_the_newest_object_of_an_allocation_site_becomes_an_older_one_when_the_next_is_created(ctx, frame):
     holder = made(ctx, "instance", "holder")
     box = recency.intern(ctx, "instance", "box")
     recency.renew(ctx, box, frame)

@@ -177,7 +177,7 @@ def test_a_permission_error_of_the_system_is_raised(
 
 @pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="needs the list of open files")
 @pytest.mark.parametrize("content", [b"before", b"edited"])
-def test_no_folder_stays_open(tmp_path: Path, content: bytes) -> None:
+def test_replacing_files_closes_every_folder_that_it_opens(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "src" / "robot" / "node.py"
     path.parent.mkdir(parents=True)
     path.write_bytes(content)

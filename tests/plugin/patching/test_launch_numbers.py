@@ -47,7 +47,7 @@ def found(text: str, key: str = "gain") -> list[tuple[str, object, float]]:
         ("DeclareLaunchArgument('k', '4')\n{'gain': float(LaunchConfiguration('k'))}", [("'4'", 4, 1.0)]),
     ],
 )  # fmt: skip
-def test_a_number_that_is_the_parameter_moves_all_of_it(
+def test_a_number_that_is_the_whole_value_of_a_parameter_has_a_share_of_one(
     text: str, expected: list[tuple[str, object, float]]
 ) -> None:
     assert found(text) == expected
@@ -75,7 +75,7 @@ def test_a_number_that_is_the_parameter_moves_all_of_it(
         ("{'gain': 0.0 + 3.0}", [("3.0", 3.0, 1.0)]),
     ],
 )
-def test_the_share_is_the_part_of_the_change_that_a_number_must_make(
+def test_the_share_of_a_number_is_the_part_of_the_parameters_change_that_it_causes(
     text: str, expected: list[tuple[str, object, float]]
 ) -> None:
     assert found(text) == expected
@@ -109,7 +109,7 @@ def test_an_expression_without_a_number_to_change_is_computed(expression: str) -
         "DeclareLaunchArgument('k')\n{'gain': LaunchConfiguration('k')}",
     ],
 )
-def test_names_with_several_values_or_none_determine_nothing(text: str) -> None:
+def test_no_number_is_found_behind_a_name_with_several_values_or_none(text: str) -> None:
     assert found(text) == []
 
 
@@ -129,6 +129,6 @@ def test_parameters_of_the_same_name_come_in_the_order_of_the_file() -> None:
 
 
 @pytest.mark.parametrize(("names", "reached"), [(DEEPEST, True), (DEEPEST + 1, False)])
-def test_a_number_is_found_through_a_limited_number_of_names(names: int, reached: bool) -> None:
+def test_a_number_is_found_through_a_limited_chain_of_names(names: int, reached: bool) -> None:
     chain = "".join(f"n{at} = n{at + 1}\n" for at in range(names - 1))
     assert bool(found(f"{chain}n{names - 1} = 3.0\n{{'gain': n0}}")) is reached

@@ -39,7 +39,9 @@ BEFORE_C, BEFORE_C_TOO = change(2, "", "x\n"), change(2, "", "y\n")
         ([change(0, "", "top\n"), change(4, "", "end\n")], "top\na\nb\nc\nd\nend\n"),
     ],
 )
-def test_all_changes_are_made_and_can_be_undone(wanted: list[Replacement], expected: str) -> None:
+def test_merging_makes_all_changes_and_separating_undoes_them(
+    wanted: list[Replacement], expected: str
+) -> None:
     merged = combined(TEXT, wanted)
     assert merged == expected.encode()
     assert separated(merged, wanted) == TEXT

@@ -223,7 +223,9 @@ def test_the_expression_for_a_sensor_that_may_be_missing_has_one_pair_of_parenth
     ("name", "values", "second"),
     [("low_pass", {"share": 0.25}, 6.5), ("derivative", {"gain": 3.0}, 14.0)],
 )
-def test_the_first_value_passes_unchanged(name: str, values: dict[str, float], second: float) -> None:
+def test_a_template_with_memory_passes_the_first_value_unchanged(
+    name: str, values: dict[str, float], second: float
+) -> None:
     before = "def step(value):\n    out = 2.0 * value\n    return out\n"
     source = document("node.py", before)
     node = source.find(span(before, "2.0 * value"))

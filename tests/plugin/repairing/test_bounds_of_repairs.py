@@ -51,7 +51,7 @@ def accepted(*nominal: Outcome) -> Accepted:
     return Accepted(CANDIDATE, Acceptance(True, "", (), nominal))
 
 
-def test_a_repair_that_changes_nothing_as_designed_keeps_the_recorded_bounds_there() -> None:
+def test_the_recorded_bounds_of_the_designed_world_are_kept_if_the_repair_changes_nothing_there() -> None:
     mutants: Any = Mutants()
     found, count = guaranteed(mutants, accepted())
     assert count == 4
@@ -65,14 +65,14 @@ def test_a_repair_that_changes_nothing_as_designed_keeps_the_recorded_bounds_the
     assert mutants.told == [(done, 4, "bounds of the repair") for done in range(4)]
 
 
-def test_a_recording_without_bounds_gives_none_for_the_designed_world() -> None:
+def test_without_recorded_bounds_the_designed_world_has_none() -> None:
     mutants: Any = Mutants(recorded=None)
     found, _ = guaranteed(mutants, accepted())
     assert [*found] == ["repaired"]
     assert found["repaired"].success.confidence > 0.8  # the default
 
 
-def test_a_repair_that_acts_as_designed_is_run_there_on_the_same_seeds() -> None:
+def test_a_repair_that_has_an_effect_in_the_designed_world_runs_there_on_the_same_seeds() -> None:
     mutants: Any = Mutants()
     found, count = guaranteed(mutants, accepted(Outcome(1.0, passed=True)))
     assert count == 8
@@ -93,7 +93,7 @@ def test_without_a_number_of_episodes_as_many_run_as_in_a_comparison() -> None:
     assert (found["repaired"].episodes, count) == (6, 6)
 
 
-def test_equal_episodes_show_only_one_world() -> None:
+def test_the_bounds_of_equal_episodes_are_marked_as_not_varied() -> None:
     found, _ = guaranteed(Mutants(equal=True), accepted())  # type: ignore[arg-type]
     assert not found["repaired"].varied
 

@@ -106,7 +106,7 @@ def test_a_smaller_change_may_need_no_condition() -> None:
     assert without_condition((3.0, 3.6), 3.0, 9.0)[0] == power(0.75)  # the first value is too small
 
 
-def test_a_change_without_a_condition_is_moved_to_the_middle_of_the_good_values() -> None:
+def test_a_value_that_works_without_its_condition_is_moved_to_the_middle_of_the_good_values() -> None:
     assert without_condition((1.4, 3.0), 1.4, 9.0)[0] == power(0.375)
     assert without_condition((2.1, 4.0), 2.1, 9.0)[0] == power(0.625)
     assert without_condition((2.1, 4.0), 2.1, 9.0, "nominal gets worse")[0] == power(0.5)
@@ -119,7 +119,7 @@ def test_a_change_that_does_harm_in_the_designed_world_is_made_smaller_a_few_tim
     assert len(ran) == 6
 
 
-def test_a_change_without_a_condition_has_no_smaller_ones_of_this_kind() -> None:
+def test_no_smaller_values_are_proposed_for_a_change_without_a_condition() -> None:
     mutants: Any = SimpleNamespace(mutate=mutations, order=SimpleNamespace(goal=GOAL))
     trials = Trials(lambda *_: Outcome(10.0, True), 50)
     assert list(Others(mutants, Ledger(), Missed()).unguarded(FOUND, "gain too small", trials)) == []

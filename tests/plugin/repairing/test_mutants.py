@@ -107,7 +107,9 @@ def test_an_episode_that_breaks_earns_the_worst_recorded_total(texts: list[Any],
 
 
 @pytest.mark.parametrize("changes", [{}, {"stuck": True}])
-def test_an_episode_of_the_previous_text_ends_the_search(texts: list[Any], changes: dict[str, Any]) -> None:
+def test_an_episode_that_ran_the_previous_text_of_a_file_ends_the_search(
+    texts: list[Any], changes: dict[str, Any]
+) -> None:
     stale = replace(SOUND, older=(Path("/p/node.py"), Path("/p/gains.py")), **changes)
     with pytest.raises(StaleTextError, match=r"^node\.py, gains\.py: the candidate was written"):
         mutants(Rollout(stale)).run(CANDIDATE, 4, "mud")

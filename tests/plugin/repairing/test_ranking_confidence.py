@@ -106,7 +106,9 @@ SPAN = "-0.50 to +1.25 per episode, about 95 %, 9 common seeds"
         ({"ahead": 2, "level": 1}, f"; 2 lines gain more than the first line in the drifted world ({SPAN})"),
     ],
 )
-def test_the_certainty_of_the_first_line_has_its_own_words(changes: dict[str, Any], end: str) -> None:
+def test_the_report_states_how_many_lines_compete_with_the_first_line_of_the_ranking(
+    changes: dict[str, Any], end: str
+) -> None:
     assert certain(**changes) == TOLD + end
 
 

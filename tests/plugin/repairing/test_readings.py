@@ -110,7 +110,7 @@ def test_a_factor_of_a_reading_is_taken_back(tmp_path: Path, monkeypatch: pytest
         ([{WEIGHT: (4.0, 5.0)}, {WEIGHT: (8.0, 10.0)}], 3),  # commands may have had an effect
     ],
 )
-def test_other_differences_are_not_corrected(
+def test_readings_that_are_not_clearly_wrong_from_the_start_are_not_corrected(
     missions: Sequence[Missions], step: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert corrected(tmp_path, monkeypatch, *missions, step=step) == []
@@ -136,7 +136,7 @@ def tried(monkeypatch: pytest.MonkeyPatch, total: Any, values: Sequence[float]) 
     return yielded, found
 
 
-def test_corrections_are_confirmed_once_also_if_the_first_seed_is_hard(
+def test_corrections_are_confirmed_once_even_if_the_first_seed_is_hard(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     yielded, found = tried(monkeypatch, lambda value, seed: 10.0 if value == 2.0 else 0.0, (3.0, 2.0))

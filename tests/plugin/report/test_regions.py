@@ -156,7 +156,7 @@ def test_ranges_below_and_above_the_sensor_are_open():
     assert words([(10, 0)], seen=[(-1, 1), (0, 0), (10, 0)]) == "x above 10 m, terrain false"
 
 
-def test_boxes_are_few_whatever_the_order_of_the_sensors():
+def test_the_number_of_boxes_does_not_depend_on_the_order_of_the_sensors():
     row, column = [(0, 0), (1, 0), (2, 0)], [(1, 1), (1, 2)]
     assert boxes(row + column) == (((0, 2), (0, 0)), ((1, 1), (1, 2)))
     assert boxes([(b, a) for a, b in row + column]) == (((0, 0), (0, 2)), ((1, 2), (1, 1)))

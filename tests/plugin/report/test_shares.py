@@ -18,7 +18,7 @@ def test_the_note_states_the_episodes_the_even_share_and_every_look() -> None:
     )
 
 
-def test_one_comparison_is_not_in_the_plural() -> None:
+def test_the_note_counts_one_comparison_in_the_singular() -> None:
     assert "20 of the 100 episodes for 1 comparison (an even share is 100)" in sentence(
         replace(SHARE, comparisons=1)
     )

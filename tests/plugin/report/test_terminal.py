@@ -116,7 +116,7 @@ def test_without_taint_lists_the_section_has_the_verdict_and_a_note(listless):
     assert "degraded" in text
 
 
-def test_absolute_paths_are_relative_to_the_root(varied, shuttle):
+def test_absolute_paths_are_shown_relative_to_the_root(varied, shuttle):
     site = SitePlace("m:f:x", str(ROOT / "src/a.py"), 3, "x = 1", "data", "assign")
     culprit = type(shuttle.culprits[0])(site, 1.0, "sweep", ())
     assert "1. src/a.py:3  x = 1  (no operand helps)" in told(varied(culprits=(culprit,)))

@@ -223,7 +223,7 @@ def test_a_constant_that_cannot_be_written_is_skipped_and_the_rest_goes_on() -> 
     assert found.count("A=2.2") == 1
 
 
-def test_the_interlude_gets_the_largest_gain_before_each_step() -> None:
+def test_the_interlude_is_called_with_the_largest_gain_before_each_step() -> None:
     heard: list[float] = []
 
     def interlude(gain: float) -> Iterator[Candidate]:

@@ -465,7 +465,7 @@ def test_small_steps_of_other_constants_come_before_an_extreme_change_once() -> 
 
 
 @pytest.mark.parametrize(("factor", "proposed"), [(7.0, False), (11.5, True)])
-def test_moderate_changes_of_constants_and_proposals_have_no_rivals_of_this_kind(
+def test_no_small_steps_of_other_constants_precede_a_moderate_change_or_a_proposal(
     factor: float, proposed: bool
 ) -> None:
     search = Scripted([A, B], proposed=proposed)

@@ -186,7 +186,7 @@ def test_a_combination_whose_needed_part_was_found_before_is_not_yielded() -> No
     assert search.settled.held == {alone}
 
 
-def test_changes_that_are_preferred_to_a_single_part_come_first() -> None:
+def test_a_change_preferred_to_a_single_part_is_yielded_before_this_part() -> None:
     other = joint((C, 0.4)).candidate(mutations)
     asked: list[Any] = []
 
@@ -548,7 +548,7 @@ def test_a_proposal_is_idle_if_its_own_value_changed_nothing() -> None:
 # acceptance
 
 
-def test_a_world_is_told_the_next_seeds_and_the_designed_world_only_new_ones() -> None:
+def test_episodes_of_the_designed_world_are_announced_only_for_new_seeds() -> None:
     heard: list[list[int]] = []
 
     def run(seed: int) -> Outcome:

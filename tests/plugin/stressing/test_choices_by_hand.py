@@ -464,7 +464,7 @@ def test_only_drifts_of_the_space_are_read_back(value: Any, kept: bool) -> None:
     assert (_as_point(data, SPACE) is not None) is kept
 
 
-def test_a_side_of_margins_that_is_empty_or_has_other_values_is_refused() -> None:
+def test_a_file_of_margins_is_refused_if_the_end_of_a_range_is_nominal_or_no_finite_number() -> None:
     text = (
         '{"format": 1, "test": "t", "drift": "d", "guarantee": {"success": 0.9, "loss": 1}, "confidence": 0.9, '
         '"directions": [{"name": "a", "nominal": 0, "end": %s, "holds_to": null, "fails_at": 0.5}]}'

@@ -459,7 +459,7 @@ def test_a_promise_about_a_single_direction_is_printed_with_its_limits() -> None
     ]
 
 
-def test_a_negative_share_is_printed_as_none() -> None:
+def test_a_negative_share_is_printed_as_0_percent() -> None:
     shares = (Share("mud", -0.01, 0.0, 0.2, 0.05), Share("slope", 0.6, 0.1, 0.9, 0.1))
     assert list(sobol_words(stress(sobol=Sobol(1280, shares)))) == [
         (

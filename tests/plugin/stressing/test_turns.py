@@ -139,7 +139,7 @@ def test_noise_of_each_episode_causes_no_shared_error() -> None:
 
 
 @pytest.mark.parametrize("loss", [0.2, 2.5, 0.0, -1.0])
-def test_small_and_cut_off_losses_show_no_factor_of_a_seed(loss: float) -> None:
+def test_small_and_clipped_losses_are_not_used_to_estimate_the_factors_of_seeds(loss: float) -> None:
     assert shared(16, 0.0, 0.4, 0.0, loss) == 0.0
 
 

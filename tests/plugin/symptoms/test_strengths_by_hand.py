@@ -291,7 +291,7 @@ def test_an_offset_is_weaker_if_the_value_changes_sign() -> None:
     assert found == pytest.approx(0.5 / np.sqrt(5.0))
 
 
-def test_an_offset_of_a_value_that_swings_by_design_shows_at_the_same_time_of_a_mission() -> None:
+def test_an_offset_of_a_value_that_also_swings_in_the_designed_world_is_found_at_equal_times() -> None:
     swing = np.tile([2.0, -2.0], 20)
     assert strength("offset", pair(swing, swing + 2.0)) == pytest.approx(1.0)
     assert strength("offset", pair(swing, swing + 1.0)) == pytest.approx(0.5)
