@@ -178,7 +178,7 @@ def test_types_and_folders_of_workspace_packages_are_found(
     (package / "package.xml").write_text("<package><name>rover_msgs</name></package>")
     (tmp_path / ".git").mkdir()
     monkeypatch.setattr(workspace, "_SEARCHED", [])
-    Ros().use_definitions_around(package)
+    Ros().use_definitions_around(package, tmp_path)
     ros = start("""
         import rclpy
         from ament_index_python.packages import PackageNotFoundError, get_package_share_directory

@@ -142,6 +142,7 @@ def test_a_combination_is_not_said_to_hold_alone_in_a_direction_that_fails_alone
     ]
 
 
+@slow
 def test_a_corner_of_four_directions_is_found_and_shrunk() -> None:
     names = ("a", "b", "c", "d")
 
