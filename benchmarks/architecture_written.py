@@ -18,13 +18,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from written_texts import Texts
+
 from tarl_lint.errors import UsageError
 from tarl_lint.settings.config import Options, resolve
 from tarl_lint.system.command import ALL, Request, systems
 from tarl_lint.system.hazards import hazards
 
 FOLDER: Final = Path(__file__).with_suffix("")
-_FILE: Final = re.compile(r"^--- (\S+)\n", re.MULTILINE)
 Report = tuple[str, str]  # the code of a rule and its message
 
 
@@ -77,7 +78,7 @@ def _reports(workspace: Path) -> Iterator[Report]:
     """Yield each report on all launch files of a workspace once."""
     with tempfile.TemporaryDirectory() as place:
         root = Path(place)
-        _unpack(workspace.read_text("utf-8"), root)
+        Texts.read(workspace).unpack(root)
         config = resolve(Options((root,), select=("TARL3",)))
         try:
             found = {(one.code, one.message) for system in systems(Request(ALL, (), (root,)), config)
@@ -86,13 +87,6 @@ def _reports(workspace: Path) -> Iterator[Report]:
             print(f"{workspace.name}: {problem}")
             return
     yield from sorted(found)
-
-
-def _unpack(text: str, root: Path) -> None:
-    parts = _FILE.split(text)
-    for name, content in zip(parts[1::2], parts[2::2], strict=True):
-        (root / name).parent.mkdir(parents=True, exist_ok=True)
-        (root / name).write_text(content, "utf-8")
 
 
 if __name__ == "__main__":

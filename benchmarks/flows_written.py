@@ -23,6 +23,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+from written_texts import Texts
+
 from tarl_lint.model import Flow, Source
 from tarl_lint.run.runner import run
 from tarl_lint.settings.config import Config, Options
@@ -30,7 +32,6 @@ from tarl_lint.settings.config import Config, Options
 FOLDER: Final = Path(__file__).with_suffix("")
 KINDS: Final = {"explicit": "data", "implicit": "control"}
 ANSWERS: Final = ("service.", "action.")  # beginnings of `Sink.api` of responses, which were not judged
-_FILE: Final = re.compile(r"^--- (\S+)\n", re.MULTILINE)
 _ASKS: Final = re.compile(r"\b(create_client|ServiceProxy|\w*ActionClient)\(")
 Pairs = dict[str, dict[str, str]]  # publish call → source → kind
 
@@ -63,30 +64,6 @@ class Counts:
         self.remarks += [f"{call}: surplus {found[one]} from {one}" for one in surplus]
         self.of["calls"] += 1
         self.of["calls, right"] += right and not surplus
-
-
-@dataclass(frozen=True)
-class Texts:
-    """The files of a workspace by name."""
-
-    files: Mapping[str, str]
-
-    @classmethod
-    def read(cls, path: Path) -> Texts:
-        """Return the files that follow each other in a text."""
-        parts = _FILE.split(path.read_text("utf-8"))
-        return cls(dict(zip(parts[1::2], parts[2::2], strict=True)))
-
-    def unpack(self, root: Path) -> None:
-        """Write the files below a folder."""
-        for name, text in self.files.items():
-            (root / name).parent.mkdir(parents=True, exist_ok=True)
-            (root / name).write_text(text, "utf-8")
-
-    def line(self, place: str) -> str:
-        """Return the line `path:number`."""
-        path, _, number = place.rpartition(":")
-        return self.files[path].splitlines()[int(number) - 1]
 
 
 def reported(texts: Texts, known: Mapping[str, str]) -> Pairs:
