@@ -106,9 +106,11 @@ class OwnStrings:
         return bool(values) and all(self._own(one, outline, after) for one in values)
 
     def _module(self, expr: ast.expr, outline: Outline) -> bool:
+        if not isinstance(expr, ast.Name):
+            return False
         imported = (alias.asname or alias.name for node in ast.walk(outline.tree) if isinstance(node, ast.Import)
                     for alias in node.names)  # fmt: skip
-        return isinstance(expr, ast.Name) and expr.id in (*imported, "chain")
+        return expr.id == "chain" or expr.id in imported
 
     def _attribute(self, expr: ast.Attribute, outline: Outline, seen: frozenset[object]) -> bool:
         """Return whether an attribute is own: a field of a class, or one whose assigned values are all own."""
