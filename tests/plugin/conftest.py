@@ -39,6 +39,16 @@ def _forget_workspaces_of_the_test() -> Iterator[None]:
 
 
 @pytest.fixture
+def quick_acceptance(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Accept a repair after 8 paired episodes, for tests of its contents and not of its certainty."""
+    for module in ("searching.accept", "repairing.accepting"):
+        monkeypatch.setattr(f"pytest_tarl.{module}.SEEDS", 16)
+    monkeypatch.setattr("pytest_tarl.searching.accept.EARLY", ())
+    monkeypatch.setattr("pytest_tarl.searching.accept.LOOKS", (8,))
+    monkeypatch.setattr("pytest_tarl.repairing.accepting.risk_of", lambda alpha, before: 0.9)
+
+
+@pytest.fixture
 def tank(pytester: pytest.Pytester) -> pytest.Pytester:
     """A temporary project with a node and its simulation test."""
     pytester.makefile(".py", keeper=NODE, test_tank=TEST)

@@ -56,6 +56,7 @@ def test_junit_has_the_findings_as_properties_of_the_test(drifting: pytest.Pytes
     assert "tarl_culprit" not in fine
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_the_patch_is_a_junit_property_too(drifting: pytest.Pytester) -> None:
     drifting.runpytest(*ONLINE, "--tarl-repair", "--tarl-drift=clogged", "--junitxml=found.xml")
     (found,) = properties(drifting.path / "found.xml").values()

@@ -64,6 +64,7 @@ def test_a_package_that_wraps_rospy_is_instrumented_in_every_episode(
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_constant_in_a_helper_is_changed_if_the_node_lies_outside_rootdir(
     tank: pytest.Pytester,
 ) -> None:
@@ -94,6 +95,7 @@ def test_a_constant_in_a_helper_is_changed_if_the_node_lies_outside_rootdir(
     assert any(abs(effect) > 1.0 for effect in effects)
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_named_helper_in_a_folder_without_init_is_reported(tank: pytest.Pytester) -> None:
     helped(tank, "helpers.gains")
     (tank.path / "helpers").mkdir()
@@ -162,6 +164,7 @@ def test_an_undeclared_dependency_of_a_patch_is_reported(
     assert all("pilot/package.xml does not depend on" in one for one in sentences)
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_repair_without_new_imports_reports_no_package(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE, "--tarl-repair")

@@ -46,6 +46,7 @@ def test_a_sensor_that_a_drift_silences_is_degraded(careful: pytest.Pytester) ->
     ran.stdout.fnmatch_lines(["*dead*: degraded"])
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_the_cause_of_a_silent_node_is_repaired(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "if level is not None:", CAREFUL)
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 2.0\nLOWEST = -0.1")

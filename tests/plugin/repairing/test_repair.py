@@ -24,6 +24,7 @@ INTERRUPT = """
 """
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 @pytest.mark.parametrize(
     "breaking",
     [
@@ -41,6 +42,7 @@ def test_a_candidate_that_breaks_the_test_is_refused_without_an_error(
 
 
 @slow
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_candidate_that_silences_the_node_is_refused_without_an_error(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "if level is not None:", "if level is not None and 0.5 < 1.0 - 0.1 * level:")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
@@ -49,6 +51,7 @@ def test_a_candidate_that_silences_the_node_is_refused_without_an_error(tank: py
 
 
 @slow
+@pytest.mark.usefixtures("quick_acceptance")
 def test_each_site_names_the_search_that_found_it(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*REPAIR, "--tarl-search=epsilon-greedy")
@@ -58,6 +61,7 @@ def test_each_site_names_the_search_that_found_it(tank: pytest.Pytester) -> None
 
 
 @slow
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_site_added_after_the_recording_can_be_the_culprit(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     changed(tank, "keeper", "flow = GAIN * missing", "flow = 2.0 * missing")
@@ -106,6 +110,7 @@ def test_an_interrupted_search_reports_its_best_candidate_and_ends_the_run(tank:
     assert not list(tank.path.glob(".tarl/patches/*.patch"))
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_dropped_candidates_and_the_candidates_tried_next_are_reported(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -136,6 +141,7 @@ def test_dropped_candidates_and_the_candidates_tried_next_are_reported(
     assert history.index("the designed world gets worse") < history.index("accepted,")
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_edited_numbers_have_few_digits(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*REPAIR)
@@ -166,6 +172,7 @@ def test_{name}(tarl, shared):
 """
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_another_recorded_test_of_the_node_must_not_lose_reward(tank: pytest.Pytester) -> None:
     tank.makepyfile(test_pipe=TEST[: TEST.index("@pytest")] + NEIGHBOUR.format(name="pipe", most=2.3))
     tank.runpytest(*RECORD).assert_outcomes(passed=2, deselected=1)
@@ -180,6 +187,7 @@ def test_another_recorded_test_of_the_node_must_not_lose_reward(tank: pytest.Pyt
     assert not list(tank.path.glob(".tarl/patches/*.patch"))
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_patch_names_the_other_tests_that_it_leaves_unharmed(tank: pytest.Pytester) -> None:
     with (tank.path / "test_tank.py").open("a") as file:
         file.write(NEIGHBOUR.format(name="wide_pipe", most=99.0))
@@ -192,6 +200,7 @@ def test_a_patch_names_the_other_tests_that_it_leaves_unharmed(tank: pytest.Pyte
     )
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_module_of_the_flow_that_the_marker_omits_is_reported(tank: pytest.Pytester) -> None:
     tank.makepyfile(gains="GAIN = 2.0\n\n\ndef wanted(missing):\n    return GAIN * missing\n")
     changed(tank, "keeper", "flow = GAIN * missing", "flow = wanted(missing)")
@@ -222,6 +231,7 @@ class Draws:
 
 
 @slow
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_search_from_a_plug_in_is_reproducible(tank: pytest.Pytester) -> None:
     tank.makepyfile(mine=OWN)
     tank.runpytest(*RECORD)
@@ -251,6 +261,7 @@ def test_a_search_that_raises_fails_the_test_with_one_sentence(tank: pytest.Pyte
 
 
 @slow
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_full_ranking_continues_after_the_repair_and_states_its_certainty(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     done = tank.runpytest(*REPAIR)
@@ -278,6 +289,7 @@ def test_the_flag_localize_accepts_its_values_and_requires_the_flag_repair(tank:
     done.stderr.fnmatch_lines(["*did you mean 'full'?*"])
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 @pytest.mark.parametrize(
     "sensor",
     [

@@ -138,6 +138,7 @@ REPAIRED = [
 ]
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 @pytest.mark.parametrize(("case", "words"), REPAIRED if SLOW else REPAIRED[:2])
 def test_a_structural_change_repairs_a_drift_that_no_constant_repairs(
     pytester: pytest.Pytester, case: str, words: tuple[str, ...]
@@ -155,6 +156,7 @@ def test_a_structural_change_repairs_a_drift_that_no_constant_repairs(
     pytester.runpytest(*RECORD, "--tarl-drift=changed").assert_outcomes(passed=1)
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 @pytest.mark.skipif(not SLOW, reason="a quarter of a minute of CPU time: set TARL_SLOW=1")
 def test_the_search_can_be_limited_to_constants(pytester: pytest.Pytester) -> None:
     prepared(pytester, "sign")
@@ -163,6 +165,7 @@ def test_the_search_can_be_limited_to_constants(pytester: pytest.Pytester) -> No
     done.stdout.fnmatch_lines(["*--tarl-constants*"])
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 @pytest.mark.skipif(not SLOW, reason="a quarter of a minute of CPU time: set TARL_SLOW=1")
 def test_a_template_of_the_project_is_tried(pytester: pytest.Pytester) -> None:
     prepared(pytester, "sign")
@@ -177,6 +180,7 @@ def test_a_template_of_the_project_is_tried(pytester: pytest.Pytester) -> None:
     assert "mirrored.toml: not a template" in " ".join(done.stdout.str().split())
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_template_repairs_exchanged_axes_by_swapping_the_axes(pytester: pytest.Pytester) -> None:
     pytester.makefile(".py", follower=FOLLOWER, test_follow=FOLLOWS)
     pytester.makeini("[pytest]\naddopts = -p no:randomly -p no:asyncio -p no:rerunfailures\n")
