@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests.slow import SLOW
 from website.other_plugins import BLOCKED
 
 pytest_plugins = ["pytester"]
@@ -17,6 +18,7 @@ pytest_plugins = ["pytester"]
 # Hypothesis runs the same examples every time and has no deadline, since a loaded machine is not a defect.
 settings.register_profile(
     "tarl",
+    max_examples=100 if SLOW else 40,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.too_slow],

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from pytest_tarl.instrumentation.constants import bound
 from pytest_tarl.instrumentation.instrument import compiled, instrument
 from tests.plugin.instrumentation.programs import assert_same, everywhere
+from tests.slow import SLOW
 
 RUN = """
 def f(x, k=0.5):
@@ -169,7 +170,7 @@ LINES = st.one_of(
 ARGUMENTS = st.sampled_from(["1.0", "-2.5", "0.0", "3", "None", "1e308", "Odd(2.0)", "Wraps()"])
 
 
-@settings(max_examples=150, suppress_health_check=list(HealthCheck))
+@settings(max_examples=150 if SLOW else 60, suppress_health_check=list(HealthCheck))
 @given(st.lists(LINES, min_size=3, max_size=9), ARGUMENTS, ARGUMENTS)
 def test_generated_arithmetic_behaves_the_same(lines, first, second):
     body = "\n".join(f"    {line}" for line in lines)

@@ -23,6 +23,7 @@ from tests.plugin.instrumentation.programs import (
     recorded,
     run,
 )
+from tests.slow import SLOW
 
 # Recorded events by statement: (source, events as (line, value))
 
@@ -535,7 +536,7 @@ def is_program(source: str) -> bool:
     return True
 
 
-@settings(max_examples=200, suppress_health_check=list(HealthCheck))
+@settings(max_examples=200 if SLOW else 60, suppress_health_check=list(HealthCheck))
 @given(st.lists(STATEMENTS, min_size=1, max_size=6))
 def test_generated_programs_behave_the_same(statements):
     source = PRELUDE + "\n".join(statements) + "\n"
