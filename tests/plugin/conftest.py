@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import pkgutil
 from collections.abc import Iterator
 from contextlib import suppress
@@ -36,6 +37,14 @@ def _forget_workspaces_of_the_test() -> Iterator[None]:
         workspace._SEARCHED[:] = kept
         workspace._KEPT &= hidden
         workspace.forget()
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _files_are_not_flushed_to_the_disk() -> Iterator[None]:
+    """Leave out `fsync`, which takes milliseconds and shows only when the machine loses power."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(os, "fsync", lambda handle: None)
+        yield
 
 
 @pytest.fixture
