@@ -15,7 +15,7 @@ from pathlib import Path
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.ros.launch_sources import Given
 from pytest_tarl.ros.launched import WITH_TEXTS, parameters, python_files
-from pytest_tarl.ros.messages.workspace import on_forget, search, workspaces
+from pytest_tarl.ros.messages.workspace import on_forget, search, workspace_around
 from tarl_lint.node_names import node_name
 from tarl_lint.workspace.conditions import exclusive
 from tarl_lint.workspace.folders import workspace_root
@@ -141,7 +141,7 @@ def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
         raise SettingsError(f"{where}: {file}: no such file in {folder}, which is not in a ROS workspace.")
     search(folder)
     try:
-        return launch_file(file, _around(folder.resolve()) or Workspace(root), str(root))
+        return launch_file(file, workspace_around(folder.resolve()) or Workspace(root), str(root))
     except NoLaunchFileError as problem:
         raise SettingsError(f"{where}: {problem}") from None
 
@@ -162,7 +162,7 @@ def programs(plan: LaunchPlan) -> tuple[Path, ...]:
 
 @lru_cache(maxsize=64)
 def _plan(file: Path, arguments: tuple[tuple[str, str], ...]) -> LaunchPlan:
-    workspace = _around(file) or Workspace(file.parent)
+    workspace = workspace_around(file) or Workspace(file.parent)
     launch = read_launch(file, workspace, dict(arguments))
     _check_arguments(launch, [name for name, _ in arguments])
     nodes = [one for one in launch.nodes if one.kind != "test"]
@@ -174,10 +174,6 @@ def _plan(file: Path, arguments: tuple[tuple[str, str], ...]) -> LaunchPlan:
         tuple(_launched(launch, one, workspace) for one in nodes),
         tuple(_notes(launch, workspace)),
     )
-
-
-def _around(path: Path) -> Workspace | None:
-    return next((one for one in workspaces() if path.is_relative_to(one.root)), None)
 
 
 def _text(value: object) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.ros.launch_choice import chosen
 from pytest_tarl.ros.launch_sources import NOTHING, Given, Source
-from pytest_tarl.ros.messages.workspace import on_forget, workspaces
+from pytest_tarl.ros.messages.workspace import on_forget, workspace_around
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.executables import is_python
 from tarl_lint.workspace.folders import folders
@@ -35,7 +35,7 @@ def given(script: Path, launch: Path | None = None) -> Given:
     If these files differ, `launch_choice.chosen` decides. Raise SettingsError if the named file does not exist or does
     not start the script.
     """
-    workspace = next((one for one in workspaces() if script.is_relative_to(one.root)), None)
+    workspace = workspace_around(script)
     if workspace is None:
         return NOTHING
     if launch is None:

@@ -16,6 +16,7 @@ from pytest_tarl.ros.genpy import (
     struct_I,
 )
 from pytest_tarl.ros.messages import class_of, find_class
+from pytest_tarl.ros.messages.known import Part
 from pytest_tarl.ros.messages.ros1 import as_yaml
 
 __all__ = [
@@ -35,7 +36,7 @@ def get_service_class(service_type: str, reload_on_error: bool = False) -> Any: 
     return _class(service_type, "srv")
 
 
-def _class(name: str, part: str) -> Any:
+def _class(name: str, part: Part) -> Any:
     package, _, short = name.rpartition("/")
     if not package:
         if short != "Header":

@@ -10,7 +10,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from types import FrameType, ModuleType
 
-from pytest_tarl.ros.messages.workspace import on_forget, packages, workspaces
+from pytest_tarl.ros.messages.workspace import on_forget, workspace_around, workspaces
 from tarl_lint.workspace.folders import folders
 
 _MISSING = frozenset({"AttributeError", "ImportError", "ModuleNotFoundError", "Exception", "BaseException"})
@@ -67,16 +67,16 @@ def _nearest(name: str, importer: Path) -> Path | None:
     If there are several, choose the only one that is not inside another Python package, or else the only one
     that a Python project installs.
     """
-    for workspace in workspaces():
-        if importer.is_relative_to(workspace.root):
-            found = [one for one in _modules(workspace.root).get(name, ()) if one != importer]
-            own = workspace.package_of(importer)
-            chosen = [one for one in found if own is not None and one.is_relative_to(own.folder)] or found
-            for preferred in (_is_top_level, _is_of_project):
-                if len(chosen) > 1:
-                    chosen = [one for one in chosen if preferred(one)] or chosen
-            return chosen[0] if len(chosen) == 1 else None
-    return None
+    workspace = workspace_around(importer)
+    if workspace is None:
+        return None
+    found = [one for one in _modules(workspace.root).get(name, ()) if one != importer]
+    own = workspace.package_of(importer)
+    chosen = [one for one in found if own is not None and one.is_relative_to(own.folder)] or found
+    for preferred in (_is_top_level, _is_of_project):
+        if len(chosen) > 1:
+            chosen = [one for one in chosen if preferred(one)] or chosen
+    return chosen[0] if len(chosen) == 1 else None
 
 
 def _is_top_level(place: Path) -> bool:
@@ -115,7 +115,7 @@ def _importable(folder: Path, files: list[str]) -> Iterator[Path]:
     if "__init__.py" in files:
         yield folder
     elif any(name.endswith(".py") for name in files) and folder not in {
-        one.folder for one in packages().values()
+        one.folder for workspace in workspaces() for one in workspace.packages
     }:
         yield folder  # a namespace package
     yield from (folder / name for name in files if name.endswith(".py") and name.removesuffix(".py").isidentifier()

@@ -29,7 +29,7 @@ for package in (tarl_lint, pytest_tarl):
 
 @pytest.fixture(autouse=True)
 def _forget_workspaces_of_the_test() -> Iterator[None]:
-    """Forget the workspaces of a test: the first package of a name wins, and others have packages of the same names."""
+    """Forget the workspaces of a test, which are gone after it."""
     yield
     kept = [root for root in workspace._SEARCHED if root.is_relative_to(REPOSITORY)]
     hidden = {folder for folder in workspace._KEPT if folder.is_relative_to(REPOSITORY)}

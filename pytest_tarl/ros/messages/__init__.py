@@ -6,11 +6,11 @@ import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from pytest_tarl.errors import UnsupportedApiError
 from pytest_tarl.ros.messages import ros1, ros2, workspace
-from pytest_tarl.ros.messages.definitions import Kind, type_names
+from pytest_tarl.ros.messages.definitions import Kind, has_known_types
 from pytest_tarl.ros.messages.installed import installed_class
 from pytest_tarl.ros.messages.known import Part
 
@@ -40,7 +40,7 @@ def message_type(name: str) -> type[Any]:
                                   "(ROS 2) or 'nav_msgs/Odometry' (ROS 1).")  # fmt: skip
     _search_around(package, sys._getframe(1).f_globals.get("__file__"))
     if middle:
-        found = find_class("ros2", package, short, middle[0])
+        found = find_class("ros2", package, short, cast("Part", middle[0]))
     else:
         found = find_class("ros1", package, short) or find_class("ros1", package, short, "srv")
     if found is None:
@@ -48,14 +48,22 @@ def message_type(name: str) -> type[Any]:
     return found
 
 
-@cache
 def _search_around(package: str, file: str | None) -> None:
-    """Search the repository of `file`, or else its folder, for a package whose definitions are not known yet."""
-    if file and not any(type_names(kind, package, part) for kind, part in _BUILDERS):
-        workspace.search(Path(file).parent, Path(file).parent)
+    """Put the repository of `file`, or else its folder, first, unless TARL itself knows the package."""
+    root = None if not file or has_known_types(package) else _root_around(file)
+    if root is not None:
+        workspace.prefer(root)
 
 
 @cache
+def _root_around(file: str) -> Path | None:
+    return workspace.root_around(Path(file).parent, Path(file).parent)
+
+
+workspace.on_forget(_root_around.cache_clear)
+
+
+@workspace.by_order
 def find_class(kind: Kind, package: str, name: str, part: Part = "msg") -> type[Any] | None:
     """Return the class of a message (`part` msg), service (srv) or action type, or None if it is unknown."""
     builder = _BUILDERS.get((kind, part))

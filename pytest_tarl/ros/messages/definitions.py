@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal
@@ -10,7 +10,7 @@ from typing import Any, Literal
 from pytest_tarl.errors import UnsupportedApiError
 from pytest_tarl.extras import install_command
 from pytest_tarl.ros.messages.known import Part, known_types
-from pytest_tarl.ros.messages.workspace import on_forget, workspace_types
+from pytest_tarl.ros.messages.workspace import by_order, workspace_types
 
 Kind = Literal["ros1", "ros2"]
 Shape = Literal["one", "array", "sequence"]
@@ -84,6 +84,7 @@ class Definition:
     constants: tuple[Constant, ...] = ()
 
 
+@by_order
 def find_message(kind: Kind, package: str, name: str) -> Definition | None:
     """Return the definition of a message type, or None if it is unknown."""
     own = _text(kind, "msg", f"{package}/{name}")
@@ -118,6 +119,23 @@ def find_action(kind: Kind, package: str, name: str) -> tuple[Definition, Defini
         for half, text in zip(("Goal", "Result", "Feedback"), _sections(own, 3), strict=True)
     )
     return goal, result, feedback
+
+
+def identity(definitions: Iterable[Definition]) -> str:
+    """Return the text that identifies the class of a message, or the classes of a service or action.
+
+    It contains the definitions and those of all messages in their fields, because workspaces may define the same
+    name differently.
+    """
+    own = [*definitions]
+    inside: dict[str, Definition | None] = {}
+    pending = [*own]
+    while pending:
+        definition = pending.pop()
+        for base in {field.base for field in definition.fields if not field.primitive} - inside.keys():
+            found = inside[base] = find_message(definition.kind, *base.split("/", 1))
+            pending += [] if found is None else [found]
+    return repr((own, sorted(inside.items())))
 
 
 _ACTION_MESSAGES = {  # messages that genaction makes for an action, outermost last
@@ -167,7 +185,7 @@ def type_names(kind: Kind, package: str, part: Part) -> tuple[str, ...]:
     return tuple(sorted(names))
 
 
-@cache
+@by_order
 def contained_packages(package: str, part: Part) -> frozenset[str]:
     """Return the packages of all message types in the fields of a ROS 1 package's types, at any depth."""
     pending = [one for name in type_names("ros1", package, part) for one in _halves(package, name, part)]
@@ -180,15 +198,20 @@ def contained_packages(package: str, part: Part) -> frozenset[str]:
     return frozenset(base.partition("/")[0] for base in seen)
 
 
-on_forget(contained_packages.cache_clear)
-
-
 def _halves(package: str, name: str, part: Part) -> tuple[Definition, ...]:
     """Return the definition of a ROS 1 message, or those of a service's request and response."""
     if part == "srv":
         return find_service("ros1", package, name) or ()
     message = find_message("ros1", package, name)
     return (message,) if message is not None else ()
+
+
+@cache
+def has_known_types(package: str) -> bool:
+    """Return whether `rosbags` or TARL has definitions of the package, whatever workspaces there are."""
+    kinds: tuple[Kind, ...] = ("ros1", "ros2")
+    parts: tuple[Part, ...] = ("msg", "srv", "action")
+    return any(_fixed_names(kind, package, part) for kind in kinds for part in parts)
 
 
 @cache

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
-from functools import cache
 from struct import Struct
 from struct import error as StructError  # noqa: N812 (a class)
 from typing import Any, ClassVar
 
 from pytest_tarl.ros.messages import ros1_wire, values
-from pytest_tarl.ros.messages.definitions import Definition, Field, find_message, find_service
+from pytest_tarl.ros.messages.definitions import Definition, Field, find_message, find_service, identity
 from pytest_tarl.ros.messages.times import Duration, Time, TVal
 from pytest_tarl.ros.messages.values import INTEGERS, FieldError
+from pytest_tarl.ros.messages.workspace import by_order
 
 CARRIED: dict[str, type[Message]] = {}  # unknown types, built from the definition in a bag or topic header
 
@@ -129,11 +129,24 @@ def as_yaml(value: Any, indent: str = "") -> str:
     return str(list(value)) if isinstance(value, list | tuple) else str(value)
 
 
-@cache
+_BUILT: dict[
+    tuple[str, str, str], type[Any]
+] = {}  # module, name and identity → class of a message or service
+
+
+@by_order
 def message_class(package: str, name: str) -> type[Message] | None:
-    """Return the class of a message type, built on first use, or None if it is unknown."""
+    """Return the class of a message type, built on first use, or None if it is unknown.
+
+    Workspaces with the same definition have the same class.
+    """
     definition = find_message("ros1", package, name)
-    return build(definition, f"{package}.msg") if definition is not None else None
+    if definition is None:
+        return None
+    key = (f"{package}.msg", name, identity([definition]))
+    if key not in _BUILT:
+        _BUILT[key] = build(definition, f"{package}.msg")
+    return _BUILT[key]
 
 
 def field_class(base: str) -> type[Message] | None:
@@ -141,12 +154,19 @@ def field_class(base: str) -> type[Message] | None:
     return message_class(*base.split("/", 1)) or CARRIED.get(base)
 
 
-@cache
+@by_order
 def service_class(package: str, name: str) -> type | None:
     """Return the class of a service type, with its request and response classes as attributes."""
     halves = find_service("ros1", package, name)
     if halves is None:
         return None
+    key = (f"{package}.srv", name, identity(halves))
+    if key not in _BUILT:
+        _BUILT[key] = _service(package, name, halves)
+    return _BUILT[key]
+
+
+def _service(package: str, name: str, halves: tuple[Definition, Definition]) -> type:
     request, response = (build(half, f"{package}.srv") for half in halves)
     namespace = {"_type": f"{package}/{name}", "_request_class": request, "_response_class": response}
     checksum = _md5sum("".join(md5_text(half) for half in halves))

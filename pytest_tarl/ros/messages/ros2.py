@@ -12,7 +12,6 @@ import keyword
 import operator
 from array import array
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Any, ClassVar
 
 from pytest_tarl.ros.messages.definitions import (
@@ -22,11 +21,13 @@ from pytest_tarl.ros.messages.definitions import (
     find_action,
     find_message,
     find_service,
+    identity,
     parse,
 )
 from pytest_tarl.ros.messages.ros2_copy import copy_function
 from pytest_tarl.ros.messages.ros2_fields import LITERALS, default, setter
 from pytest_tarl.ros.messages.values import CODES, FieldError
+from pytest_tarl.ros.messages.workspace import by_order
 
 
 class Message:
@@ -75,11 +76,26 @@ class Message:
 def _rebuild(module: str, name: str, fields: dict[str, Any]) -> Message:
     """Unpickle a message, possibly in another process, where the class may not have been built yet."""
     package, _, part = module.partition(".")
-    if part == "srv":
+    built = _nested(f"{package}/{name}") if part == "msg" else _part(package, name, part)
+    return built(**fields)
+
+
+def _part(package: str, name: str, part: str) -> type[Message]:
+    """Return the class of a part of a service or action by its name, such as `SetBool_Request`."""
+    whole = (
         service_class(package, name.rpartition("_")[0])
-    elif part == "action":
-        action_class(package, name.partition("_")[0])
-    return _nested(f"{package}/{name}")(**fields)
+        if part == "srv"
+        else action_class(package, name.partition("_")[0])
+    )
+    pending = [] if whole is None else [whole]
+    while pending:
+        one = pending.pop()
+        if issubclass(one, Message):
+            if one.__name__ == name:
+                return one
+        else:
+            pending += [inner for inner in vars(one).values() if isinstance(inner, type)]
+    raise FieldError(f"{part} type {package}/{name} is not known")
 
 
 def _shown(value: Any) -> str:
@@ -91,29 +107,55 @@ def _equal(one: Any, other: Any) -> bool:
     return bool(same.all()) if hasattr(same, "all") else bool(same)
 
 
-@cache
+# module, name and identity → class of a message, service or action
+_BUILT: dict[tuple[str, str, str], type[Any]] = {}
+
+
+@by_order
 def message_class(package: str, name: str) -> type[Message] | None:
-    """Return the class of a message type, built on first use, or None if it is unknown."""
+    """Return the class of a message type, built on first use, or None if it is unknown.
+
+    Workspaces with the same definition have the same class.
+    """
     definition = find_message("ros2", package, name)
-    return build(definition, f"{package}.msg") if definition is not None else None
+    if definition is None:
+        return None
+    key = (f"{package}.msg", name, identity([definition]))
+    if key not in _BUILT:
+        _BUILT[key] = build(definition, f"{package}.msg")
+    return _BUILT[key]
 
 
-@cache
+@by_order
 def service_class(package: str, name: str) -> type | None:
     """Return the class of a service type, with `Request` and `Response`."""
     halves = find_service("ros2", package, name)
     if halves is None:
         return None
+    key = (f"{package}.srv", name, identity(halves))
+    if key not in _BUILT:
+        _BUILT[key] = _service(package, name, halves)
+    return _BUILT[key]
+
+
+def _service(package: str, name: str, halves: tuple[Definition, Definition]) -> type:
     request, response = (build(half, f"{package}.srv") for half in halves)
     return type(name, (), {"__module__": f"{package}.srv", "Request": request, "Response": response})
 
 
-@cache
+@by_order
 def action_class(package: str, name: str) -> type | None:
     """Return the class of an action type, with `Goal`, `Result`, `Feedback` and their transport messages."""
     parts = find_action("ros2", package, name)
     if parts is None:
         return None
+    key = (f"{package}.action", name, identity(parts))
+    if key not in _BUILT:
+        _BUILT[key] = _action(package, name, parts)
+    return _BUILT[key]
+
+
+def _action(package: str, name: str, parts: tuple[Definition, Definition, Definition]) -> type:
     goal, result, feedback = (build(part, f"{package}.action") for part in parts)
     action = type(
         name, (), {"__module__": f"{package}.action", "Goal": goal, "Result": result, "Feedback": feedback}

@@ -1,16 +1,25 @@
-"""The workspaces of started nodes: their packages and message, service and action definitions."""
+"""The workspaces of started nodes: their packages and message, service and action definitions.
+
+Of packages with the same name, the one in the workspace that was searched last counts. All caches of such facts are
+keyed by the order of the workspaces.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
+from typing import Any, ParamSpec, TypeVar
 
 from tarl_lint.workspace.folders import is_ignored, workspace_root
 from tarl_lint.workspace.model import INTERFACES, Package, Workspace
 from tarl_lint.workspace.read import read
 
-_SEARCHED: list[Path] = []  # grows with the folders of started nodes, as sys.path does
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+# grows with the folders of started nodes, as sys.path does; the newest comes first
+_SEARCHED: list[Path] = []
 
 _CACHES: list[Callable[[], None]] = []  # functions that clear caches of workspace facts
 
@@ -18,19 +27,32 @@ _KEPT: set[Path] = set()  # folders of nodes in packages with COLCON_IGNORE or C
 
 
 def search(folder: Path, test: Path | None = None) -> None:
-    """Add the packages around `folder`: those of its repository, or the enclosing ROS workspace.
+    """Put the packages around `folder` first: those of its repository, or the enclosing ROS workspace.
 
-    Without either, add those in the folder of the test or beside it, if that contains definitions and `folder`.
+    Without either, take those in the folder of the test or beside it, if that contains definitions and `folder`.
     """
-    root = workspace_root(folder.resolve()) or _around_test(folder.resolve(), test)
+    root = root_around(folder, test)
     if root is None:
         return
-    if not any(root.is_relative_to(known) for known in _SEARCHED):
-        _SEARCHED.append(root)
-        forget()
+    prefer(root)
     if folder.resolve() not in _KEPT and is_ignored(folder.resolve(), root):
         _KEPT.add(folder.resolve())
         forget()
+
+
+def root_around(folder: Path, test: Path | None = None) -> Path | None:
+    """Return the root that `search` would put first, or None if it would do nothing."""
+    return workspace_root(folder.resolve()) or _around_test(folder.resolve(), test)
+
+
+def prefer(root: Path) -> None:
+    """Put a workspace first: its packages count, before others with the same names."""
+    if root not in _SEARCHED:
+        _SEARCHED.insert(0, root)
+        forget()
+    elif _SEARCHED[0] != root:  # the caches know each order, so nothing is read again
+        _SEARCHED.remove(root)
+        _SEARCHED.insert(0, root)
 
 
 def _around_test(folder: Path, test: Path | None) -> Path | None:
@@ -57,13 +79,40 @@ def forget() -> None:
         clear()
 
 
+def by_order(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+    """Cache the results of a function for each order of the workspaces, until `forget`."""
+
+    @cache
+    def known(_order: tuple[Path, ...], *arguments: Any, **named: Any) -> Result:
+        return function(*arguments, **named)
+
+    @wraps(function)
+    def found(*arguments: Arguments.args, **named: Arguments.kwargs) -> Result:
+        return known(tuple(_SEARCHED), *arguments, **named)  # type: ignore[arg-type]  # hashable, as with `cache`
+
+    found.cache_info = known.cache_info  # type: ignore[attr-defined]  # as functions with `cache` have
+    on_forget(known.cache_clear)
+    return found
+
+
 @cache
+def _read(root: Path) -> Workspace:
+    return read(root, frozenset(_KEPT))
+
+
+@by_order
 def workspaces() -> tuple[Workspace, ...]:
-    """Return descriptions of the workspaces, in the order in which nodes were started from them."""
-    return tuple(read(root, frozenset(_KEPT)) for root in _SEARCHED)
+    """Return descriptions of the workspaces, the one searched last first."""
+    return tuple(_read(root) for root in _SEARCHED)
 
 
-@cache
+def workspace_around(path: Path) -> Workspace | None:
+    """Return the innermost workspace that contains a file or folder, or None if there is none."""
+    around = [one for one in workspaces() if path.is_relative_to(one.root)]
+    return max(around, key=lambda one: len(one.root.parts), default=None)
+
+
+@by_order
 def packages() -> Mapping[str, Package]:
     """Return the packages by name; the first found wins."""
     found: dict[str, Package] = {}
@@ -73,7 +122,7 @@ def packages() -> Mapping[str, Package]:
     return found
 
 
-@cache
+@by_order
 def workspace_types(part: str) -> Mapping[str, str]:
     """Return the texts of all `.msg`, `.srv` or `.action` files by type name; the first found wins."""
     return {
@@ -84,13 +133,13 @@ def workspace_types(part: str) -> Mapping[str, str]:
     }
 
 
-@cache
+@by_order
 def workspace_packages() -> frozenset[str]:
     """Return the packages that contain such files."""
     return frozenset(name for name, package in packages().items() if package.interfaces)
 
 
-@cache
+@by_order
 def package_folders() -> Mapping[str, Path]:
     """Return the folder of each package that has a package.xml in the searched workspaces."""
     return {
@@ -100,5 +149,4 @@ def package_folders() -> Mapping[str, Path]:
     }
 
 
-for known in (workspaces, packages, workspace_types, workspace_packages, package_folders):
-    on_forget(known.cache_clear)
+on_forget(_read.cache_clear)

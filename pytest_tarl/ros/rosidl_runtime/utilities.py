@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pytest_tarl.ros.messages import find_class
+from pytest_tarl.ros.messages.known import Part
 from pytest_tarl.ros.missing import refusing
 
 __all__ = [
@@ -19,7 +20,7 @@ __all__ = [
 
 __getattr__ = refusing("rosidl_runtime_py.utilities")
 
-_PARTS = ("msg", "srv", "action")
+_PARTS: tuple[Part, ...] = ("msg", "srv", "action")
 
 
 def get_interface(identifier: str) -> Any:
@@ -32,7 +33,7 @@ def get_interface(identifier: str) -> Any:
         raise ValueError(
             f"Invalid name '{identifier}'. Expected PACKAGE/msg/NAME, PACKAGE/srv/NAME or PACKAGE/action/NAME"
         )
-    parts = middle or _PARTS
+    parts = [one for one in _PARTS if one in middle] or _PARTS
     found = next(
         (cls for part in parts if (cls := find_class("ros2", package, short, part)) is not None), None
     )

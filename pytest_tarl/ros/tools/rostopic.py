@@ -45,7 +45,8 @@ def get_topic_class(topic: str, blocking: bool = False) -> tuple[Any, str | None
     kind, name, evaluate = get_topic_type(topic, blocking)
     if kind is None:
         return None, None, None
-    made = find_class("ros1", *kind.split("/"))
+    package, _, short = kind.partition("/")
+    made = find_class("ros1", package, short)
     if made is None:
         raise ROSTopicException(f"Cannot load message class for [{kind}]. Are your messages built?")
     return made, name, evaluate

@@ -195,8 +195,7 @@ def test_types_and_folders_of_workspace_packages_are_found(
     assert ros.namespace["made"] == (0.5, 1.0, 2, 0)
     assert ros.namespace["folder"] == str(package)
     assert "package 'nowhere' not found" in ros.namespace["said"]
-    for table in (workspace.workspace_types, workspace.workspace_packages, workspace.package_folders):
-        table.cache_clear()
+    workspace.forget()
 
 
 def test_subscribe_listener_is_called_for_new_subscribers(start: Start) -> None:
