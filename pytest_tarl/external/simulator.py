@@ -267,7 +267,7 @@ class Simulator:
         """
         deadline, progress = monotonic() + limit, self._time
         while not done():
-            self._next(0.2)
+            self._next(max(0.0, deadline - monotonic()))
             if self._time > progress:
                 deadline, progress = monotonic() + limit, self._time
             if monotonic() > deadline:
