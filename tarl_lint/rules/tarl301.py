@@ -6,7 +6,10 @@ this reason, the keyboard teleoperation of the Kobuki had no effect (https://git
 Robots also stand still if they are launched in a namespace but their code publishes on `/cmd_vel`
 (https://github.com/UoY-RoboStar/AURO/issues/5).
 
-Two private names of the same node are similar too, such as `/speech/finished` and `/speech/finish`.
+Names are similar as well if a slash stands for an underscore (`/water/current` and `/water_current`), or if words are
+abbreviated (`/cmd` and `/command`). Two private names of the same node are similar, such as `/speech/finished` and
+`/speech/finish`. If the launch file names the node `lift` of the code `elevator`, its topic `~floor` is
+`/elevator/floor`, and `/lift/floor` has no publisher.
 
 The rule reports nothing if a node of the launch file was not read and may use the type, or computes the names of its
 topics, or if an included launch file is not in the workspace, because the other end might be there. The types of
@@ -21,7 +24,14 @@ from typing import Final
 
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
-from tarl_lint.system.hazards import at_end, differ, in_private_names, single, spelled_alike
+from tarl_lint.system.hazards import (
+    at_end,
+    differ,
+    in_private_names,
+    single,
+    spelled_alike,
+    under_own_name,
+)
 from tarl_lint.system.model import System
 from tarl_lint.workspace.conditions import exclusive
 
@@ -139,21 +149,25 @@ def findings(system: System) -> Iterator[Finding]:
         if name in published or not single(end) or len(end.names) > 1:
             continue
         near = sorted(
-            (other, them.name)
+            (other, them.name, under_own_name(name, other, them))
             for other, them, beyond in lonely
             if them is not who
             and single(beyond)
             and not differ(end, beyond)
-            and (spelled_alike(name, other) or in_private_names(name, other, who, them))
+            and (
+                spelled_alike(name, other)
+                or in_private_names(name, other, who, them)
+                or under_own_name(name, other, them)
+            )
             and not exclusive(who.node, them.node)
         )
         # nobody else publishes private names of a node that was read
-        own = [one for one in near if one[1] == name.rpartition("/")[0]]
+        own = [one for one in near if one[1] == name.rpartition("/")[0] or one[2]]
         near = near if system.complete(end) else own
         if near:
             message = f"{who.name} subscribes to {name} ({end.type}), which no node publishes; "
             message += (
-                " and ".join(f"{node} publishes {other}" for other, node in near)
+                " and ".join(f"{node} publishes {other}" for other, node, _ in near)
                 + ", to which no node subscribes"
             )
             yield at_end(CODE, who, end, message, topic_text(end.in_code))

@@ -6,7 +6,8 @@ number instead of a profile, the profile is `RELIABLE` and `VOLATILE`. Drivers o
 `qos_profile_sensor_data`, which is `BEST_EFFORT`. A subscription with the number 10 therefore receives nothing from a
 laser scanner (https://github.com/ros2/ros2_documentation/issues/569).
 
-The rule reports a connection only if both profiles are constant in the code.
+The rule reports a connection only if both profiles are constant in the code. They may come from another module, from a
+function, or from the row of a table that also names the topic.
 """
 
 from __future__ import annotations

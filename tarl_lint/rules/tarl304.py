@@ -2,7 +2,7 @@
 
 The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason: a
 service `~home` of the node `arm` is `/arm/home`, not `/home`. In one namespace, `open` and `open_door` are similar as
-well.
+well. If the launch file gives a node another name than its code, the names of its private services change, too.
 
 The rule reports nothing if a node of the launch file was not read and may use the type, or if an included launch file
 is not in the workspace. The rule also reports nothing if no server has a similar name, because the server may be
@@ -16,7 +16,14 @@ from typing import Final
 
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
-from tarl_lint.system.hazards import at_end, in_private_names, longer_alike, single, spelled_alike
+from tarl_lint.system.hazards import (
+    at_end,
+    in_private_names,
+    longer_alike,
+    single,
+    spelled_alike,
+    under_own_name,
+)
 from tarl_lint.system.model import System
 from tarl_lint.workspace.conditions import exclusive
 
@@ -77,7 +84,7 @@ def findings(system: System) -> Iterator[Finding]:
     served, called = ({name for name, _, _ in system.named(role)} for role in ("serves", "calls"))
     for name, who, end in system.ends("calls"):
         near = sorted(
-            (other, them.name)
+            (other, them.name, under_own_name(name, other, them))
             for other, them, beyond in system.ends("serves")
             if other not in called
             and single(beyond) == single(end)
@@ -85,13 +92,14 @@ def findings(system: System) -> Iterator[Finding]:
                 spelled_alike(name, other)
                 or longer_alike(name, other)
                 or in_private_names(name, other, who, them)
+                or under_own_name(name, other, them)
             )
             and not exclusive(who.node, them.node)
         )
         # nobody else offers private names of a node that was read
-        own = [one for one in near if one[1] == name.rpartition("/")[0]]
+        own = [one for one in near if one[1] == name.rpartition("/")[0] or one[2]]
         near = near if system.complete(end) else own
         if name not in served and near and single(end):
             message = f"{who.name} calls {name} ({end.type}), which no node offers; "
-            message += " and ".join(f"{node} offers {other}" for other, node in near)
+            message += " and ".join(f"{node} offers {other}" for other, node, _ in near)
             yield at_end(CODE, who, end, message, topic_text(end.in_code))

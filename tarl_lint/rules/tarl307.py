@@ -9,9 +9,12 @@ started in a namespace gets none of the values. The rule reports this if the sec
 without a namespace, and no other section of the file gives the node these parameters.
 
 A parameter of a node is reported only if the node's program and all its imports could be read, and the program states
-the names of all parameters that it reads: as literals, in tables and lists, as arguments of its functions, or as fields
-of its classes. If a group sets a parameter for all its nodes, the rule reports the parameter only if none of the nodes
-has it.
+the names of all parameters that it reads: as literals, in tables and lists, as arguments of its functions, as fields
+of its classes, or in the workspace's `.cfg` files of dynamic_reconfigure. If a group sets a parameter for all its
+nodes, the rule reports the parameter only if none of the nodes has it.
+
+In ROS 1, parameters that are set outside a node but below its name are its private ones. They are reported if
+the node has another parameter of the same file, or one with a similar name.
 """
 
 from __future__ import annotations
@@ -147,6 +150,39 @@ def findings(system: System) -> Iterator[Finding]:
                 message = f"{first.name} has no parameter {name}: the launch file sets it without effect"
                 yield at_node(CODE, first, message, name)
         yield from _elsewhere(setting, instances)
+    yield from _above(system)
+
+
+def _above(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each parameter of ROS 1 that is set outside the nodes, below the name of one of them.
+
+    Controllers and other nodes may read parameters there. So the node must have another parameter of the same setting,
+    or one with a similar name.
+    """
+    readers = [one for one in system.instances if one.interface is not None]
+    for setting in system.settings:
+        names = list(_absolute(setting))
+        for instance in readers:
+            above = f"{instance.name}/"
+            own = [one.removeprefix(above) for one in names if one.startswith(above)]
+            meant = not all(_lacks(instance, one) for one in own)
+            for name in own:
+                if all(_lacks(one, name) for one in readers) and (meant or _misspelt(name, [instance])):
+                    message = (
+                        f"{instance.name} has no parameter {name}: the launch file sets it without effect"
+                    )
+                    yield at_node(CODE, instance, message, name)
+
+
+def _absolute(setting: Setting) -> Iterator[str]:
+    """Yield the absolute names of the parameters in a setting outside nodes; none for files of ROS 2."""
+    if not setting.name.startswith("/"):
+        return
+    parsed = _parsed(setting) if setting.yaml is not None else None
+    if not isinstance(parsed, dict):
+        yield from () if setting.yaml is not None else (setting.name,)
+    elif not list(sections(parsed)):
+        yield from (f"{setting.name.rstrip('/')}/{one.replace('.', '/')}" for one in dotted(parsed))
 
 
 def _elsewhere(setting: Setting, instances: list[Instance]) -> Iterator[Finding]:
@@ -179,6 +215,8 @@ def _lacks(instance: Instance, name: str) -> bool:
     # ROS 1 nodes may read a whole group of parameters; in ROS 2, `gain` is not the group of `gain.p`
     groups = name.split("/") if "/" in name else ()
     spellings = {name, name.replace(".", "/"), name.replace("/", "."), *groups}
+    if any(one.endswith(f"/{name}") for one in interface.words):
+        return False  # the program reads it by its absolute name
     return spellings.isdisjoint(interface.words) and not _joined_of(name, interface.words)
 
 

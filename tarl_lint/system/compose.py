@@ -22,9 +22,10 @@ from tarl_lint.system.binding import (
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.gz_bridges import bridged, own_name
 from tarl_lint.system.image_transport import is_republisher, republished, transported
-from tarl_lint.system.known_packages import kinds, typed
+from tarl_lint.system.known_packages import kinds, of_package, typed
 from tarl_lint.system.known_programs import stated
 from tarl_lint.system.model import Hop, Instance, Interface, Role, Seen, System, full_name
+from tarl_lint.system.reconfigured import with_configured
 from tarl_lint.system.service_calls import PARTS, part
 from tarl_lint.system.topic_tools import passed_on
 from tarl_lint.workspace import hidden_packages
@@ -62,6 +63,9 @@ def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: 
         problems,
         messages=fields(used, workspace),
         packages=frozenset(one.name for one in workspace.packages),
+        included={
+            one.package: kinds_of for one in problems if (kinds_of := of_package(one.package)) is not None
+        },
     )
 
 
@@ -124,13 +128,16 @@ def _instance(
 ) -> Instance:
     found = program(node, workspace, files)
     interface = read(found, {}) if isinstance(found, Program) else found
+    if isinstance(interface, Interface):
+        interface = with_configured(interface, workspace)
     own = interface.name if isinstance(interface, Interface) else own_name(node)
     name = full_name(node, own)
     if isinstance(interface, Interface) and isinstance(found, Program):
-        return Instance(node, name, _decided(node, launch, name, interface, lambda given: read(found, given)))
+        decided = _decided(node, launch, name, interface, lambda given: read(found, given))
+        return Instance(node, name, with_configured(decided, workspace))
     unread = Instance(node, name, None, str(interface), silent=node.executable in _SILENT)
     known = Seen() if isinstance(found, Program) else _known(unread, launch, workspace)
-    if any(one.hides and one.file.suffix == ".py" for one in launch.problems):
+    if any(one.hides and not one.package and one.file.suffix == ".py" for one in launch.problems):
         known = replace(known, certain=False)  # the arguments of a node may be incomplete, too
     reason = f"a C++ program of {node.package}" if known.ends else unread.unread
     return replace(unread, known=known, unread=reason)

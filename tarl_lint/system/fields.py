@@ -27,7 +27,9 @@ _REGISTERS: Final[Mapping[str, tuple[tuple[int, str], tuple[int, str]]]] = {
     "create_subscription": ((0, "msg_type"), (2, "callback")),
 }
 Function = ast.FunctionDef | ast.AsyncFunctionDef
+Heard = Mapping[str, frozenset[str]]
 _Fields = Mapping[str, Mapping[str, str]]
+_NONE: Final[Heard] = {}
 
 
 class _Use(NamedTuple):
@@ -38,17 +40,20 @@ class _Use(NamedTuple):
     node: ast.expr
 
 
-def misfits(module: Module, outline: Outline, texts: Texts) -> Iterator[Misfit]:
-    """Yield the uses of absent fields, of messages that a callback receives, and of new messages."""
-    for use in _uses(module.tree, outline):
+def misfits(module: Module, outline: Outline, texts: Texts, heard: Heard = _NONE) -> Iterator[Misfit]:
+    """Yield the uses of absent fields, of messages that a callback receives, and of new messages.
+
+    `heard` are the types `package/Name` of the messages that the analysis passes to each function, by its name.
+    """
+    for use in _uses(module.tree, outline, heard):
         absent = lacking(use.type, use.path, KNOWN_FIELDS)
         if absent is not None:
             yield _found(*absent, use.node, module, outline, texts)
 
 
-def uses(module: Module, outline: Outline, texts: Texts) -> Iterator[Misfit]:
+def uses(module: Module, outline: Outline, texts: Texts, heard: Heard = _NONE) -> Iterator[Misfit]:
     """Yield the uses of fields of types `package/Name` that are not known; the field is a dotted path."""
-    for use in _uses(module.tree, outline):
+    for use in _uses(module.tree, outline, heard):
         if "/" in use.type:
             yield _found(use.type, ".".join(use.path), use.node, module, outline, texts)
 
@@ -68,10 +73,10 @@ def _found(kind: str, field: str, node: ast.expr, module: Module, outline: Outli
     return Misfit(kind, field, texts[module.path].stretch(position(node)), outline.qualname(node.lineno))
 
 
-def _uses(tree: ast.Module, outline: Outline) -> Iterator[_Use]:
-    """Yield the uses of fields of messages whose types the module imports."""
-    types = _imported(tree)
-    if not types:
+def _uses(tree: ast.Module, outline: Outline, heard: Heard) -> Iterator[_Use]:
+    """Yield the uses of fields of messages whose types the module imports, or that a callback receives."""
+    types = _Types(tree)
+    if not types.used and not heard:
         return
     yield from _arguments(tree, types)
     functions = [
@@ -80,7 +85,7 @@ def _uses(tree: ast.Module, outline: Outline) -> Iterator[_Use]:
     received = _received(tree, types)
     for function in functions:
         held = _made(function, types)
-        kinds = received.get(function.name, set())
+        kinds = received.get(function.name) or _heard(function, heard)
         if len(kinds) == 1 and sum(one.name == function.name for one in functions) == 1:
             held |= _parameter(function, *next(iter(kinds)))
         for node in ast.walk(function) if held else ():
@@ -90,40 +95,78 @@ def _uses(tree: ast.Module, outline: Outline) -> Iterator[_Use]:
                     yield _Use(held[name], path, node)
 
 
-def _path(node: ast.Attribute) -> tuple[str, tuple[str, ...]]:
+def _path(node: ast.expr) -> tuple[str, tuple[str, ...]]:
     """Return the variable at the beginning of an attribute, and the names after it; "" for another expression."""
     parts: list[str] = []
-    expr: ast.expr = node
+    expr = node
     while isinstance(expr, ast.Attribute):
         parts.append(expr.attr)
         expr = expr.value
     return (expr.id if isinstance(expr, ast.Name) else ""), tuple(reversed(parts))
 
 
-def _arguments(tree: ast.Module, types: Mapping[str, str]) -> Iterator[_Use]:
+def _heard(function: Function, heard: Heard) -> set[tuple[str, int]]:
+    """Return the type of the only argument of a function, if the analysis passes it messages of one type."""
+    kinds = heard.get(function.name, frozenset())
+    plain = [one.arg for one in function.args.args if one.arg not in ("self", "cls")]
+    return {(_short(kind), 0) for kind in kinds} if len(plain) == len(kinds) == 1 else set()
+
+
+def _short(whole: str) -> str:
+    """Return the name of a type `package/Name`, without its package if the fields are known."""
+    package, _, name = whole.partition("/")
+    return name if name in PACKAGES.get(package, ()) else whole
+
+
+def _arguments(tree: ast.Module, types: _Types) -> Iterator[_Use]:
     """Yield the keyword arguments of calls that create a message."""
     bound = {one.name for one in ast.walk(tree) if isinstance(one, ast.ClassDef | Function)} | {
         one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
     }
     for call in (one for one in ast.walk(tree) if isinstance(one, ast.Call)):
-        name = call.func.id if isinstance(call.func, ast.Name) else ""
-        if name in types and name not in bound:
-            yield from (_Use(types[name], (one.arg,), call) for one in call.keywords if one.arg)
+        kind = types.of(call.func)
+        if kind and _path(call.func)[0] not in bound:
+            yield from (_Use(kind, (one.arg,), call) for one in call.keywords if one.arg)
 
 
-def _imported(tree: ast.Module) -> dict[str, str]:
-    """Return local name → type for messages: `Name` if the fields are known, else `package/Name`."""
-    found: dict[str, str] = {}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            package, _, rest = node.module.partition(".")
-            for alias in node.names if rest.partition(".")[0] == "msg" else ():
-                known = alias.name in PACKAGES.get(package, ())
-                found[alias.asname or alias.name] = alias.name if known else f"{package}/{alias.name}"
-    return found
+class _Types:
+    """The types of messages that a module imports: `Name` if the fields are known, else `package/Name`."""
+
+    def __init__(self, tree: ast.Module) -> None:
+        self._classes: dict[str, str] = {}  # local name → type
+        self._modules: dict[str, str] = {}  # dotted name of a module of messages in the code → package
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                package, _, rest = node.module.partition(".")
+                for alias in node.names:
+                    local = alias.asname or alias.name
+                    if rest.partition(".")[0] == "msg":
+                        self._classes[local] = _short(f"{package}/{alias.name}")
+                    elif not rest and alias.name == "msg":
+                        self._modules[local] = package
+            elif isinstance(node, ast.Import):
+                for alias in node.names:
+                    package, _, rest = alias.name.partition(".")
+                    if rest == "msg":
+                        self._modules[alias.asname or alias.name] = package
+
+    @property
+    def used(self) -> bool:
+        """Return whether the module imports any."""
+        return bool(self._classes or self._modules)
+
+    def of(self, expr: ast.expr) -> str:
+        """Return the type that a name in the code stands for; "" if it stands for none."""
+        if isinstance(expr, ast.Name):
+            return self._classes.get(expr.id, "")
+        if not isinstance(expr, ast.Attribute):
+            return ""
+        first, path = _path(expr)
+        package = self._modules.get(".".join((first, *path[:-1])), "")
+        return _short(f"{package}/{path[-1]}") if package and first else ""
 
 
-def _received(tree: ast.Module, types: Mapping[str, str]) -> dict[str, set[tuple[str, int]]]:
+def _received(tree: ast.Module, types: _Types) -> dict[str, set[tuple[str, int]]]:
     """Return function name → the types of the messages with which a subscription calls it, and their positions.
 
     The type is "" if it is unknown.
@@ -136,7 +179,7 @@ def _received(tree: ast.Module, types: Mapping[str, str]) -> dict[str, set[tuple
         kind, callback = (_argument(call, *place) for place in places)
         if kind is not None and callback is not None:
             name, number = _called(callback)
-            found.setdefault(name, set()).add((types.get(last_name(kind), ""), number))
+            found.setdefault(name, set()).add((types.of(kind), number))
     return {name: kinds for name, kinds in found.items() if name and all(kind for kind, _ in kinds)}
 
 
@@ -164,7 +207,7 @@ def _parameter(function: Function, kind: str, number: int) -> dict[str, str]:
     return {names[number]: kind} if len(names) > number and names[number] not in stored else {}
 
 
-def _made(function: Function, types: Mapping[str, str]) -> dict[str, str]:
+def _made(function: Function, types: _Types) -> dict[str, str]:
     """Return the local variables that hold a new message, each assigned once."""
     assigned: dict[str, list[ast.expr]] = {}
     for node in ast.walk(function):
@@ -175,10 +218,9 @@ def _made(function: Function, types: Mapping[str, str]) -> dict[str, str]:
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
             stores[node.id] = stores.get(node.id, 0) + 1
     return {
-        name: types[last_name(values[0].func)]
+        name: kind
         for name, values in assigned.items()
         if len(values) == stores.get(name) == 1
         and isinstance(values[0], ast.Call)
-        and isinstance(values[0].func, ast.Name)
-        and values[0].func.id in types
+        and (kind := types.of(values[0].func))
     }

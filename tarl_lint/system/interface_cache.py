@@ -68,5 +68,6 @@ _PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "misfits": lambda entries: tuple(map(_misfit, entries)),
     "uses": lambda entries: tuple(map(_misfit, entries)),
     "deciding": tuple,
+    "configured": tuple,
     "in_names": lambda entries: tuple(ParameterName(*one) for one in entries),
 }

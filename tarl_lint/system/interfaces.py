@@ -28,7 +28,7 @@ from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
 from tarl_lint.system.fields import misfits, uses
 from tarl_lint.system.model import Endpoint, Interface, Role
-from tarl_lint.system.parameters import deciding, reads_named_parameters, words
+from tarl_lint.system.parameters import configurations, deciding, reads_named_parameters, words
 from tarl_lint.system.qos import of_call
 from tarl_lint.system.quiet_imports import closed
 from tarl_lint.system.service_calls import CLIENTS, called_services
@@ -74,6 +74,8 @@ def interface(
     )
     quiet = closed(modules) and len(imported) == len(modules) - 1
     named = all(one.names for one in endpoints) and not any(topicless(one) for one in flows)
+    heard = _heard(machine)
+    configured = configurations(modules)
     return Interface(
         path=script.path,
         name=next((name for one in modules if (name := node_name(one.tree))), ""),
@@ -81,15 +83,29 @@ def interface(
         endpoints=endpoints,
         flows=found,
         words=words(modules),
-        parameters=quiet and reads_named_parameters(modules),
+        parameters=quiet and configured is not None and reads_named_parameters(modules),
         closed=quiet,
         whole=quiet and named and not machine.cut,
         stale=stale(found, modules),
         deciding=deciding(modules),
         in_names=tuple(parameters),
-        misfits=tuple(one for each in modules for one in misfits(each, outlines[each.path], texts)),
-        uses=tuple(one for each in modules for one in uses(each, outlines[each.path], texts)),
+        misfits=tuple(one for each in modules for one in misfits(each, outlines[each.path], texts, heard)),
+        configured=configured or (),
+        uses=tuple(one for each in modules for one in uses(each, outlines[each.path], texts, heard)),
     )
+
+
+def _heard(machine: Linker) -> Mapping[str, frozenset[str]]:
+    """Return the types of the messages that subscriptions pass to each callback, by the last part of its name.
+
+    Callbacks that receive messages of an unknown type are left out.
+    """
+    found: dict[str, set[str]] = {}
+    for record in machine.sources.values():
+        if record.kind == "topic":
+            for name in record.callbacks:
+                found.setdefault(name.rpartition(".")[2], set()).update(record.whole_types or {""})
+    return {name: frozenset(kinds) for name, kinds in found.items() if "" not in kinds}
 
 
 def topicless(flow: Flow) -> bool:
@@ -135,7 +151,7 @@ def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline])
         source = tracer.ends.source(record)
         if record.kind == "topic":
             qos = (
-                of_call(outlines[record.path], record.pos, outlines.values())
+                of_call(outlines[record.path], record.pos, outlines.values(), source.topics)
                 if record.api.startswith("rclpy")
                 else None
             )
@@ -183,7 +199,8 @@ def _publishers(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline]
         topics = tuple(sorted({topic for one in publishers for topic in one.topics}))
         types = " | ".join(sorted({kind for one in publishers for kind in one.types}))
         outline = outlines[path]
-        qos = of_call(outline, pos, outlines.values()) if publishers[0].api.startswith("rclpy") else None
+        ros2 = publishers[0].api.startswith("rclpy")
+        qos = of_call(outline, pos, outlines.values(), topics) if ros2 else None
         span = tracer.texts[path].stretch(pos)
         whole = only({kind for one in publishers for kind in one.whole_types})
         yield Endpoint("publishes", topics, types, span, qos, outline.qualname(pos[0]), whole_type=whole)

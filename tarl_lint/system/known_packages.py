@@ -7,6 +7,7 @@ count, since no rule examines them.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
@@ -34,6 +35,12 @@ _FUSION: Final = (
     "Odometry Imu NavSatFix PoseStamped PoseWithCovarianceStamped Twist TwistStamped TwistWithCovarianceStamped "
     "AccelWithCovarianceStamped SetPose Empty SetDatum ToLL FromLL ToggleFilterProcessing GetState SetUTMZone"
 )
+_CONTROL: Final = (
+    "JointState DynamicJointState JointTrajectory JointTrajectoryControllerState FollowJointTrajectory "
+    "GripperCommand ParallelGripperCommand Float64MultiArray Twist TwistStamped Odometry AckermannDriveStamped Imu "
+    "WrenchStamped Wrench PoseStamped Range InterfacesValues MultiDOFCommand MultiDOFStateStamped PidState "
+    "AdmittanceControllerState Trigger SetBool DiagnosticArray"
+)
 _MARKERS: Final = (
     f"{_CAMERA} PoseStamped PoseArray TransformStamped Vector3Stamped PointStamped Marker MarkerArray"
 )
@@ -60,11 +67,13 @@ _PACKAGES: Final[Mapping[str, str]] = {
     **dict.fromkeys(("nav2_amcl", "nav2_map_server", "nav2_controller", "nav2_planner", "nav2_behaviors",
                      "nav2_recoveries", "nav2_bt_navigator", "nav2_waypoint_follower", "nav2_velocity_smoother",
                      "nav2_smoother", "nav2_lifecycle_manager", "nav2_collision_monitor",
-                     "nav2_costmap_2d"), _NAVIGATION),
+                     "nav2_costmap_2d", "nav2_bringup"), _NAVIGATION),
     "octomap_server": "PointCloud2 Octomap MarkerArray OccupancyGrid Empty GetOctomap BoundingBoxQuery",
     **dict.fromkeys(("apriltag_ros", "aruco_ros", "ar_track_alvar"),
                     f"{_MARKERS} AprilTagDetectionArray AlvarMarkers MarkerArray PointCloud2"),
     "turtlesim": "Twist Pose Color Empty Kill Spawn SetPen TeleportAbsolute TeleportRelative",
+    # starts Gazebo, whose plugins may run the controllers of ros2_control
+    "ros_gz_sim": _CONTROL,
     "rosapi": "",
     "tf2_web_republisher": "",
 }  # fmt: skip
@@ -107,6 +116,11 @@ def kinds(node: LaunchedNode) -> frozenset[str] | None:
     package, program = _identity(node)
     if f"{package}/{program}" in _QUIET or node.kind == "container":
         return frozenset()
+    return of_package(package)
+
+
+def of_package(package: str) -> frozenset[str] | None:
+    """Return the types of messages and services that the programs of a package may use; None if they are unknown."""
     types = _PACKAGES.get(package)
     return None if types is None else frozenset(types.split())
 
@@ -120,12 +134,12 @@ def typed(instance: Instance, values: Mapping[str, Any]) -> Seen:
     stamped = next((values[one] for one in _STAMPED if one in values), False)
     span = place_of(instance)
     ends = [*_ends("subscribes", topics[0], stamped, span), *_ends("publishes", topics[1], stamped, span)]
-    if package == "twist_mux":
-        ends += [
-            Endpoint("subscribes", (one,), _velocity(stamped), span)
-            for one in _multiplexed(values.get("topics"))
-        ]
-    return Seen(tuple(ends))
+    if package != "twist_mux":
+        return Seen(tuple(ends))
+    inputs, locks = _multiplexed("topics", values), _multiplexed("locks", values)
+    ends += [Endpoint("subscribes", (one,), _velocity(stamped), span) for one in inputs or ()]
+    ends += [Endpoint("subscribes", (one,), "Bool", span) for one in locks or ()]
+    return Seen(tuple(ends), certain=bool(inputs) and locks is not None)
 
 
 def _ends(role: Role, topics: str, stamped: object, span: Span) -> Iterator[Endpoint]:
@@ -139,13 +153,18 @@ def _velocity(stamped: object) -> str:
     return "TwistStamped" if stamped is True else _UNSTAMPED if stamped is False else ""
 
 
-def _multiplexed(topics: object) -> Iterator[str]:
-    """Yield the inputs of a multiplexer: in ROS 1 a list of mappings, in ROS 2 a mapping of mappings."""
-    rows = topics if isinstance(topics, list) else list(topics.values()) if isinstance(topics, dict) else []
-    for row in rows:
-        name = row.get("topic") if isinstance(row, dict) else None
-        if isinstance(name, str) and name and "$(" not in name:
-            yield name
+def _multiplexed(group: str, values: Mapping[str, Any]) -> list[str] | None:
+    """Return the inputs of a multiplexer: in ROS 1 a list of mappings, in ROS 2 parameters `topics.NAME.topic`.
+
+    Return None if one of them is not known.
+    """
+    rows = values.get(group, [])
+    if not isinstance(rows, list):
+        return None
+    names = [row.get("topic") if isinstance(row, dict) else None for row in rows]
+    names += [values[one] for one in sorted(values) if re.fullmatch(rf"{group}[./][^./]+[./]topic", one)]
+    known = [one for one in names if isinstance(one, str) and one and "$(" not in one]
+    return known if len(known) == len(names) else None
 
 
 def _identity(node: LaunchedNode) -> tuple[str, str]:

@@ -73,6 +73,7 @@ class Interface:
     `in_names` are the parameters that names contain; `deciding` are the parameters used in conditions.
     `stale` are publish calls that go on without new messages; `misfits` are uses of fields that a message
     type lacks. `uses` are uses of fields of types `package/Name` that are unknown here; their fields are dotted paths.
+    `configured` are the classes `PACKAGE.cfg.NAMEConfig`, whose `.cfg` files name further parameters.
     """
 
     path: str
@@ -89,6 +90,7 @@ class Interface:
     deciding: tuple[str, ...] = ()
     in_names: tuple[ParameterName, ...] = ()
     uses: tuple[Misfit, ...] = ()
+    configured: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -206,7 +208,8 @@ class System:
     """The nodes of one launch file. Hops and chains are sorted.
 
     `messages` are the fields of types `package/Name` of the workspace that the nodes use, each with its type or "".
-    `packages` are the packages of the workspace.
+    `packages` are the packages of the workspace. `included` are the types that well-known packages use whose launch
+    files are included, but not in the workspace.
     """
 
     file: Path
@@ -218,6 +221,7 @@ class System:
     arguments: tuple[tuple[str, str], ...] = field(default=())
     messages: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     packages: frozenset[str] = frozenset()
+    included: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     def complete(self, end: Endpoint) -> bool:
         """Return whether a topic or service with one known end certainly has no other in this system.
@@ -226,7 +230,12 @@ class System:
         """
         own = end.whole_type.partition("/")[0] in self.packages
         able = (one for one in self.instances if not own or one.node.package in self.packages)
-        return not any(one.may_use(end.type) for one in able) and not any(one.hides for one in self.problems)
+        return not any(one.may_use(end.type) for one in able) and not self.hides(end.type)
+
+    def hides(self, kind: str) -> bool:
+        """Return whether a part of the launch that was not read may start a node that uses a type."""
+        hiding = [one for one in self.problems if one.hides]
+        return any(kind in self.included.get(one.package, (kind,)) for one in hiding)
 
     def ends(self, role: Role) -> Iterator[tuple[str, Instance, Endpoint]]:
         """Yield the endpoints that all nodes have in a role, by launched name."""

@@ -18,9 +18,11 @@ READERS: Final = frozenset(
      "get_parameter", "get_parameter_or", "get_parameters", "get_parameters_by_prefix", "has_parameter"]
 )  # fmt: skip
 OPEN: Final = re.compile(
-    r"automatically_declare_parameters_from_overrides|allow_undeclared_parameters|get_parameters_by_prefix|"
-    r"get_param_names|dynamic_reconfigure|rosparam|param_server|generate_parameter_library"
+    r"(?:automatically_declare_parameters_from_overrides|allow_undeclared_parameters)(?!\s*=\s*False)|"
+    r"get_parameters_by_prefix|get_param_names|rosparam|param_server|generate_parameter_library|"
+    r"dynamic_reconfigure\.(?!server\b)|import dynamic_reconfigure|from dynamic_reconfigure import"
 )
+_SERVER: Final = "dynamic_reconfigure.server"
 
 COMMAND_LINE: Final = re.compile(r"\b(?:sys\.argv|myargv|argparse|optparse)\b")
 _GAPS: Final = re.compile(r"%[sdi]|\{[^{}]*\}")  # where a format string takes a value
@@ -73,6 +75,26 @@ def reads_named_parameters(modules: Sequence[Module]) -> bool:
         if not all(_stated(call, outline, strings) for call in calls):
             return False
     return True
+
+
+def configurations(modules: Sequence[Module]) -> tuple[str, ...] | None:
+    """Return the classes `PACKAGE.cfg.NAMEConfig` of a program whose servers of dynamic_reconfigure add parameters.
+
+    Return None if the class of a server may be another one.
+    """
+    serving = [module for module in modules if _SERVER in module.text]
+    found: list[str] = []
+    for module in serving:
+        named = [
+            f"{node.module}.{alias.name}"
+            for node in ast.walk(module.tree)
+            if isinstance(node, ast.ImportFrom) and (node.module or "").endswith(".cfg")
+            for alias in node.names
+        ]
+        if not named:
+            return None
+        found += named
+    return tuple(sorted(set(found)))
 
 
 def _stated(call: ast.Call, outline: Outline, strings: OwnStrings) -> bool:

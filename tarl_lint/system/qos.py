@@ -25,16 +25,20 @@ _PRESETS: Final = {
     "BEST_AVAILABLE": Qos(),
 }
 _PLACES: Final = {"create_publisher": 2, "create_subscription": 3}
+_ROW: Final = 3  # minimum length of a row: topic, type and profile
 _RELIABILITY: Final = {"RELIABLE": True, "BEST_EFFORT": False}
 _DURABILITY: Final = {"TRANSIENT_LOCAL": True, "VOLATILE": False}
 # attribute of a profile, its values, and the part of `Qos`
 _POLICIES: Final = (("reliability", _RELIABILITY, "reliable"), ("durability", _DURABILITY, "latched"))
 
 
-def of_call(outline: Outline, pos: Pos, others: Collection[Outline] = ()) -> Qos | None:
+def of_call(
+    outline: Outline, pos: Pos, others: Collection[Outline] = (), topics: Collection[str] = ()
+) -> Qos | None:
     """Return the quality of service in a call at a position; None if it is not constant.
 
-    `others` are the outlines of all modules of the program, which may define the profile.
+    `others` are the outlines of all modules of the program, which may define the profile. If the profile is a variable
+    of a wrapper, it is taken from the tables and calls that name it beside one of the `topics`.
     """
     call = outline.call(pos)
     if call is None:
@@ -47,11 +51,58 @@ def of_call(outline: Outline, pos: Pos, others: Collection[Outline] = ()) -> Qos
     given = given if given is not None else call.args[place] if len(call.args) > place else None
     if given is None:
         return None
-    found = _of(given, outline, 0)
-    if found is None and last_name(given) not in outline.assigned:
-        defining = [one for one in others if one is not outline and last_name(given) in one.assigned]
-        return _of(given, defining[0], 0) if len(defining) == 1 else None
+    found = _anywhere(given, outline, others)
+    if found is None and isinstance(given, ast.Name | ast.Starred | ast.Subscript | ast.Attribute):
+        return _beside(topics, outline, others)
     return found
+
+
+def _anywhere(expr: ast.expr, outline: Outline, others: Collection[Outline]) -> Qos | None:
+    """Return the quality of service of an expression; the module of its name or function may be another one."""
+    found = _of(expr, outline, 0)
+    name = last_name(expr.func if isinstance(expr, ast.Call) else expr)
+    if found is None and name not in outline.assigned and not _functions(name, outline):
+        defining = [
+            one for one in others if one is not outline and (name in one.assigned or _functions(name, one))
+        ]
+        return _of(expr, defining[0], 0) if len(defining) == 1 else None
+    return found
+
+
+def _beside(topics: Collection[str], outline: Outline, others: Collection[Outline]) -> Qos | None:
+    """Return the only quality of service beside a topic in a row of a table or the arguments of a call."""
+    found = [
+        [one for part in row if (one := _anywhere(part, where, others)) is not None]
+        for where in (outline, *(one for one in others if one is not outline))
+        for node in ast.walk(where.tree)
+        if len(row := _row(node)) >= _ROW
+        and any(isinstance(one, ast.Constant) and one.value in topics for one in row)
+    ]
+    profiles = [profile for row in found for profile in row]
+    alike = bool(profiles) and all(len(row) == 1 and row[0] == profiles[0] for row in found)
+    return profiles[0] if alike else None
+
+
+def _row(node: ast.AST) -> list[ast.expr]:
+    """Return the elements of a tuple or list, or the arguments of a call."""
+    if isinstance(node, ast.Tuple | ast.List):
+        return node.elts
+    if isinstance(node, ast.Dict):
+        return [one for one in (*node.keys, *node.values) if one is not None]
+    return [*node.args, *(one.value for one in node.keywords)] if isinstance(node, ast.Call) else []
+
+
+def _functions(name: str, outline: Outline) -> list[ast.FunctionDef]:
+    return [one for one in outline.definitions if isinstance(one, ast.FunctionDef) and one.name == name]
+
+
+def _returned(call: ast.Call, outline: Outline, depth: int) -> Qos | None:
+    """Return the profile that the only function of a name returns, if it does not depend on its arguments."""
+    functions = _functions(last_name(call.func), outline)
+    returned = [
+        one.value for each in functions for one in ast.walk(each) if isinstance(one, ast.Return) and one.value
+    ]
+    return _of(returned[0], outline, depth + 1) if len(functions) == len(returned) == 1 else None
 
 
 def _of(expr: ast.expr, outline: Outline, depth: int) -> Qos | None:
@@ -65,6 +116,8 @@ def _of(expr: ast.expr, outline: Outline, depth: int) -> Qos | None:
         return _PRESETS[_preset(expr)]
     if isinstance(expr, ast.Call) and last_name(expr.func) == "QoSProfile":
         return _profile(expr)
+    if isinstance(expr, ast.Call) and depth < 3:
+        return _returned(expr, outline, depth)
     if isinstance(expr, ast.Name | ast.Attribute) and depth < 3:
         values = outline.assigned.get(last, [])
         if len(values) == 1:

@@ -22,7 +22,9 @@ COMMANDS: Final = frozenset(
     ]
 )
 _NUMBERS: Final = frozenset(["Float32", "Float64", "Float32MultiArray", "Float64MultiArray"])
-_MOTION: Final = re.compile(r"(?=.*(vel|speed|effort|torque|throttle|thrust)).*(cmd|command|setpoint)")
+_MOTION: Final = re.compile(
+    r"(?=.*(vel|speed|effort|torque|throttle|thrust|power|force|current|voltage|pwm|duty)).*(cmd|command|setpoint)"
+)
 _TIMES: Final = re.compile(
     r"\b(now|get_time|get_rostime|Time|time|monotonic|stamp|clock|timeout|wait_for_message|Duration)\b|watchdog|stale|"
     r"last_|_time\b|elapsed|_age\b|\bage\b|fresh|alive|heartbeat|deadman|counter|countdown|received|_new\b|\bnew_|updated"

@@ -21,7 +21,7 @@ from tarl_lint.workspace.launch_values import Context, performed, symbolic, trut
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.python.evaluator import Unknown
 from tarl_lint.workspace.ros_arguments import first_of_each
-from tarl_lint.workspace.ros_names import joined
+from tarl_lint.workspace.ros_names import joined, package_in
 
 LARGEST: Final = 1_000_000  # maximum size of a YAML file (bytes)
 DEEPEST: Final = 20  # maximum nesting of includes
@@ -167,7 +167,7 @@ class Runner:
             return
         if symbolic(name) or not name:
             reason = f"the included file {name or '?'} is not in the workspace"
-            self._problem(context, action.line, reason, hides=True)
+            self._problem(context, action.line, reason, hides=True, package=package_in(name))
             return
         for key, value in items_of(action.values.get("arguments")):
             context.configurations[performed(key, context)] = performed(value, context)
@@ -277,8 +277,10 @@ class Runner:
                 stated = Setting(f"~{name}", context.file, unknown=True)
             yield stated
 
-    def _problem(self, context: Context, line: int, reason: str, *, hides: bool = False) -> None:
-        problem = Problem(context.file, line, reason, hides)
+    def _problem(
+        self, context: Context, line: int, reason: str, *, hides: bool = False, package: str = ""
+    ) -> None:
+        problem = Problem(context.file, line, reason, hides, package)
         if problem not in self.problems:
             self.problems.append(problem)
 

@@ -14,7 +14,7 @@ from tarl_lint.workspace.launch_documents import LINE, xml_root
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem, Workspace
 from tarl_lint.workspace.ros_arguments import ros1
-from tarl_lint.workspace.ros_names import joined
+from tarl_lint.workspace.ros_names import joined, package_in
 from tarl_lint.workspace.substitutions import Scope, SymbolicError, scalar
 
 DEEPEST: Final = 20  # maximum nesting of includes
@@ -77,7 +77,8 @@ class _Reader:
                     place = replace(self._element(element, inside, unsure), condition=place.condition)
             except SymbolicError as reason:
                 hides = element.tag in ("include", "group", "node")
-                self._problem(element, place, f"<{element.tag}>: {reason}", hides=hides)
+                package = package_in(element.get("file", "")) if element.tag == "include" else ""
+                self._problem(element, place, f"<{element.tag}>: {reason}", hides=hides, package=package)
 
     def _element(self, element: Element, place: _Place, unsure: str) -> _Place:
         """Read one element; return the context of the following ones. `unsure` is its own unknown condition."""
@@ -252,8 +253,10 @@ class _Reader:
         except UnreadableError as reason:
             raise SymbolicError(f"{path.name}: {reason}") from None
 
-    def _problem(self, element: Element, place: _Place, reason: str, *, hides: bool = False) -> None:
-        problem = Problem(place.scope.file, int(element.get(LINE, "0")), reason, hides)
+    def _problem(
+        self, element: Element, place: _Place, reason: str, *, hides: bool = False, package: str = ""
+    ) -> None:
+        problem = Problem(place.scope.file, int(element.get(LINE, "0")), reason, hides, package)
         if problem not in self.problems:
             self.problems.append(problem)
 

@@ -15,13 +15,15 @@ INTERFACES: Final = ("msg", "srv", "action")
 class Problem:
     """Something that could not be read: the file, a line (0 for the whole file) and the reason.
 
-    `hides` says that a launch file may start further nodes there.
+    `hides` says that a launch file may start further nodes there; `package` is the one that contains an included file
+    that is not in the workspace, or "".
     """
 
     file: Path
     line: int
     reason: str
     hides: bool = False
+    package: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from typing import Final
+
+_FOUND: Final = re.compile(r"\$\(find(?:-pkg-share)? ([\w-]+)\)/")
+
+
+def package_in(path: str) -> str:
+    """Return the package that an absent path begins with: `robot` for `$(find robot)/launch/arm.launch`; else ""."""
+    found = _FOUND.match(path)
+    return found[1] if found else ""
+
 
 def joined(namespace: str, name: str) -> str:
     """Return an absolute name: `name` in `namespace`, or `name` itself if it is absolute."""

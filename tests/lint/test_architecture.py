@@ -57,6 +57,9 @@ def test_rules_report_their_invalid_snippets_and_nothing_in_valid_ones(code, nam
         ("/odoma", "/odoxa", True), ("/arm_xy", "/arm_xz", True), ("/scan_x", "/scanx_", False),
         ("/a/obstacle", "/b/obstacles", False), ("/imu/data", "/gps/data", False),
         ("/c/image_rect/compressed", "/c/image_calib/compressed", False),
+        ("/a/water/current", "/a/water_current", True), ("/auto_vel", "/automatic_velocity", True),
+        ("/arm/cmd", "/arm/command", True), ("/arm/cmd", "/arm/camera", False), ("/a/cmd", "/b/command", False),
+        ("/cmd_vel", "/command", False), ("/lid", "/lidar2", False), ("/ab_vel", "/abx_cel", False),
     ],
 )  # fmt: skip
 def test_similar_topic_names_are_recognised(one, other, alike):

@@ -101,6 +101,44 @@ def test_a_profile_may_be_imported_under_another_name_or_from_another_module_of_
     assert of_call(Outline(call), at) is None
 
 
+TABLE = """
+def sensor(depth=5):
+    return QoSProfile(depth=depth, reliability=R.BEST_EFFORT)
+class A(Node):
+    rows = [(F, 'a', {}), (F, 'b', 10)]
+    def __init__(self):
+        for kind, topic, profile in self.rows:
+            self.create_publisher(kind, topic, profile)
+"""
+
+
+@pytest.mark.parametrize(
+    ("profile", "topics", "found"),
+    [
+        ("sensor()", ["a"], EFFORT), ("sensor(1)", ["b"], RELIABLE), ("10", ["a"], RELIABLE),
+        ("10", ["a", "b"], RELIABLE), ("sensor()", ["a", "b"], None), ("other()", ["a"], None), ("10", ["c"], None),
+        ("10, 5", ["a"], None),
+    ],
+)  # fmt: skip
+def test_the_profile_of_a_wrapper_is_the_one_beside_the_topic(profile, topics, found):
+    tree = ast.parse(TABLE.format(profile))
+    call = next(
+        one for one in ast.walk(tree) if isinstance(one, ast.Call) and "create" in ast.unparse(one.func)
+    )
+    at = (call.lineno, call.col_offset, call.end_lineno or 0, call.end_col_offset or 0)
+    assert of_call(Outline(tree), at, (), topics) == found
+
+
+def test_a_function_of_another_module_may_return_the_profile():
+    call = ast.parse(SUBSCRIBED.format("profiles.fast(1)"))
+    place = call.body[0]
+    at = (place.lineno, place.col_offset, place.end_lineno or 0, place.end_col_offset or 0)
+    one = "def fast(depth):\n    return QoSProfile(depth=depth, reliability=R.BEST_EFFORT)"
+    assert of_call(Outline(call), at, [Outline(ast.parse(one))]) == EFFORT
+    two = one + "\n    return 10"
+    assert of_call(Outline(call), at, [Outline(ast.parse(two))]) is None
+
+
 def test_no_quality_of_service_is_read_at_a_position_without_a_call():
     assert of_call(Outline(ast.parse("f(1)")), (1, 0, 1, 3)) is None
 
@@ -197,6 +235,9 @@ READS = [
     ("self.get_parameters([b])", False),
     ("self.get_parameters([])", True),
     ("Node('n', allow_undeclared_parameters=True)", False),
+    ("Node('n', allow_undeclared_parameters=False)", True),
+    ("from dynamic_reconfigure.client import Client", False),
+    ("from dynamic_reconfigure.server import Server", True),
     ("self.get_parameters_by_prefix('a')", False),
 ]
 

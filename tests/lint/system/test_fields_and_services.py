@@ -10,7 +10,7 @@ import pytest
 from tarl_lint.evidence import Outline
 from tarl_lint.flows.statement_text import Texts
 from tarl_lint.read.source import Module
-from tarl_lint.system.fields import misfits
+from tarl_lint.system.fields import misfits, uses
 from tarl_lint.system.service_calls import called_services, part
 
 HEAD = """\
@@ -77,6 +77,41 @@ RECEIVED = [
 @pytest.mark.parametrize(("register", "function", "found"), RECEIVED)
 def test_a_field_that_a_received_message_does_not_have_is_absent(register, function, found):
     assert absent(f"{function}\n{register}") == found
+
+
+@pytest.mark.parametrize(
+    ("imported", "made"),
+    [
+        ("from std_msgs import msg as std", "std.ColorRGBA"),
+        ("from std_msgs import msg", "msg.ColorRGBA"),
+        ("import std_msgs.msg", "std_msgs.msg.ColorRGBA"),
+        ("import std_msgs.msg as m", "m.ColorRGBA"),
+    ],
+)
+def test_the_module_of_a_message_may_have_any_name(imported, made):
+    text = f"{imported}\ndef f():\n    c = {made}(r=1, alpha=1)\n    c.red = 1\n"
+    assert absent(text) == [("ColorRGBA", "alpha"), ("ColorRGBA", "red")]
+    on = f"{imported}\ndef on(c):\n    print(c.red)\nrospy.Subscriber('a', {made}, on)\n"
+    assert absent(on) == [("ColorRGBA", "red")]
+    assert absent(f"{imported}\ndef f():\n    c = other.ColorRGBA(alpha=1)\n    c.red = 1\n") == []
+
+
+@pytest.mark.parametrize(
+    ("kinds", "function", "found"),
+    [
+        (["geometry_msgs/Twist"], "def on(self, msg):\n    print(msg.speed)", [("Twist", "speed")]),
+        (["geometry_msgs/Twist"], "def on(self, which, msg):\n    print(msg.speed)", []),
+        (["geometry_msgs/Twist", "std_msgs/Float64"], "def on(self, msg):\n    print(msg.speed)", []),
+        (["demo/Own"], "def on(self, msg):\n    print(msg.speed)", []),
+    ],
+)
+def test_the_analysis_may_tell_which_messages_a_function_receives(kinds, function, found):
+    module = Module("a.py", "a", function, ast.parse(function))
+    outline, texts = Outline(module.tree), Texts({"a.py": module})
+    heard = {"on": frozenset(kinds)}
+    assert [(one.type, one.field) for one in misfits(module, outline, texts, heard)] == found
+    unknown = [one.type for one in uses(module, outline, texts, heard)]
+    assert unknown == (["demo/Own"] if kinds == ["demo/Own"] else [])
 
 
 def test_no_field_counts_as_absent_if_the_message_type_is_unknown():

@@ -10,7 +10,8 @@ import pytest
 from tarl_lint.settings.config import Options, resolve
 from tarl_lint.system.command import ALL, Request, systems
 from tarl_lint.system.hazards import hazards
-from tarl_lint.system.known_packages import kinds
+from tarl_lint.system.known_packages import kinds, typed
+from tarl_lint.system.model import Instance
 from tarl_lint.workspace.launch_model import LaunchedNode
 from tarl_lint.workspace.message_files import fields, parsed
 from tarl_lint.workspace.read import read
@@ -131,3 +132,36 @@ def test_fields_of_messages_are_read_from_their_definitions(tmp_path):
     (tmp_path / "robot/msg/Part.msg").write_text("Whole whole\nint8 x")
     found = fields(["robot/Whole", "robot/Missing", "other/Whole"], read(tmp_path))
     assert found == {"robot/Whole": expected, "robot/Part": {"whole": "robot/Whole", "x": ""}}
+
+
+def test_the_inputs_of_a_multiplexer_are_those_in_its_parameters(tmp_path):
+    mux = """<node pkg="twist_mux" type="twist_mux" name="mux"><rosparam>
+      topics: [{{name: a, topic: {}, timeout: 0.5, priority: 1}}]
+    </rosparam></node>"""
+    pilot = '<launch><node pkg="robot" type="pilot.py" name="pilot"/>{}</launch>'
+    assert codes(tmp_path / "a", pilot.format(mux.format("command_vel"))) == ["TARL301"]
+    assert codes(tmp_path / "b", pilot.format(mux.format("cmd_vel"))) == []
+    assert codes(tmp_path / "c", pilot.format(mux.format("joy_vel"))) == []
+    unknown = mux.format("command_vel").replace("0.5", "0.5}, {{name: b")
+    assert codes(tmp_path / "d", pilot.format(unknown.replace("{{", "{"))) == []
+
+
+def test_the_inputs_of_a_multiplexer_of_ros_2_are_nested_parameters():
+    names = {"topics.joy.topic": "joy_vel", "topics.nav.topic": "nav_vel", "topics.nav.priority": 5}
+    mux = Instance(node("twist_mux", "twist_mux"), "/mux")
+    known = typed(mux, {**names, "locks.stop.topic": "e_stop"})
+    assert known.certain
+    assert [(one.names[0], one.type) for one in known.ends if one.role == "subscribes"] == [
+        ("joy_vel", "Twist"), ("nav_vel", "Twist"), ("e_stop", "Bool")
+    ]  # fmt: skip
+    assert not typed(mux, {**names, "locks.stop.topic": "$(var stop)"}).certain
+    assert not typed(mux, {"topics": "all"}).certain
+
+
+@pytest.mark.parametrize(
+    ("include", "found"),
+    [("$(find usb_cam)/launch/a.launch", ["TARL301"]), ("$(find amcl_maps)/launch/a.launch", []),
+     ("$(find move_base)/launch/a.launch", [])],
+)  # fmt: skip
+def test_an_absent_launch_file_of_a_known_package_starts_only_nodes_of_its_types(tmp_path, include, found):
+    assert codes(tmp_path, PAIR.format(f'<include file="{include}"/>')) == found
