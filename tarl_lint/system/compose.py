@@ -43,7 +43,7 @@ SERVER: Final = "server of "
 # ROS programs that use only topics of transforms, robot models and displays
 _SILENT: Final = frozenset(
     ["static_transform_publisher", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui",
-     "state_publisher", "rviz", "rviz2", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_console", "rqt_image_view", "xacro"]
+     "state_publisher", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_console", "rqt_image_view", "xacro"]
 )  # fmt: skip
 
 # (program, known values of its parameters) → its interface, or the reason why it cannot be analysed
@@ -156,7 +156,7 @@ def _known(instance: Instance, launch: Launch, workspace: Workspace) -> Seen:
     if package is None:
         passed = passed_on(instance, values, ros2=launch.ros2)
         found = passed if passed.ends else stated(instance, values, ros2=launch.ros2)
-        return replace(found if found.ends else typed(instance, values), kinds=kinds(node))
+        return replace(found if found.ends else typed(instance, values, ros2=launch.ros2), kinds=kinds(node))
     ends = named_topics(package, node.executable) if node.kind == "node" else ()
     return Seen(tuple(transported(instance, ends)))
 

@@ -17,23 +17,33 @@ from tarl_lint.workspace.launch_model import LaunchedNode
 from tarl_lint.workspace.ros_arguments import plain
 
 _CAMERA: Final = "Image CompressedImage CameraInfo Packet Empty SetBool SetCameraInfo"
-_PICTURES: Final = f"{_CAMERA} PointCloud2 DisparityImage Trigger"
-_SCANNER: Final = "LaserScan MultiEchoLaserScan PointCloud PointCloud2 Empty Trigger Status"
+_PICTURES: Final = f"{_CAMERA} PointCloud2 DisparityImage Trigger PoseStamped"
+_SCANNER: Final = (
+    "LaserScan MultiEchoLaserScan LaserEcho LaserFan PointCloud PointCloud2 Polygon PolygonStamped UInt16 Empty "
+    "Trigger SetBool Status"
+)
 _INERTIAL: Final = "Imu MagneticField Vector3Stamped Vector3 Temperature Empty Trigger Bool"
 _VELOCITY: Final = "Twist TwistStamped Joy Bool String Odometry Marker"
 _POSES: Final = "PoseStamped PoseWithCovarianceStamped PoseArray PointStamped"
 _MAPPING: Final = (
     f"LaserScan MultiEchoLaserScan PointCloud2 Odometry Imu OccupancyGrid MapMetaData Float64 String Path {_POSES} "
-    "MarkerArray Marker NavSatFix Empty GetMap SetMap LoadMap SaveMap Trigger LandmarkList SubmapList InteractiveMarker"
+    "MarkerArray Marker NavSatFix Empty GetMap SetMap LoadMap SaveMap Trigger LandmarkList SubmapList "
+    "InteractiveMarker InteractiveMarkerFeedback InteractiveMarkerUpdate SetBool ResetMapping Pause Clear ClearQueue "
+    "Reset LoopClosure MergeMaps AddSubmap ToggleInteractive SerializePoseGraph DeserializePoseGraph HectorDebugInfo "
+    "HectorIterData SubmapQuery TrajectoryQuery StartTrajectory FinishTrajectory WriteState GetTrajectoryStates "
+    "ReadMetrics"
 )
 _NAVIGATION: Final = (
     f"{_MAPPING} Twist TwistStamped OccupancyGridUpdate Costmap CostmapUpdate VoxelGrid Range PointCloud Polygon "
     "PolygonStamped SpeedLimit BehaviorTreeLog CostmapFilterInfo Bool GetPlan ClearEntireCostmap GridCells "
-    "ManageLifecycleNodes GetCostmap IsPathValid ParticleCloud"
+    "ManageLifecycleNodes GetCostmap GetCost GetCosts IsPathValid ParticleCloud CollisionMonitorState "
+    "CollisionDetectorState Toggle BatteryState MoveBaseActionGoal MoveBaseActionResult MoveBaseActionFeedback "
+    "GoalStatusArray GoalID RecoveryStatus WaypointStatus"
 )
 _FUSION: Final = (
     "Odometry Imu NavSatFix PoseStamped PoseWithCovarianceStamped Twist TwistStamped TwistWithCovarianceStamped "
-    "AccelWithCovarianceStamped SetPose Empty SetDatum ToLL FromLL ToggleFilterProcessing GetState SetUTMZone"
+    "AccelWithCovarianceStamped SetPose Empty SetDatum ToLL ToLLArray FromLL FromLLArray ToggleFilterProcessing "
+    "GetState SetUTMZone Trigger"
 )
 _CONTROL: Final = (
     "JointState DynamicJointState JointTrajectory JointTrajectoryControllerState FollowJointTrajectory "
@@ -42,7 +52,8 @@ _CONTROL: Final = (
     "AdmittanceControllerState Trigger SetBool DiagnosticArray"
 )
 _MARKERS: Final = (
-    f"{_CAMERA} PoseStamped PoseArray TransformStamped Vector3Stamped PointStamped Marker MarkerArray"
+    f"{_CAMERA} PoseStamped PoseArray TransformStamped Vector3Stamped PointStamped Marker MarkerArray UInt32MultiArray "
+    "Bool AlvarMarker AnalyzeSingleImage"
 )
 # package → types that its programs use
 _PACKAGES: Final[Mapping[str, str]] = {
@@ -53,12 +64,12 @@ _PACKAGES: Final[Mapping[str, str]] = {
                      "image_publisher", "web_video_server"), _CAMERA),
     **dict.fromkeys(("image_proc", "depth_image_proc", "stereo_image_proc", "image_view", "image_rotate",
                      "image_transport", "depthimage_to_laserscan"), f"{_PICTURES} LaserScan"),
-    "realsense2_camera": f"{_PICTURES} Imu Extrinsics IMUInfo Metadata RGBD DeviceInfo",
+    "realsense2_camera": f"{_PICTURES} Imu Odometry Extrinsics IMUInfo Metadata RGBD DeviceInfo GridCells String",
     **dict.fromkeys(("urg_node", "urg_node2", "rplidar_ros", "sllidar_ros2", "ydlidar_ros", "ydlidar_ros2_driver",
                      "hls_lfcd_lds_driver", "ldlidar_stl_ros2", "laser_filters", "pointcloud_to_laserscan"), _SCANNER),
     **dict.fromkeys(("velodyne_driver", "velodyne_pointcloud", "velodyne_laserscan"),
                     "VelodyneScan VelodynePacket PointCloud2 LaserScan"),
-    "pcl_ros": "PointCloud2 PointIndices ModelCoefficients PolygonStamped",
+    "pcl_ros": "PointCloud2 PointIndices ModelCoefficients PolygonStamped Image",
     **dict.fromkeys(("imu_filter_madgwick", "imu_complementary_filter", "imu_transformer", "imu_calib"), _INERTIAL),
     "nmea_navsat_driver": "NavSatFix TwistStamped TimeReference QuaternionStamped Sentence",
     "robot_localization": _FUSION,
@@ -76,13 +87,15 @@ _PACKAGES: Final[Mapping[str, str]] = {
     "ros_gz_sim": _CONTROL,
     "rosapi": "",
     "tf2_web_republisher": "",
+    # what the tools of RViz publish; what it displays does not count
+    **dict.fromkeys(("rviz", "rviz2"), "PoseStamped PoseWithCovarianceStamped PointStamped InteractiveMarkerFeedback"),
 }  # fmt: skip
 # programs that use no topics of the types that rules examine
 _QUIET: Final = frozenset(
     ["nodelet/manager", "rqt_reconfigure/rqt_reconfigure", "gazebo_ros/spawn_model", "gazebo_ros/spawn_entity.py",
      "ros_gz_sim/create", "controller_manager/spawner", "controller_manager/unspawner", "rosbag/record",
      "diagnostic_aggregator/aggregator_node", "rqt_robot_monitor/rqt_robot_monitor", "rqt_tf_tree/rqt_tf_tree",
-     "map_server/map_saver", "image_view/image_view"]
+     "nav2_lifecycle_manager/lifecycle_manager"]
 )  # fmt: skip
 
 _Typed = tuple[str, str]
@@ -125,13 +138,15 @@ def of_package(package: str) -> frozenset[str] | None:
     return None if types is None else frozenset(types.split())
 
 
-def typed(instance: Instance, values: Mapping[str, Any]) -> Seen:
+def typed(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen:
     """Return the topics with known types of a program. `values` are its parameters."""
     package, program = _identity(instance.node)
     topics = _TYPED.get(f"{package}/{program}")
     if topics is None:
         return Seen()
-    stamped = next((values[one] for one in _STAMPED if one in values), False)
+    # twist_mux of ROS 2 uses TwistStamped by default since 4.4.0, and Twist before
+    usual: object = None if ros2 and package == "twist_mux" else False
+    stamped = next((values[one] for one in _STAMPED if one in values), usual)
     span = place_of(instance)
     ends = [*_ends("subscribes", topics[0], stamped, span), *_ends("publishes", topics[1], stamped, span)]
     if package != "twist_mux":

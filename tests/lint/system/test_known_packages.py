@@ -63,6 +63,8 @@ def codes(root: Path, launch: str, pilot: str = "Twist", base: str = "Twist") ->
         ("twist_mux", "twist_mux", []),
         ("move_base", "move_base", []),
         ("unknown_driver", "node", []),
+        ("map_server", "map_saver", ["TARL301"]),
+        ("rviz", "rviz", ["TARL301"]),
     ],
 )
 def test_a_node_may_be_the_other_end_only_if_its_package_uses_the_type(tmp_path, package, program, found):
@@ -149,13 +151,23 @@ def test_the_inputs_of_a_multiplexer_are_those_in_its_parameters(tmp_path):
 def test_the_inputs_of_a_multiplexer_of_ros_2_are_nested_parameters():
     names = {"topics.joy.topic": "joy_vel", "topics.nav.topic": "nav_vel", "topics.nav.priority": 5}
     mux = Instance(node("twist_mux", "twist_mux"), "/mux")
-    known = typed(mux, {**names, "locks.stop.topic": "e_stop"})
+    known = typed(mux, {**names, "locks.stop.topic": "e_stop", "use_stamped": False}, ros2=True)
     assert known.certain
     assert [(one.names[0], one.type) for one in known.ends if one.role == "subscribes"] == [
         ("joy_vel", "Twist"), ("nav_vel", "Twist"), ("e_stop", "Bool")
     ]  # fmt: skip
-    assert not typed(mux, {**names, "locks.stop.topic": "$(var stop)"}).certain
-    assert not typed(mux, {"topics": "all"}).certain
+    assert not typed(mux, {**names, "locks.stop.topic": "$(var stop)"}, ros2=True).certain
+    assert not typed(mux, {"topics": "all"}, ros2=True).certain
+
+
+def test_the_type_of_a_multiplexer_of_ros_2_depends_on_its_version():
+    mux = Instance(node("twist_mux", "twist_mux"), "/mux")
+    given: list[tuple[dict[str, object], bool, str]] = [
+        ({}, False, "Twist"), ({}, True, ""), ({"use_stamped": True}, True, "TwistStamped"),
+        ({"use_stamped": False}, True, "Twist"), ({"use_stamped": "$(var stamped)"}, True, ""),
+    ]  # fmt: skip
+    for values, ros2, kind in given:
+        assert [one.type for one in typed(mux, values, ros2=ros2).ends] == [kind]
 
 
 @pytest.mark.parametrize(
