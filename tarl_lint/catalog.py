@@ -229,6 +229,11 @@ AWAITING: Final = (
     "asyncio.run_coroutine_threadsafe",
 )  # fmt: skip
 
+IN_THREADS: Final = (
+    "asyncio.to_thread", "anyio.to_thread.run_sync", "trio.to_thread.run_sync",
+    "starlette.concurrency.run_in_threadpool", "fastapi.concurrency.run_in_threadpool",
+)  # fmt: skip
+
 SAME_TEXT: Final = ("rospy.resolve_name", "rospy.remap_name", "rospy.names.resolve_name")
 PATH_JOINS: Final = ("rospy.names.ns_join", "roslib.names.ns_join", "os.path.join", "posixpath.join")
 

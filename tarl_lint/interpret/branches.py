@@ -11,7 +11,8 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, joins
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Delta
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join
+from tarl_lint.models import context_managers as managers_of_generators
 from tarl_lint.models import sizes, unpacking
 
 MAX_TURNS = 4  # maximum number of known elements over which a loop is unrolled
@@ -189,28 +190,25 @@ def _loop_end(ctx: Interpreter, s: ir.Loop, done: list[Delta], broken: list[Delt
 
 
 def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
-    """Execute a `with`, calling `__enter__` and `__exit__` of analysed classes."""
-    managers: list[Value] = []
+    """Execute a `with`, calling `__enter__` and `__exit__` of analysed classes and both parts of generators."""
+    managers: list[tuple[Value, Value]] = []
     for number, (context, target) in enumerate(s.items):
         value = expressions.evaluate(ctx, context, frame)
-        managers.append(value)
         frame.statement = s
         entered = _special_of_manager(ctx, value, ENTERING, (), frame, s)
-        value = _entered_generator(ctx, value) if entered is None else entered
+        rest = BOTTOM
+        if entered is None:
+            entered, rest = managers_of_generators.entered(ctx, value)
+        managers.append((value, rest))
         if target is not None:
-            ctx.ops.bind_target(ctx, target, value, frame, f"with{number}", context)
+            ctx.ops.bind_target(ctx, target, entered, frame, f"with{number}", context)
     goes_on = ctx.ops.block(ctx, s.body, frame)
     frame.statement = s
-    for manager in reversed(managers):  # also if a `return` leaves the body
+    for number, (manager, rest) in reversed([*enumerate(managers)]):  # also if a `return` leaves the body
         _special_of_manager(ctx, manager, LEAVING, [UNKNOWN] * 3, frame, s)
+        rest = join(rest, managers_of_generators.kept_on_stack(ctx, manager))
+        managers_of_generators.leave(ctx, rest, frame, s.pos, number)
     return goes_on
-
-
-def _entered_generator(ctx: Interpreter, manager: Value) -> Value:
-    """Return what a generator decorated with `contextmanager` yields; other managers return themselves."""
-    if manager.pts and all(o.kind == "sequence" and o.name == heap.GENERATOR for o in manager.pts):
-        return heap.elements(ctx, manager)
-    return manager
 
 
 def _special_of_manager(

@@ -262,11 +262,23 @@ def _yield(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
     value = evaluate(ctx, expr.value, frame)
     if expr.kind == "await":
         ctx.ops.wait(ctx, frame)
-        return value
+        return _awaited(ctx, value)
     value = heap.elements(ctx, value) if expr.kind == "from" else value
     value = ctx.carry(value, ctx.node(frame, ("yield", expr.pos), "return"))
     frame.yielded = join(frame.yielded, value)
+    if frame.caller is not None and frame.caller.statement is None:
+        ctx.ops.wait(ctx, frame)  # a library runs the generator, and anything may happen before it goes on
     return UNKNOWN
+
+
+def _awaited(ctx: Interpreter, value: Value) -> Value:
+    """Return the results of the futures of executors, and other objects as they are."""
+    stored = [ctx.store.get((o, heap.RESULT)) if o.kind == "lib" else None for o in value.objects]
+    if not any(stored):
+        return value
+    results = [heap.arrive(ctx, one, value.deps) for one in stored if one is not None]
+    others = frozenset(o for o, one in zip(value.objects, stored, strict=True) if one is None)
+    return join_all([*results, Value(value.deps, others)])
 
 
 def _lambda(ctx: Interpreter, expr: ir.Lambda, frame: Frame) -> Value:

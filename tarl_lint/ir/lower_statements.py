@@ -6,6 +6,7 @@ import ast
 from collections.abc import Callable, Iterator, Sequence
 
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.context_managers import divided
 from tarl_lint.ir.effect_free import OWN_PRINT, only_tells
 from tarl_lint.ir.lower_expressions import OPERATORS, Expressions, position
 from tarl_lint.ir.match_patterns import captures, conditions
@@ -45,11 +46,13 @@ def lower_body(function: ir.Function, package: str) -> Sequence[ir.Stmt]:
         lowering = Lowering(function.module)
         lowering.package = package
         node = function.node
-        function.generator = collect(scope, [node.body] if isinstance(node, ast.Lambda) else node.body)
         if isinstance(node, ast.Lambda):
+            function.generator = collect(scope, [node.body])
             function.body = [ir.Return(scope.next(), position(node.body), lowering.expr(node.body, scope))]
         else:
-            function.body = lowering.block(node.body, scope)
+            body = divided(node) if node.decorator_list else node.body
+            function.generator = collect(scope, body)
+            function.body = lowering.block(body, scope)
     return function.body
 
 

@@ -28,6 +28,7 @@ ANY = "*"  # summary field: the join of all elements
 KEYS = "<keys>"  # field of a mapping: dependencies of its keys
 LENGTH = "<length>"  # field of a container: dependencies of its length
 HELD = "<callables>"  # field of a library object: callables that were passed to it
+RESULT = "<result>"  # field of a future that holds its result
 SENT = "<sent>"  # field of a port, file or socket: data written to it
 MEMBERS = "members"  # name of a sequence of the known names, or names and values, of an object's attributes
 GENERATOR = "generator"  # name of a sequence that represents a generator

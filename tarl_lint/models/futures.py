@@ -10,13 +10,11 @@ from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency, updates
-from tarl_lint.memory.heap import item_field
+from tarl_lint.memory.heap import RESULT, item_field
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join, pointer
-from tarl_lint.models import containers
+from tarl_lint.models import containers, context_managers
 from tarl_lint.models.containers import READERS as CONTAINER_READERS
 from tarl_lint.models.records import RECORDS
-
-RESULT: Final = "<result>"  # field of a future that holds its result
 
 
 def _set_result(ctx: Interpreter, it: Invocation) -> Value:
@@ -81,6 +79,13 @@ def _submit(ctx: Interpreter, it: Invocation) -> Value:
     return pointer(obj)
 
 
+def called_in_thread(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the result of a function that a library calls in a thread while a coroutine waits."""
+    ctx.ops.wait(ctx, it.frame)
+    (first, *rest), named = it.arguments[0] or [UNKNOWN], it.arguments[1]
+    return calls.call_value(ctx, first, (rest, named), it.frame, it.call)
+
+
 READERS: Final[Mapping[str, Callable[..., Value]]] = {
     **CONTAINER_READERS,
     **RECORDS,
@@ -88,5 +93,7 @@ READERS: Final[Mapping[str, Callable[..., Value]]] = {
     "submit": _submit,
     "run_in_executor": _submit,
     "done": _is_done,
+    "enter_context": context_managers.put_on_stack,
+    "enter_async_context": context_managers.put_on_stack,
     "set_result": _set_result,
 }

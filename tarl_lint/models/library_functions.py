@@ -241,6 +241,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(catalog.ADDS_STATE, smach.add_state),
     **dict.fromkeys(catalog.STATE_BY_CALLBACKS, smach.state_by_callbacks),
     **dict.fromkeys(catalog.AWAITING, futures.awaited_result),
+    **dict.fromkeys(catalog.IN_THREADS, futures.called_in_thread),
     "getattr": reflection.get_attribute,
     **dict.fromkeys(("operator.attrgetter", "operator.itemgetter"), reflection.getter),
     **dict.fromkeys(("operator.attrgetter.<made>", "operator.itemgetter.<made>"), reflection.get_named),

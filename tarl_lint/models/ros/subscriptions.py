@@ -20,7 +20,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.shared import Root
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, function_of, join, join_all, pointer
-from tarl_lint.models import sizes
+from tarl_lint.models import context_managers, sizes
 from tarl_lint.models.ros import publications
 from tarl_lint.models.ros.endpoints import NAMESPACE, Acceptance, Kind, Publisher, SourceRecord
 from tarl_lint.models.ros.publications import type_names, whole_type_names
@@ -297,7 +297,9 @@ def call_when(
             recency.clear_fields(ctx, obj)
             ctx.store.put((obj, name), value)
         ctx.guards += [(node, "called") for node in guards]
-        calls.call_object(ctx, target, (list(values), dict(named)), frame, ROOT_CALL)
+        result = calls.call_object(ctx, target, (list(values), dict(named)), frame, ROOT_CALL)
+        for rest in context_managers.rest_of(ctx, result).objects:
+            call_later(ctx, rest, ())
         del ctx.guards[len(ctx.guards) - len(guards) :]
 
     ctx.ops.add_root(ctx, root, run, news=news)

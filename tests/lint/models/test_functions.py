@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tarl_lint.catalog import IN_THREADS
 from tarl_lint.models.library_functions import BUILTIN
 from tests.lint.models.marked import differing, in_callback
 
@@ -438,6 +439,15 @@ CASES: dict[tuple[str, ...], str] = {
         other.send(0.0)
         out.publish(far.recv())  # data
         out.publish(other.recv())  # clean
+    """,
+    IN_THREADS: """
+        def run(value, other=1.0):
+            return [value, other]
+        async def main():
+            kept = await NAME(run, msg.data)
+            out.publish(kept[0])  # data
+            out.publish(kept[1])  # clean
+        asyncio.run(main())
     """,
     ("super",): """
         class Base:
