@@ -64,6 +64,7 @@ MESSAGES = frozenset(["message", "goal"])
 THERE = frozenset([*MESSAGES, *OURS])  # kinds of objects that are never None
 SCALARS = frozenset(["str", "int", "float", "bool", "bytes"])
 MAX_TEXT = 300
+FALSE = frozenset([False, None, ""])  # values of `a and False` for an unknown `a` that is no container
 
 
 def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
@@ -178,7 +179,7 @@ def _always_true(ctx: Interpreter, obj: Obj) -> bool:
 
 def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
     """Return the value of `a or b`. The first operand decides which one it is; calls in the second depend on it."""
-    result, deps, guards = BOTTOM, NONE, len(ctx.guards)
+    result, deps, guards, decided = BOTTOM, NONE, len(ctx.guards), False
     for number, part in enumerate(expr.parts):
         value = ctx.ops.evaluate(ctx, part, frame)
         last = number + 1 == len(expr.parts)
@@ -193,7 +194,8 @@ def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
         if not last and not known and isinstance(expr.parts[number + 1], CALLING):
             ctx.guards.append((guard(ctx, decides, frame, (expr.pos, number)), "rest"))
     del ctx.guards[guards:]
-    return Value(result.deps | deps, result.pts, result.consts)
+    false = decided and expr.operator == "and" and result.consts is None and not result.pts
+    return Value(result.deps | deps, result.pts, FALSE if false else result.consts)
 
 
 def guard(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> int:

@@ -7,7 +7,8 @@ from ast import literal_eval
 from tarl_lint.catalog import ENDPOINT_METHODS, MEASURES, METHODS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import recency, userdata
+from tarl_lint.memory import properties, recency, userdata
+from tarl_lint.memory.properties import PARTS
 from tarl_lint.memory.userdata import VIEW
 from tarl_lint.memory.values import (
     BOTTOM,
@@ -75,6 +76,8 @@ def content(ctx: Interpreter, obj: Obj) -> Value:
 def read_field(ctx: Interpreter, obj: Obj, name: str) -> Value:
     """Return the value of a field of one object."""
     if obj.kind in RENAMING:
+        if name in PARTS and (part := properties.part(ctx, obj, name)) is not None:
+            return part
         obj, name = renamed(ctx, obj, name)
     stored = ctx.store.get((obj, name))
     if stored is not None:
@@ -189,11 +192,11 @@ def _bound_partial(ctx: Interpreter, target: Obj, receiver: Obj, owner: Obj) -> 
     return bound
 
 
-def bind_class(ctx: Interpreter, value: Value, cls: Obj) -> Value:
-    """Return a class's attribute with its class methods bound to it."""
+def bind_class(ctx: Interpreter, value: Value, cls: Obj, owner: Obj | None = None) -> Value:
+    """Return a class's attribute with its class methods, which `owner` defines, bound to it."""
     if not any(_binding(o) == "classmethod" for o in value.pts):
         return value
-    bound = [method(ctx, o, cls, cls) if _binding(o) == "classmethod" else o for o in value.pts]
+    bound = [method(ctx, o, cls, owner or cls) if _binding(o) == "classmethod" else o for o in value.pts]
     return Value(value.deps, frozenset(bound), value.consts)
 
 

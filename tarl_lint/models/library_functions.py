@@ -39,6 +39,7 @@ from tarl_lint.models import (
     reflection,
     smach,
     strings,
+    type_queries,
 )
 from tarl_lint.models.containers import CONTAINERS, QUEUES
 from tarl_lint.models.ros import senders
@@ -218,8 +219,10 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(("weakref.ref", "weakref.WeakMethod"), objects.weak_reference),
     **dict.fromkeys(("weakref.proxy", "vars", "typing.cast"), objects.same),
     "type": objects.type_of,
-    "isinstance": objects.is_instance,
-    **dict.fromkeys(("issubclass", "hasattr", "callable"), objects.of_type),
+    "isinstance": type_queries.is_instance,
+    "hasattr": type_queries.has_attribute,
+    "callable": type_queries.is_callable,
+    "issubclass": type_queries.of_type,
     "rospy.myargv": command_line.own_arguments,
     "rclpy.utilities.remove_ros_args": command_line.own_arguments,
     **dict.fromkeys(("range", "xrange"), command_line.counted),

@@ -1,4 +1,4 @@
-"""Builtins about objects and classes: `type`, `super`, weak references; values of unset fields."""
+"""Builtins that return objects and classes: `type`, `super`, weak references; values of unset fields."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency, userdata
 from tarl_lint.memory.userdata import MACHINE_FIELD
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, const, lineage, pointer
-from tarl_lint.models import command_line, containers, sizes
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, lineage, pointer
+from tarl_lint.models import command_line, containers
 
 MESSAGE_MODULE = ".msg."  # part of the name of every message class
 
@@ -39,33 +39,8 @@ def type_of(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared
     return Value(pts=found) if found else UNKNOWN
 
 
-def is_instance(ctx: Interpreter, it: Invocation) -> Value:
-    """Return whether a received message is of a message type; unknown for other objects and classes."""
-    given = it.arguments[0]
-    if len(given) != 2:
-        return UNKNOWN
-    named = [one for part in sizes.unpacked(ctx, given[1]) or [given[1]] for one in part.objects]
-    if not named or not all(one.kind == "ext" and MESSAGE_MODULE in one.name for one in named):
-        # the class may be a base class of all messages, or a class of the analysed files
-        return UNKNOWN
-    ctx.look(given[0].pts)
-    received = {
-        one.defined if one.kind == "message" and one.parent is None else "" for one in given[0].objects
-    }
-    if not received or "" in received:
-        return UNKNOWN
-    types = {one.name.rpartition(".")[2] for one in named}
-    found = {one in types for one in received}
-    return const(found.pop()) if len(found) == 1 else UNKNOWN
-
-
-def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared signature
-    """Return the result of a query about a type; a type is not data."""
-    return UNKNOWN
-
-
 def parent(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `super()` or `super(cls, self)`: the object, with look-ups after a class."""
+    """Return the value of `super()` or `super(cls, self)`: the object or class, with look-ups after a class."""
     receiver = it.frame
     while receiver.owner is None and receiver.outer is not None:
         receiver = receiver.outer
@@ -76,7 +51,8 @@ def parent(ctx: Interpreter, it: Invocation) -> Value:
     given = [o for v in it.arguments[0][:1] for o in v.pts if o.kind == "class"]
     owner = given[0] if len(given) == 1 else receiver.owner
     found = []
-    for obj in this.objects:
+    seen = it.arguments[0][1].objects if len(it.arguments[0]) > 1 else ()
+    for obj in seen if seen and all(o.kind == "class" for o in seen) else this.objects:
         view = recency.intern(ctx, "super", (owner.key, obj))
         view.info = (owner, obj)
         found.append(view)
@@ -93,7 +69,8 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
         for base in after:
             value = ctx.store.get((base, name))
             if value is not None:
-                return heap.bind(ctx, value, this, base)
+                seen = heap.bind_class if this.kind == "class" else heap.bind
+                return seen(ctx, value, this, base)
         return BOTTOM
     if obj.name in containers.PROCESSES and name in containers.STREAMS:
         # all streams share one object, which stands for the process: data written to one may be read from another

@@ -13,6 +13,7 @@ from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, pointer
+from tarl_lint.method_effects import fails
 from tarl_lint.models import library_functions
 from tarl_lint.models.ros import publications, subscriptions
 from tarl_lint.models.ros.endpoints import Acceptance, Publisher, SourceRecord
@@ -153,5 +154,7 @@ def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
         return library_functions.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)
     record = subscriptions.source(ctx, it, BOTTOM)
     record.topics.add("/tf")
-    message = arrived(ctx, record, it)
-    return Value(message.deps | call_contexts.all_used(ctx, it.arguments), message.pts)
+    message, given = arrived(ctx, record, it), call_contexts.all_used(ctx, it.arguments)
+    if (raises := fails(it.name)) is not None:
+        ctx.ops.may_fail(ctx, given | ctx.use(message), raises, it.frame)
+    return Value(message.deps | given, message.pts)

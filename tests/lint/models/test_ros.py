@@ -298,6 +298,13 @@ def test_with_the_setting_tf2_a_transform_is_a_source():
     text = HEAD + dedent("""
         out.publish(node.buffer.lookup_transform("map", "base").x)  # data
         out.publish(node.buffer.other("map", "base").x)  # clean
+        try:
+            node.buffer.lookup_transform("map", "base")
+            out.publish(1.0)  # control
+        except TransformException:
+            out.publish(2.0)  # control
+        node.buffer.lookup_transform("map", "base")
+        out.publish(3.0)  # clean
     """)
     assert differing(text, flows(text, Config(tf2=True))) == {}
 

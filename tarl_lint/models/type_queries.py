@@ -1,0 +1,91 @@
+"""Builtins that ask for the type of an object: `isinstance`, `callable`, `hasattr`. A type is not data."""
+
+from __future__ import annotations
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.memory import heap
+from tarl_lint.memory.values import (
+    BOTTOM,
+    NO_CONSTANTS,
+    UNKNOWN,
+    ClassInfo,
+    Obj,
+    Value,
+    const,
+    function_of,
+    lineage,
+)
+from tarl_lint.models import sizes
+
+MESSAGE_MODULE = ".msg."  # part of the name of every message class
+NOT_CALLABLE = frozenset(["sequence", "mapping", "message", "publisher"])
+
+
+def is_instance(ctx: Interpreter, it: Invocation) -> Value:
+    """Return whether an object is an instance of analysed classes, or a message of types; else unknown."""
+    given = it.arguments[0]
+    if len(given) != 2:
+        return UNKNOWN
+    named = [one for part in sizes.unpacked(ctx, given[1]) or [given[1]] for one in part.objects]
+    if named and all(one.kind == "class" for one in named):
+        return _of_classes(given[0], frozenset(named))
+    if not named or not all(one.kind == "ext" and MESSAGE_MODULE in one.name for one in named):
+        # the class may be a base class of all messages
+        return UNKNOWN
+    ctx.look(given[0].pts)
+    received = {
+        one.defined if one.kind == "message" and one.parent is None else "" for one in given[0].objects
+    }
+    if not received or "" in received:
+        return UNKNOWN
+    types = {one.name.rpartition(".")[2] for one in named}
+    found = {one in types for one in received}
+    return const(found.pop()) if len(found) == 1 else UNKNOWN
+
+
+def _of_classes(value: Value, classes: frozenset[Obj]) -> Value:
+    """Return whether instances of analysed classes are instances of others."""
+    if value.consts != NO_CONSTANTS or not value.pts or any(o.kind != "instance" for o in value.pts):
+        return UNKNOWN
+    kinds = [o.info for o in value.pts if isinstance(o.info, Obj)]
+    found = {not classes.isdisjoint(lineage(kind)) for kind in kinds}
+    return const(found.pop()) if len(found) == 1 and len(kinds) == len(value.pts) else UNKNOWN
+
+
+def is_callable(ctx: Interpreter, it: Invocation) -> Value:
+    """Return False for numbers, containers and instances without `__call__`; other objects may be callable."""
+    value = it.arguments[0][0] if it.arguments[0] else UNKNOWN
+    if value.constant()[0] or (
+        value.pts and not value.deps and all(_never_called(ctx, o) for o in value.pts)
+    ):
+        return const(value=False)
+    return UNKNOWN
+
+
+def _never_called(ctx: Interpreter, obj: Obj) -> bool:
+    if obj.kind != "instance" or not isinstance(obj.info, Obj):
+        return obj.kind in NOT_CALLABLE
+    opaque = any(isinstance(one.info, ClassInfo) and one.info.opaque for one in lineage(obj.info))
+    return not opaque and not heap.read_field(ctx, obj, "__call__").pts
+
+
+def has_attribute(ctx: Interpreter, it: Invocation) -> Value:
+    """Return False if a function has no such attribute; other objects may have it."""
+    given = it.arguments[0]
+    names = given[1].texts() if len(given) == 2 else ()
+    if not names or not given[0].pts or given[0].deps:
+        return UNKNOWN
+    for obj in given[0].objects:
+        closure = obj.info[0] if obj.kind == "bound" and isinstance(obj.info, tuple) else obj
+        function = function_of(closure)
+        if closure.kind != "closure" or function is None or function.decorators:
+            return UNKNOWN  # a decorator of a library may add attributes
+        if any(name.startswith("__") or heap.read_field(ctx, closure, name) != BOTTOM for name in names):
+            return UNKNOWN
+    return const(value=False)
+
+
+def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared signature
+    """Return the result of a query about a type; a type is not data."""
+    return UNKNOWN
