@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarl_lint.interpret import context_selection, literals, nullness, replay, shared_contexts
+from tarl_lint.interpret import annotated, context_selection, literals, nullness, replay, shared_contexts
 from tarl_lint.interpret.budget import IRRELEVANT_CALL_LIMIT, IRRELEVANT_CALLS_LIMIT
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
@@ -239,6 +239,8 @@ def bind_parameters(ctx: Interpreter, frame: Frame, closure: Obj, arguments: Arg
             value = named.pop(parameter.name)
         else:
             value = _missing(ctx, parameter, closure, rest, mapping)
+            if value is UNKNOWN and frame.caller is not None and frame.caller.statement is None:
+                value = annotated.handed(ctx, frame, parameter.name)
         ctx.store.put((frame, parameter.name), value)
 
 

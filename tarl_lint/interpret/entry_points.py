@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Set
 
 from tarl_lint import catalog
-from tarl_lint.interpret import calls
+from tarl_lint.interpret import annotated, calls
 from tarl_lint.interpret.call_contexts import ROOT_CALL
 from tarl_lint.interpret.interpreter import Interpreter
-from tarl_lint.interpret.node_starts import STARTING, definitions, registers, starts_node
+from tarl_lint.interpret.node_starts import STARTING, definitions, publishes, registers, starts_node
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency, userdata
 from tarl_lint.memory.shared import Root
@@ -86,12 +86,30 @@ def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, star
             continue
         if starting and registers(statement):
             wanted = not _has_made_heir(ctx, cls)
+        elif _passed_by_others(ctx, cls, statement, ctx.module_objects[program.name]):
+            wanted = True
         else:
             tests = starting and ctx.modules[program.path].contains(".publish(")
             wanted = _last_node(ctx, cls, catalog.NODES | (catalog.TESTS if tests else frozenset()))
         if wanted:
             _start(ctx, cls, "node", program.path)
             ctx.guests.add(cls)
+
+
+def _passed_by_others(ctx: Interpreter, cls: Obj, statement: ir.Class, module: Obj) -> bool:
+    """Return whether code outside the files may make an object of a class to pass it on, or to pass others to it.
+
+    Other code passes objects of a class that annotates a parameter, or of its last subclasses, and may pass objects
+    of the files to the constructor of a class that publishes or has a timer.
+    """
+    if not ctx.wanted.isdisjoint(lineage(cls)):
+        return not any(o.kind == "class" and o is not cls and cls in lineage(o) for o in ctx.objects.values())
+    inits = (
+        s.function
+        for s in definitions(statement.body)
+        if isinstance(s, ir.Define) and s.function.name == "__init__"
+    )
+    return any(publishes(f) and annotated.classes_of_parameters(ctx, f, module) for f in inits)
 
 
 def _last_node(ctx: Interpreter, cls: Obj, bases: Set[str]) -> bool:

@@ -90,6 +90,9 @@ class Interpreter:
         self.guests: set[object] = set()  # classes that only code outside the analysed files instantiates
         self.plugins: set[object] = set()  # classes that a package declares as plugins
         self.looked_up: set[Obj] = set()  # classes whose instances a library looks up
+        self.wanted: set[Obj] = (
+            set()
+        )  # classes that annotate parameters of functions that code outside the files calls
         self.handed_over: set[Obj] = set()  # functions with a decorator of a package that is not analysed
         # names of classes outside the analysed files whose methods receive data or callbacks
         self.ended: set[str] = set()

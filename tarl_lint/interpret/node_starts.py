@@ -17,6 +17,9 @@ FACTS = {**catalog.FUNCTIONS, **catalog.METHODS}
 REGISTERING = frozenset(name.rpartition(".")[2] for name, fact in FACTS.items() if fact.kind in KINDS)
 STARTS = REGISTERING | {"init_node", "init", "create_node", "spin"}
 HELD = REGISTERING & catalog.ENDPOINT_METHODS  # methods that are recognised without a call
+MAKES = frozenset(
+    name.rpartition(".")[2] for name, fact in FACTS.items() if fact.kind in ("publisher", "timer")
+)  # names of calls that make a publisher or a timer
 STARTING = re.compile(
     rf"\.\s*(?:{'|'.join(sorted(STARTS))})\s*\(|\b(?:{'|'.join(sorted(REGISTERING))})\s*\("
     rf"|\b(?:{'|'.join(sorted(HELD))})\b"
@@ -45,6 +48,15 @@ def starts_node(function: ir.Function) -> bool:
 def registers(statement: ir.Class) -> bool:
     """Return whether a method of a class registers something or starts a node."""
     return any(isinstance(s, ir.Define) and starts(s.function) for s in definitions(statement.body))
+
+
+def publishes(function: ir.Function) -> bool:
+    """Return whether a function makes a publisher or a timer."""
+    return any(
+        isinstance(n, (ast.Attribute, ast.Name))
+        and (n.attr if isinstance(n, ast.Attribute) else n.id) in MAKES
+        for n in walk(function.node)
+    )
 
 
 def starts(function: ir.Function) -> bool:

@@ -27,13 +27,18 @@ def looked_up(ctx: Interpreter, name: str, values: Iterable[Value]) -> Value:
     if LOOKS_UP.match(name) is None:
         return found
     for cls in (o for value in values for o in value.objects if o.kind == "class"):
-        if cls not in ctx.looked_up:
-            ctx.looked_up.add(cls)
-            for obj in [*ctx.objects.values()]:
-                if obj.kind == "instance" and isinstance(obj.info, Obj) and cls in lineage(obj.info):
-                    _add(ctx, cls, obj)
-        found = join(found, ctx.store.get((cls, INSTANCES)) or BOTTOM)
+        found = join(found, of_class(ctx, cls))
     return found
+
+
+def of_class(ctx: Interpreter, cls: Obj) -> Value:
+    """Return the instances of an analysed class, also those of its subclasses."""
+    if cls not in ctx.looked_up:
+        ctx.looked_up.add(cls)
+        for obj in [*ctx.objects.values()]:
+            if obj.kind == "instance" and isinstance(obj.info, Obj) and cls in lineage(obj.info):
+                _add(ctx, cls, obj)
+    return ctx.store.get((cls, INSTANCES)) or BOTTOM
 
 
 def _add(ctx: Interpreter, cls: Obj, obj: Obj) -> None:

@@ -1,0 +1,91 @@
+"""Objects that code outside the files passes: an instance of the class that annotates a parameter."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, instances, recency, updates
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import UNKNOWN, Obj, Value, join_all, pointer
+
+SEQUENCES: Final = frozenset(
+    ["list", "List", "Sequence", "Iterable", "tuple", "Tuple", "set", "Set", "Collection"]
+)
+WRAPPERS: Final = frozenset(["Optional", "Union", "Annotated"])
+
+
+def handed(ctx: Interpreter, frame: Frame, name: str) -> Value:
+    """Return the value of a parameter of a function that code outside the files calls."""
+    annotation = written(frame.function).get(name)
+    if annotation is None:
+        return UNKNOWN
+    module = ctx.module_objects[frame.program.name]
+    classes = _classes(ctx, module, annotation)
+    ctx.wanted.update(classes)
+    given = [instances.of_class(ctx, cls) for cls in classes]
+    several = isinstance(annotation, ast.Subscript) and _last_name(annotation.value) in SEQUENCES
+    value = join_all(one for one in given if one.pts)
+    if not value.pts:
+        return UNKNOWN
+    if not several:
+        return value
+    listed = recency.allocate(ctx, "sequence", frame, ("handed", name))
+    updates.add_element(ctx, pointer(listed), value)
+    return pointer(listed)
+
+
+def written(function: ir.Function) -> dict[str, ast.expr]:
+    """Return the annotations of a function's parameters."""
+    if isinstance(function.node, ast.Lambda):
+        return {}
+    given = function.node.args
+    found = {a.arg: a.annotation for a in (*given.posonlyargs, *given.args, *given.kwonlyargs)}
+    return {name: _parsed(one) for name, one in found.items() if one is not None}
+
+
+def classes_of_parameters(ctx: Interpreter, function: ir.Function, module: Obj) -> list[Obj]:
+    """Return the analysed classes that annotate the parameters of a function."""
+    return [cls for one in written(function).values() for cls in _classes(ctx, module, one)]
+
+
+def _parsed(annotation: ast.expr) -> ast.expr:
+    if isinstance(annotation, ast.Constant) and isinstance(annotation.value, str):
+        try:
+            return ast.parse(annotation.value, mode="eval").body
+        except SyntaxError:
+            return annotation
+    return annotation
+
+
+def _classes(ctx: Interpreter, module: Obj, annotation: ast.expr) -> list[Obj]:
+    """Return the analysed classes that an annotation names."""
+    found: dict[Obj, None] = {}
+    for path in _names(annotation):
+        value = pointer(module)
+        for part in path.split("."):
+            value = heap.read(ctx, value, part)
+        found.update(dict.fromkeys(o for o in value.objects if o.kind == "class"))
+    return list(found)
+
+
+def _names(annotation: ast.expr) -> Iterator[str]:
+    annotation = _parsed(annotation)
+    if isinstance(annotation, (ast.Name, ast.Attribute)):
+        yield ast.unparse(annotation)
+    elif isinstance(annotation, ast.BinOp):
+        yield from _names(annotation.left)
+        yield from _names(annotation.right)
+    elif isinstance(annotation, ast.Subscript) and _last_name(annotation.value) in SEQUENCES | WRAPPERS:
+        inner = annotation.slice
+        for one in inner.elts if isinstance(inner, ast.Tuple) else [inner]:
+            yield from _names(one)
+
+
+def _last_name(expr: ast.expr) -> str:
+    if isinstance(expr, ast.Attribute):
+        return expr.attr
+    return expr.id if isinstance(expr, ast.Name) else ""
