@@ -163,7 +163,7 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
         if obj.kind == "class":
             found = member(ctx, obj, index) if enumerates(obj) else pointer(obj)
             result = join(result, heap.arrive(ctx, found, base.deps))
-        elif not index.pts and (keys := index.keys()):
+        elif keys := index.item_keys():
             for key in keys:
                 result = join(result, heap.arrive(ctx, element(ctx, obj, key), base.deps))
         else:

@@ -52,10 +52,11 @@ def add_element(ctx: Interpreter, base: Value, value: Value) -> None:
 def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
     """Store into an element."""
     keys = ctx.use(index)
-    for obj in base.objects if keys else ():
+    classes = frozenset(o for o in index.pts if o.kind == "class")
+    for obj in base.objects if keys or classes else ():
         if obj.kind == "mapping":
-            weaken(ctx, obj, KEYS, Value(keys))
-    constants = index.keys()
+            weaken(ctx, obj, KEYS, Value(keys, classes))
+    constants = index.item_keys()
     if not constants or len(constants) > 1:
         _write_some(ctx, base, index, value)
         return
@@ -73,9 +74,9 @@ def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> Non
 
 def _write_some(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
     """Store into one of several elements: an element under a known key of a mapping, or else any element."""
-    constants = index.keys() or ()
+    constants = index.item_keys() or ()
     known = sorted(constants, key=repr) if len(constants) <= MAX_KEYS else []
-    mappings = frozenset(o for o in base.pts if o.kind == "mapping" and known and not index.pts)
+    mappings = frozenset(o for o in base.pts if o.kind == "mapping" and known)
     for obj in in_order(mappings):
         for key in known:
             weaken(ctx, obj, heap.attribute_of_item(obj, key), value)

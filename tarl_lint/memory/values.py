@@ -143,6 +143,13 @@ class Obj:
 Key = tuple[Obj, str]
 
 
+@dataclass(frozen=True, slots=True)
+class ClassKey:
+    """A class as the key of a mapping."""
+
+    key: object
+
+
 class Symbolic(str):
     """A string that contains a parameter's value, which only the launch of the node determines."""
 
@@ -194,6 +201,14 @@ class Value:
     def keys(self) -> Consts:
         """Return its constants; None if it may be anything else, such as a string that the launch determines."""
         return None if self.consts and any(type(c) is Symbolic for c in self.consts) else self.consts
+
+    def item_keys(self) -> Consts:
+        """Return its constants and classes as indices; None if it may be anything else."""
+        if not self.pts:
+            return self.keys()
+        return (
+            frozenset(ClassKey(o.key) for o in self.pts) if all(o.kind == "class" for o in self.pts) else None
+        )
 
     def consts_in(self, other: Value) -> bool:
         """Return whether the constants of this value are a subset of another's."""

@@ -114,7 +114,7 @@ def _prepare(
 
 def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> None:
     for obj in base.objects:
-        for key in index.keys() or (None,):
+        for key in index.item_keys() or (None,):
             updates.weaken(ctx, obj, ANY if key is None else item_field(key), news)
 
 

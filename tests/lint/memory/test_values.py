@@ -13,6 +13,7 @@ from tarl_lint.memory.values import (
     MAX_TEXTS,
     UNKNOWN,
     ClassInfo,
+    ClassKey,
     Obj,
     Symbolic,
     Value,
@@ -107,6 +108,14 @@ def test_a_value_has_no_known_strings_if_one_of_its_constants_depends_on_the_lau
     assert symbolic.keys() is None
     assert constants("a", 1).keys() == {"a", 1}
     assert constants("a", 1).names() == ()
+
+
+def test_constants_and_classes_are_keys_of_mappings():
+    first, second = made_class("First"), made_class("Second")
+    assert constants("a", 1).item_keys() == {"a", 1}
+    assert pointer(first).item_keys() == {ClassKey("First")}
+    assert Value(pts=frozenset([first, second])).item_keys() == {ClassKey("First"), ClassKey("Second")}
+    assert Value(pts=frozenset([first, Obj("instance", 1)])).item_keys() is None
 
 
 def test_the_constants_of_a_value_can_be_a_subset_of_those_of_another_value():
