@@ -1,11 +1,13 @@
 """Compare the flows that tarl-lint reports with those of workspaces that were written and judged without it.
 
-    python benchmarks/flows_written.py [benchmarks/flows_written/judge]... [--show]
+    python benchmarks/flows_written.py [benchmarks/flows_written_2/judge]... [--show]
 
 Each workspace is one text: its files follow each other, each after a line `--- path`. The JSON beside it was written
 before the linter was run. For each publish call, it names the subscriptions, services and look-ups of transforms that
 reach the call: with their data (`data`), by a decision (`control`), or only by the fact that a message arrives
-(`event`). `also` lists other kinds that count as right; `weak` marks what does not count.
+(`event`). `also` lists other kinds that count as right; `weak` marks what does not count, and `why` gives the reason.
+A line that subscribes to several topics has one source for each, `path:line topic`. In `flows_written_2`, sources of
+which only the arrival of a message matters are not listed: a report of one is surplus.
 
 The linter runs with `tf2 = true`. Responses of services and results of actions that a node asks for are sources for
 the author of the workspaces, but not for the linter; they are counted apart, as events are.
@@ -18,8 +20,9 @@ import json
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import Any, Final
 
@@ -51,7 +54,7 @@ class Counts:
         for one in judged:
             if one.get("weak"):
                 continue
-            name = "asked for" if _ASKS.search(texts.line(one["at"])) else one["kind"]
+            name = "asked for" if _ASKS.search(texts.line(one["at"].partition(" ")[0])) else one["kind"]
             kind = found.get(one["at"])
             self.of[name] += 1
             if kind in (one["kind"], *one.get("also", [])):
@@ -88,9 +91,10 @@ def reported(texts: Texts, known: Mapping[str, str]) -> Pairs:
 
 def _source(root: Path, flow: Flow, known: Mapping[str, str]) -> str:
     places = [_place(root, path, line) for path, line in _spots(flow.source)]
-    return next(
-        (one for one in places if one in known), next(iter(_near(places, known, flow.source)), places[0])
-    )
+    topics = {topic.lstrip("~/") for topic in flow.source.topics}
+    there = [one for place in places for one in known if one.partition(" ")[0] == place]
+    named = (one for one in there if known[one].lstrip("~/") in topics)
+    return next(chain(named, there, _near(places, known, topics), _elsewhere(known, topics), places))
 
 
 def _spots(source: Source) -> Iterator[tuple[str, int]]:
@@ -98,15 +102,21 @@ def _spots(source: Source) -> Iterator[tuple[str, int]]:
         yield span.path, span.line
 
 
-def _near(places: Sequence[str], known: Mapping[str, str], source: Source) -> Iterator[str]:
+def _near(places: Sequence[str], known: Mapping[str, str], topics: Set[str]) -> Iterator[str]:
     """Yield the judged sources within three lines that have the same topic; their author named another line."""
-    topics = {topic.lstrip("~/") for topic in source.topics}
     for place in places:
         path, _, number = place.rpartition(":")
         for one, topic in known.items():
-            other, _, line = one.rpartition(":")
+            other, _, line = one.partition(" ")[0].rpartition(":")
             if other == path and abs(int(line) - int(number)) <= 3 and topic.lstrip("~/") in topics:
                 yield one
+
+
+def _elsewhere(known: Mapping[str, str], topics: Set[str]) -> Iterator[str]:
+    """Yield the only judged source with the same topic; a wrapper may subscribe for the line that its author named."""
+    same = [one for one, topic in known.items() if topic.lstrip("~/") in topics]
+    if len(same) == 1:
+        yield from same
 
 
 def _place(root: Path, path: str, line: int) -> str:
