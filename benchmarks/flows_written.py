@@ -22,7 +22,6 @@ import tempfile
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
-from itertools import chain
 from pathlib import Path
 from typing import Any, Final
 
@@ -69,7 +68,7 @@ class Counts:
         self.of["calls, right"] += right and not surplus
 
 
-def reported(texts: Texts, known: Mapping[str, str]) -> Pairs:
+def reported(texts: Texts, known: Mapping[str, str], judged: Pairs) -> Pairs:
     """Return the reported pairs, with sources at the places that the judgement knows where these are the same."""
     pairs: Pairs = {}
     with tempfile.TemporaryDirectory() as place:
@@ -78,23 +77,26 @@ def reported(texts: Texts, known: Mapping[str, str]) -> Pairs:
         for finding in run(Options((root,), jobs=1, cache=False), Config(root=root, tf2=True)).findings:
             flow = finding.flow
             if flow is not None and not flow.sink.api.startswith(ANSWERS):
-                call, source = (
-                    _place(root, flow.sink.span.path, flow.sink.span.line),
-                    _source(root, flow, known),
-                )
+                call, kind = _place(root, flow.sink.span.path, flow.sink.span.line), KINDS[flow.kind]
                 kinds = pairs.setdefault(call, {})
-                kinds[source] = min(
-                    KINDS[flow.kind], kinds.get(source, "control"), key=["data", "control"].index
-                )
+                for source in _sources(root, flow, known, judged.get(call, {})):
+                    kinds[source] = min(kind, kinds.get(source, kind), key=["data", "control"].index)
     return pairs
 
 
-def _source(root: Path, flow: Flow, known: Mapping[str, str]) -> str:
+def _sources(root: Path, flow: Flow, known: Mapping[str, str], judged: Mapping[str, str]) -> Sequence[str]:
+    """Return the judged sources that a report means, or its place if the judgement does not know it.
+
+    If several topics share a line, a report means all that it names; if it names none, it means one of them.
+    """
     places = [_place(root, path, line) for path, line in _spots(flow.source)]
     topics = {topic.lstrip("~/") for topic in flow.source.topics}
-    there = [one for place in places for one in known if one.partition(" ")[0] == place]
-    named = (one for one in there if known[one].lstrip("~/") in topics)
-    return next(chain(named, there, _near(places, known, topics), _elsewhere(known, topics), places))
+    lines = ([one for one in known if one.partition(" ")[0] == place] for place in places)
+    if there := next(filter(None, lines), []):
+        kind = KINDS[flow.kind]
+        best = min(there, key=lambda one: (judged.get(one) != kind, one not in judged))
+        return [one for one in there if known[one].lstrip("~/") in topics] or [best]
+    return list(_near(places, known, topics))[:1] or list(_elsewhere(known, topics)) or places[:1]
 
 
 def _spots(source: Source) -> Iterator[tuple[str, int]]:
@@ -113,10 +115,11 @@ def _near(places: Sequence[str], known: Mapping[str, str], topics: Set[str]) -> 
 
 
 def _elsewhere(known: Mapping[str, str], topics: Set[str]) -> Iterator[str]:
-    """Yield the only judged source with the same topic; a wrapper may subscribe for the line that its author named."""
-    same = [one for one, topic in known.items() if topic.lstrip("~/") in topics]
-    if len(same) == 1:
-        yield from same
+    """Yield the judged sources of topics that have only one; a wrapper may subscribe for the line that is judged."""
+    for name in sorted(topics):
+        same = [one for one, topic in known.items() if topic.lstrip("~/") == name]
+        if len(same) == 1:
+            yield from same
 
 
 def _place(root: Path, path: str, line: int) -> str:
@@ -133,8 +136,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         counts = Counts()
         for file in sorted(folder.glob("*.json")):
             truth, texts = json.loads(file.read_text("utf-8")), Texts.read(file.with_suffix(".txt"))
-            pairs = reported(texts, truth["sources"])
-            for call, judged in truth["calls"].items():
+            calls = truth["calls"].items()
+            kinds = {call: {one["at"]: one["kind"] for one in judged} for call, judged in calls}
+            pairs = reported(texts, truth["sources"], kinds)
+            for call, judged in calls:
                 counts.compare(call, judged, pairs.get(call, {}), texts)
         print(folder.name)
         for name in ("calls, right", "data, found", "control, found", "event, found", "asked for, found"):
