@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import reprlib
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
@@ -17,6 +16,7 @@ from pytest_tarl.faults.installing import NO_FAULTS, Faults
 from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
 from pytest_tarl.formulas.episode import EpisodeFormulas
 from pytest_tarl.formulas.judging import Judged
+from pytest_tarl.rewards import checked_reward
 from pytest_tarl.sensors import Sensor, as_number
 from pytest_tarl.situation import Situation
 from pytest_tarl.starting import Starter
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from pytest_tarl.parameter_files import Parameters
     from pytest_tarl.ros import Bus, Ros
     from pytest_tarl.starting import Replacement
-
-LARGEST = 1e100  # maximum magnitude of a reward; flow values have the same limit
 
 
 class Tarl:
@@ -291,18 +289,7 @@ class Tarl:
 
         Raise SettingsError for a value that is not a finite number.
         """
-        if total is None and not parts:
-            raise SettingsError(
-                "tarl.reward needs a number, or parts such as tarl.reward(progress=0.2, clearance=-1)."
-            )
-        if self._requirements.rewarding:
-            raise SettingsError(
-                'The marker has reward="robustness", so the formulas give the reward of each step: remove '
-                "tarl.reward from the test, or reward from the marker."
-            )
-        given = {name: _reward(value) for name, value in parts.items()}
-        amount = _reward(sum(given.values()) if total is None else total)
-        self._recorder.reward(amount, given)
+        self._recorder.reward(*checked_reward(total, parts, by_formulas=self._requirements.rewarding))
         self._rewards += 1
 
     def at_end(self, call: Callable[[], object]) -> None:
@@ -360,15 +347,3 @@ class Tarl:
         if self._formulas.stepped():
             self._recorder.reward(0.0, {})
             self._rewards += 1
-
-
-def _reward(value: Any) -> float:
-    number = as_number(value)
-    if number is None or not abs(number) < math.inf:
-        raise SettingsError(f"tarl.reward got {reprlib.repr(value)}: rewards must be finite numbers.")
-    if abs(number) > LARGEST:
-        raise SettingsError(
-            f"tarl.reward got {reprlib.repr(value)}: rewards are at most {LARGEST:g} in magnitude, because sums of "
-            "their squares overflow. Scale the reward."
-        )
-    return number

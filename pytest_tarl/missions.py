@@ -13,7 +13,7 @@ from pytest_tarl.accounts import Account, Compared
 from pytest_tarl.analysed import analysed, instruments, passed_with_imports
 from pytest_tarl.boundary_repairs import Job, repair_boundary
 from pytest_tarl.comparing import run_online
-from pytest_tarl.design import AS_WRITTEN, fixture_path, replaced
+from pytest_tarl.design import AS_WRITTEN, fixture_path
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import FixtureError, SettingsError
 from pytest_tarl.files import slug, write_atomically
@@ -24,9 +24,9 @@ from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.spending import Stage
-from pytest_tarl.model import Repair
 from pytest_tarl.modules_of_tests import Digests, digests, remark
 from pytest_tarl.options import Options
+from pytest_tarl.other_recordings import adopted, lost_design, unchecked
 from pytest_tarl.recording import Progress, Tell, read_values, record
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repairing.request import Neighbour, Order
@@ -174,35 +174,23 @@ class Mission:
             return Account(tuple(f"  {note}" for note in result.notes), result.problem)
         written = self.fixture_path.relative_to(self.root)
         bounds = [f"  {told}" for told in guarantees.sentences(result.stated)] if result.stated else []
-        lines = [f"{self.test}: {result.line}", *bounds, f"  wrote {written}", *self._adopted(sites)]
+        lines = [
+            f"{self.test}: {result.line}",
+            *bounds,
+            f"  wrote {written}",
+            *adopted(self._designations, self.tarl, self.fixture_path, sites),
+        ]
         notes = (*result.notes, *self._silent(analysis))
         return Account((*lines, *(f"  {note}" for note in notes)))
+
+    @property
+    def _designations(self) -> dict[str, Designation]:
+        """Return the markers of the other tests of the run, by test."""
+        return {other.test: other.designation for other in self.others}
 
     def _test_side(self) -> Digests:
         """Return the hashes of the definitions in the test's modules."""
         return digests(self.test, self.root, [self.folder / node for node in self.designation.nodes])
-
-    def _adopted(self, sites: Plan) -> Iterator[str]:
-        """Yield lines that name the new design, and other tests of the node that still use the old design."""
-        design = fixtures.load(self.fixture_path).design
-        if not design:
-            return
-        named = " and ".join(repr(name) for name in design)
-        yield f"  the design now includes the drift {named}: runs without flags get it as tarl_drift, too"
-        nodes = {place.path for place in sites.places}
-        run = {other.test for other in self.others if {*design} <= other.designation.drifts.keys()}
-        for path in sorted((self.tarl / "utility").glob("*.npz")):
-            with suppress(FixtureError):
-                other = fixtures.load(path)
-                paths = {site.path for one in other.lists for site in one.sites}
-                told = (
-                    other.test == self.test or other.test in run
-                )  # the other test is recorded in this run, too
-                if not told and paths & nodes and not {*design} <= {*other.design}:
-                    yield (
-                        f"  {other.test} has a recording of the same node in the old world: declare {named} there, "
-                        "too, and record it under that drift"
-                    )
 
     def _online(self, rollout: Rollout, sites: Plan, analysis: Analysis, fixture: Fixture) -> Compared:
         online = run_online(
@@ -243,8 +231,8 @@ class Mission:
             *comparison.notes,
             *remark(fixture.world, self._test_side()),
             *self._silent(analysis),
-            *self._not_run(comparison.repair),
-            *self._design_lost(fixture),
+            *unchecked(comparison.repair, {self.test, *self._designations}, self.tarl),
+            *lost_design(self.designation, fixture, self.drift),
         )
         flags = self.options.flags if self.stage is None else self.options.alone(episodes["online"]).flags
         node = self._from_start(self.node) if "[" in self.test else ""
@@ -284,15 +272,6 @@ class Mission:
         unwritten = deliver_repairs(replace(found.found, repairs=told.attempts), self.root)
         return Account((*found.lines, *told.lines, *unwritten), found.problem, told.patch, told.interrupted)
 
-    def _design_lost(self, fixture: Fixture) -> Iterator[str]:
-        """Yield a note if a scenario replaces the design's drift because the two cannot be merged."""
-        lost = replaced(self.designation.drifts, fixture.design, self.drift)
-        if lost:
-            yield (
-                f"the design has the drift {lost!r}, but tarl_drift held only {self.drift!r}: write both as "
-                "dictionaries, so that TARL merges them"
-            )
-
     def _neighbours(self) -> list[Neighbour]:
         """Return the other tests of the run that have a readable recording."""
         found = []
@@ -308,24 +287,6 @@ class Mission:
                 drift = self.drift if declared is not None and declared.permanent else None
                 found.append(Neighbour(other.test, nodes, other.rollout, fixture, margin, drift))
         return found
-
-    def _not_run(self, found: Repair | None) -> Iterator[str]:
-        """Yield a note for each recorded test of a repaired file against which this run did not check the repair."""
-        if found is None or not found.accepted:
-            return
-        run, edited = {self.test, *(other.test for other in self.others)}, {edit.path for edit in found.edits}
-        for path in sorted((self.tarl / "utility").glob("*.npz")):
-            try:
-                fixture = fixtures.load(path)
-            except FixtureError as problem:
-                yield (
-                    f"{problem.what} If the test of this recording runs the same node, the repair was not checked "
-                    "on that test"
-                )
-                continue
-            sites = {site.path for one in fixture.lists for site in one.sites}
-            if fixture.test not in run and sites & edited:
-                yield f"{fixture.test} has a recording of the same node but was not in this run: run it, too"
 
     def _fixture(self) -> Fixture:
         if not self.fixture_path.exists():

@@ -30,7 +30,8 @@ from stage import HERE, Stage, tasks_in, visit
 
 from pytest_tarl.errors import RepairError, TarlError
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.mutate import Mutation, is_integral, mutations, rewrite
+from pytest_tarl.patching.mutate import Mutation, is_integral, mutations
+from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.recording import sound
 from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.seeds import episode_seeds

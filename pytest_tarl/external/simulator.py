@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
 import os
 import queue
 from collections.abc import Callable, Sequence
@@ -11,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.errors import SimulatorError, SimulatorLostError
 from pytest_tarl.external.arguments import Call, Setup
-from pytest_tarl.external.client import Client, Event
+from pytest_tarl.external.client import Event
+from pytest_tarl.external.kept_simulator import KEPT
 from pytest_tarl.external.plain import filled, to_plain
 from pytest_tarl.external.shutdown_output import without_interrupts
 from pytest_tarl.ros.clock import nanoseconds, seconds
@@ -22,31 +22,6 @@ if TYPE_CHECKING:
     from pytest_tarl.ros import Ros
 
 SETTLED = 0.3  # a simulator counts as started if the ROS graph has not changed for this time (s of real time)
-
-
-class Kept:
-    """The guardian of this process, and the simulator that it keeps running for further episodes."""
-
-    def __init__(self) -> None:
-        self.client: Client | None = None
-        self.running: Setup | None = None
-
-    def opened(self) -> Client:
-        """Return the guardian; start it on first use."""
-        if self.client is None or not self.client.alive:
-            self.close()
-            self.client = Client()
-        return self.client
-
-    def close(self) -> None:
-        """End the guardian and the simulator."""
-        if self.client is not None:
-            self.client.close()
-        self.client = self.running = None
-
-
-KEPT = Kept()
-atexit.register(KEPT.close)
 
 
 class Simulator:

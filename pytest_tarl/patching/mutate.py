@@ -1,29 +1,21 @@
-"""Mutations: new values of constants at their uses, written into the source exactly as in the later patch."""
+"""Mutations: new values of constants at their uses; `rewriting.py` writes them into the source."""
 
 from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.charts import Chart, distance
 from pytest_tarl.patching.definitions import Place
-from pytest_tarl.patching.definitions import edits as definition_edits
-from pytest_tarl.patching.document import Document, Edit, apply_edits, apply_plain_edits, document
-from pytest_tarl.patching.expressions import counting, negated, number, rounded, scaled, shifted
+from pytest_tarl.patching.document import Document, document
+from pytest_tarl.patching.expressions import counting, rounded
 from pytest_tarl.patching.fields import in_integer_field
-from pytest_tarl.patching.guards import Reading, always, condition, held
-from pytest_tarl.patching.statements import Change, branched, choices, doubled, lazy, neighbours, replaced
-from pytest_tarl.patching.structures import Form, form_edits
-from pytest_tarl.patching.subscriptions import Subscriptions
-from pytest_tarl.patching.templates import Template
-from pytest_tarl.sensors import Sensor
-from tarl_lint.model import Operand, SiteId, Span
+from pytest_tarl.patching.structures import Form
+from tarl_lint.model import Operand
 
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
@@ -101,8 +93,20 @@ def step_of(mutation: Mutation) -> float | None:
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:
     """Return whether an operand must stay an integer: an index, a length, a compared code, or an integer field."""
-    source = _document(analysis, operand.span.path)
-    return isinstance(operand.value, int) and _whole(source, source.find(operand.span))
+    source = analysed_document(analysis, operand.span.path)
+    return isinstance(operand.value, int) and needs_integer(source, source.find(operand.span))
+
+
+def needs_integer(source: Document, node: ast.expr) -> bool:
+    """Return whether a place needs an integer."""
+    return counting(source, node) or in_integer_field(source, node)
+
+
+def analysed_document(analysis: Analysis, path: str) -> Document:
+    """Return an analysed file as a document. Raise RepairError if the file was not analysed."""
+    if path not in analysis.sources:
+        raise RepairError(f"{path} is not among the analysed files: add it to the nodes of the test.")
+    return document(path, analysis.sources[path])
 
 
 def redefinition(mutation: Mutation) -> float | int | bool:
@@ -119,41 +123,6 @@ def redefinition(mutation: Mutation) -> float | int | bool:
     return rounded(old * (1.0 + (mutation.value - 1.0) * share) if share != 1.0 else old * mutation.value)
 
 
-def rewrite(
-    analysis: Analysis,
-    mutations: Sequence[Mutation],
-    guard: Guard,
-    topics: Mapping[str, str],
-    texts: Mapping[str, str] = MappingProxyType({}),
-) -> dict[str, str]:
-    """Apply mutations under a guard; return the new text of every changed file, by path.
-
-    `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that must be added. `texts`
-    holds further files that define constants. Raise RepairError if a change cannot be written.
-    """
-    conditions = Conditions(analysis, guard, topics)
-    edits: dict[str, list[Edit]] = {}
-    here = [mutation for mutation in mutations if mutation.place is None and mutation.form is None]
-    for source, statements in _by_file(analysis, here):
-        edits[source.path] = list(_file_edits(source, statements, conditions))
-    for path, places in _redefined(mutations).items():
-        text = analysis.sources.get(path) or texts[path]
-        edits.setdefault(path, []).extend(definition_edits(places, text))
-    for source, node, form, values, site in _formed(analysis, mutations):
-        statement = source.statement(node)
-        condition = conditions.at(source, site, statement)
-        sensor = conditions.value(form.sensor, source, site, statement) if form.sensor is not None else ""
-        edits.setdefault(source.path, []).extend(form_edits(source, node, form, values, condition, sensor))
-    for path, added in conditions.subscriptions.edits().items():
-        edits[path] = [*added, *edits.get(path, [])]
-    return {
-        path: apply_edits(_document(analysis, path), edits[path])
-        if path in analysis.sources
-        else apply_plain_edits(path, texts[path], edits[path])
-        for path in sorted(edits)
-    }
-
-
 def form_values(mutation: Mutation) -> dict[str, float]:
     """Return the parameters of a structural mutation; the one that is searched is scaled by the mutation's value."""
     if mutation.form is None:
@@ -162,173 +131,6 @@ def form_values(mutation: Mutation) -> dict[str, float]:
     if mutation.form.parameter:
         values[mutation.form.parameter] = rounded(values[mutation.form.parameter] * float(mutation.value))
     return values
-
-
-def _formed(
-    analysis: Analysis, mutations: Sequence[Mutation]
-) -> Iterator[tuple[Document, ast.expr, Form, dict[str, float], SiteId]]:
-    """Yield each form (template at an expression) once, with the parameters from all its mutations."""
-    found: dict[tuple[Span, Template], tuple[Mutation, dict[str, float]]] = {}
-    for mutation in mutations:
-        if mutation.form is not None:
-            key = (mutation.operand.span, mutation.form.template)
-            _, values = found.setdefault(key, (mutation, dict(mutation.form.defaults)))
-            moved = form_values(mutation)
-            values |= {name: moved[name] for name in moved if name == mutation.form.parameter}
-    for (span, _), (mutation, values) in found.items():
-        if mutation.form is not None:
-            source = _document(analysis, span.path)
-            yield source, source.find(span), mutation.form, values, mutation.operand.site
-
-
-def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | int | bool]]:
-    """Return the new numbers at definitions, by file."""
-    found: dict[str, dict[Place, float | int | bool]] = {}
-    for mutation in mutations:
-        if mutation.place is not None:
-            found.setdefault(mutation.place.path, {})[mutation.place] = redefinition(mutation)
-    return found
-
-
-def guard_text(
-    guard: Guard, analysis: Analysis, mutations: Sequence[Mutation], topics: Mapping[str, str]
-) -> str:
-    """Return the Python code of the guard at the first mutation, or "" if the guard always holds."""
-    conditions = Conditions(analysis, guard, topics)
-    for source, node, _, _, site in _formed(analysis, mutations[:1]):
-        return conditions.at(source, site, source.statement(node))
-    for source, statements in _by_file(analysis, mutations[:1]):
-        for statement, uses in statements:
-            return conditions.at(source, uses[0].site, _place(source, statement, uses)(uses[0]))
-    return ""
-
-
-@dataclass(frozen=True)
-class Use:
-    """A change of one use, with its site (statement)."""
-
-    site: SiteId
-    change: Change
-
-
-class Conditions:
-    """The Python code of a guard at every place that checks it, and the subscriptions that the guard needs."""
-
-    def __init__(self, analysis: Analysis, guard: Guard, topics: Mapping[str, str]) -> None:
-        self._analysis = analysis
-        self._guard = guard
-        self._topics = topics
-        self.subscriptions = Subscriptions(analysis, topics)
-
-    def at(self, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return the guard as Python at a place. Raise RepairError if a sensor's value is not available there."""
-        wanted = [each for each in self._guard.conjuncts if not always(each)]
-        readings = {each.sensor.name: self._reading(each, source, site, place) for each in wanted}
-        return condition(self._guard, readings, self._topics)
-
-    def value(self, sensor: Sensor, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return a sensor's value at a place as Python; it is 0 before the first message. Raise RepairError."""
-        reading = self._reading(Conjunct(sensor, math.inf, math.inf), source, site, place)
-        if reading.absent and reading.absent != reading.code:
-            raise RepairError(
-                f"Sensor {sensor.name!r} cannot be read at {site.text!r} before its first message."
-            )
-        return f"{reading.code} or 0.0" if reading.absent else reading.code
-
-    def _reading(self, conjunct: Conjunct, source: Document, site: SiteId, place: ast.AST) -> Reading:
-        sensor = conjunct.sensor
-        if not sensor.guardable:
-            raise RepairError(
-                f"Sensor {sensor.name!r} is computed or observed by the test only, so the node cannot read it: give "
-                "the sensor a topic and a dotted field, or the node's variable that holds its value (expr=…), or leave "
-                "it out of the guard."
-            )
-        known = (
-            self._analysis.holders(sensor.topic, sensor.path, site) if sensor.topic and sensor.path else ()
-        )
-        reading = held(source, place, (sensor.expr, *known) if sensor.expr else known, conjunct)
-        if reading is None and not sensor.path:
-            raise RepairError(
-                f"Sensor {sensor.name!r} (expr={sensor.expr!r}) cannot be read at {site.text!r}, or its initial value "
-                "makes the guard true before the first message."
-            )
-        return reading or self.subscriptions.reading(sensor, site, source, place)
-
-
-def _file_edits(
-    source: Document, statements: Sequence[tuple[ast.stmt, list[Use]]], conditions: Conditions
-) -> Iterator[Edit]:
-    """Yield the edits of one file: plain ones, conditional expressions, and branches around statements."""
-    twice: list[tuple[ast.stmt, list[Change], str]] = []
-    for statement, uses in statements:
-        changes = [use.change for use in uses]
-        place = _place(source, statement, uses)
-        tests = [conditions.at(source, use.site, place(use)) for use in uses]
-        if not tests[0]:
-            yield from replaced(source, changes)
-        elif doubled(source, statement, changes):
-            twice.append((statement, changes, tests[0]))
-        else:
-            yield from choices(source, statement, changes, tests)
-    for group in neighbours(source, twice):
-        yield branched(source, [(statement, changes) for statement, changes, _ in group], group[0][2])
-
-
-def _by_file(
-    analysis: Analysis, mutations: Sequence[Mutation]
-) -> list[tuple[Document, list[tuple[ast.stmt, list[Use]]]]]:
-    """Return the mutated uses by file and statement, in the order of the text."""
-    files: dict[str, dict[ast.stmt, list[Use]]] = {}
-    for mutation in sorted(mutations, key=lambda each: each.operand.span):
-        source = _document(analysis, mutation.operand.span.path)
-        use = Use(mutation.operand.site, _change(source, mutation))
-        files.setdefault(source.path, {}).setdefault(source.statement(use.change.node), []).append(use)
-    return [(_document(analysis, path), list(statements.items())) for path, statements in files.items()]
-
-
-def _place(source: Document, statement: ast.stmt, uses: Sequence[Use]) -> Callable[[Use], ast.AST]:
-    """Return a function that gives the place where a use checks the condition: a statement, lambda or generator."""
-    if doubled(source, statement, [use.change for use in uses]):
-        return lambda _: statement
-    return lambda use: lazy(source, use.change.node) or statement
-
-
-def _change(source: Document, mutation: Mutation) -> Change:
-    """Return the replacement of an operand."""
-    operand, value = mutation.operand, mutation.value
-    node = source.find(operand.span)
-    integral = isinstance(operand.value, int) and _whole(source, node)
-    if operand.literal:
-        _check_literal(node, operand)
-        new = value if isinstance(value, bool) or not integral else round(value)
-        return Change(node, number(new))
-    code = source.source(node)
-    if isinstance(operand.value, bool):
-        return Change(node, negated(code))
-    if operand.value == 0:
-        return Change(node, shifted(code, round(value) if integral else value))
-    if integral:
-        return Change(node, f"round({scaled(code, value)})")
-    factored = operand.value is not None
-    rest = scaled(code, value).removeprefix(number(value))
-    return Change(node, scaled(code, value), number(value) if factored else "", rest)
-
-
-def _whole(source: Document, node: ast.expr) -> bool:
-    """Return whether a place needs an integer."""
-    return counting(source, node) or in_integer_field(source, node)
-
-
-def _check_literal(node: ast.expr, operand: Operand) -> None:
-    try:
-        written = ast.literal_eval(node)
-    except ValueError:
-        written = None
-    if written != operand.value:
-        raise RepairError(
-            f"{operand.span.path}:{operand.span.line} holds {ast.unparse(node)}, but the analysis found "
-            f"{operand.code}: if the file was edited during the run, run again."
-        )
 
 
 def _literal(operand: Operand, value: float, wanted: float, integral: bool) -> Mutation | None:
@@ -353,9 +155,3 @@ def _step(factor: float) -> float:
     if size < 1e-9:
         return 0.0
     return math.copysign(1.0, factor) * distance(size)
-
-
-def _document(analysis: Analysis, path: str) -> Document:
-    if path not in analysis.sources:
-        raise RepairError(f"{path} is not among the analysed files: add it to the nodes of the test.")
-    return document(path, analysis.sources[path])

@@ -15,8 +15,9 @@ from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Attempt, Comparison, Edit, Guarantee, Partial, Repair
 from pytest_tarl.patching import patch
 from pytest_tarl.patching.merge import CONSTANT
-from pytest_tarl.patching.mutate import Mutation, guard_text
+from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.reading import read
+from pytest_tarl.patching.rewriting import guard_text
 from pytest_tarl.patching.suggesting import sarif
 from pytest_tarl.patching.verify import nothing_lost
 from pytest_tarl.repairing.accepting import Accepted

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from pytest_tarl.errors import RepairError, StaleTextError, TarlError
 from pytest_tarl.model import Guard
-from pytest_tarl.patching.mutate import Mutation, is_integral, mutations, rewrite
+from pytest_tarl.patching.mutate import Mutation, is_integral, mutations
+from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.recording import sound
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.rollout import Ahead, EpisodePlan, EpisodeRun, Rollout

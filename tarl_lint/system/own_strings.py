@@ -7,16 +7,16 @@ name. If all parts are strings of the program, the program still states every na
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Final
 
 from tarl_lint.evidence import Outline
+from tarl_lint.system.bound_values import Function, binds, bound_values, is_empty, parameters, parts
 from tarl_lint.trees import last_name
 
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
-_Scope = _Function | ast.Lambda | None
-# functions and methods whose result is made of their arguments and of the object whose method they are
+_Scope = Function | ast.Lambda | None
+# functions and methods whose result consists of their arguments and, for a method, of its object
 _MADE: Final = frozenset(
     ["sorted", "reversed", "enumerate", "zip", "list", "tuple", "set", "frozenset", "dict", "str", "chain", "product",
      "items", "keys", "values", "format", "join", "get", "copy", "range", "len", "int", "OrderedDict"]
@@ -60,8 +60,8 @@ class OwnStrings:
                 return self._call(expr, outline, seen)
             case ast.List(elts=elements) | ast.Tuple(elts=elements) | ast.Set(elts=elements):
                 return self._elements(elements, outline, seen)
-        parts = _parts(expr)
-        return bool(parts) and all(self._own(one, outline, seen) for one in parts)
+        found = parts(expr)
+        return bool(found) and all(self._own(one, outline, seen) for one in found)
 
     def _elements(self, elements: Sequence[ast.expr], outline: Outline, seen: frozenset[object]) -> bool:
         """Return whether a list or tuple is made of strings; a default beside a name does not count."""
@@ -94,7 +94,7 @@ class OwnStrings:
             (one, outline)
             for outline in self._outlines
             for one in outline.definitions
-            if isinstance(one, _Function) and one.name == name
+            if isinstance(one, Function) and one.name == name
         ]
         if len(found) != 1 or ("function", name) in seen:
             return False
@@ -123,7 +123,7 @@ class OwnStrings:
             return False
         if expr.value.id in ("self", "cls") or expr.value.id in self._classes:
             values = [(one, where) for where in self._outlines for one in where.assigned.get(expr.attr, [])]
-            filled = [(one, where) for one, where in values if not _empty(one)]
+            filled = [(one, where) for one, where in values if not is_empty(one)]
             if len(filled) < len(values) and self._changed(expr.attr):
                 return False
             return bool(filled) and all(self._own(one, where, after) for one, where in filled)
@@ -160,24 +160,27 @@ class OwnStrings:
         """Return whether all values that a variable may have are own."""
         scope: _Scope = next(
             (one for one in outline.around(name) if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-             and _binds(one, name.id)), None)  # fmt: skip
+             and binds(one, name.id)), None)  # fmt: skip
         key = (name.id, id(scope))
         if key in seen:
             return True
         after = seen | {key}
         if isinstance(scope, ast.Lambda):
             return False
-        if scope is not None and name.id in _arguments(scope) and not self._passed(scope, name.id, after):
+        if scope is not None and name.id in parameters(scope) and not self._passed(scope, name.id, after):
             return False
         places = [(outline, scope)] if scope is not None else [(one, None) for one in self._outlines]
-        bound = [(one, where) for where, inside in places for one in _values(where.tree if inside is None else inside,
-                                                                            name.id, self._texts)]  # fmt: skip
-        passed = scope is not None and name.id in _arguments(scope)
+        bound = [
+            (one, where)
+            for where, inside in places
+            for one in bound_values(where.tree if inside is None else inside, name.id, self._texts)
+        ]
+        passed = scope is not None and name.id in parameters(scope)
         return (passed or bool(bound)) and all(
             value is not None and self._own(value, where, after) for value, where in bound
         )
 
-    def _passed(self, function: _Function, name: str, seen: frozenset[object]) -> bool:
+    def _passed(self, function: Function, name: str, seen: frozenset[object]) -> bool:
         """Return whether all calls of a function pass own strings for a parameter."""
         plain = [*function.args.posonlyargs, *function.args.args]
         names = [one.arg for one in plain]
@@ -197,80 +200,3 @@ class OwnStrings:
             if spread or value is None or not self._own(value, outline, seen):
                 return False
         return bool(calls)
-
-
-def _empty(expr: ast.expr) -> bool:
-    """Return whether a value is an empty table, list or tuple, which a derived class replaces."""
-    match expr:
-        case ast.Dict(keys=[]) | ast.List(elts=[]) | ast.Tuple(elts=[]):
-            return True
-    return False
-
-
-def _parts(expr: ast.expr) -> list[ast.expr]:
-    """Return the parts of which the strings of an expression are made; none if they are unknown."""
-    match expr:
-        case ast.Subscript(value=value):
-            return [value]
-        case ast.Dict(keys=keys, values=values):
-            return [one or spread for one, spread in zip(keys, values, strict=True)]
-        case (
-            ast.ListComp(elt=made)
-            | ast.SetComp(elt=made)
-            | ast.GeneratorExp(elt=made)
-            | ast.DictComp(key=made)
-        ):
-            return [made]
-        case ast.IfExp(body=body, orelse=otherwise):
-            return [body, otherwise]
-        case ast.JoinedStr() | ast.BinOp() | ast.BoolOp() | ast.FormattedValue() | ast.Starred():
-            return [one for one in ast.iter_child_nodes(expr) if isinstance(one, ast.expr)]
-    return []
-
-
-def _arguments(function: _Function) -> list[str]:
-    args = function.args
-    return [one.arg for one in (*args.posonlyargs, *args.args, *args.kwonlyargs)]
-
-
-def _binds(function: _Function | ast.Lambda, name: str) -> bool:
-    args = function.args
-    if name in [one.arg for one in (*args.posonlyargs, *args.args, *args.kwonlyargs)]:
-        return True
-    return any(
-        isinstance(one, ast.Name) and one.id == name and isinstance(one.ctx, ast.Store)
-        for one in ast.walk(function)
-    )
-
-
-def _values(inside: ast.AST, name: str, texts: Collection[str]) -> Iterator[ast.expr | None]:
-    """Yield the values that statements bind to a name: assigned ones, and what loops iterate over; None if unknown.
-
-    `texts` are names of variables that hold one text.
-    """
-    for node in ast.walk(inside):
-        match node:
-            case ast.Assign(targets=targets, value=value) if any(_names(one, name) for one in targets):
-                yield value
-            case ast.AnnAssign(target=target, value=value) | ast.AugAssign(target=target, value=value) if (
-                _names(target, name)
-            ):
-                yield value
-            case ast.NamedExpr(target=target, value=value) if _names(target, name):
-                yield value
-            case ast.For(target=target, iter=over) | ast.comprehension(target=target, iter=over) if _names(
-                target, name
-            ):
-                # the letters of a text in a variable are no strings of the program
-                yield None if last_name(over) in texts else over
-            case ast.withitem(optional_vars=target) if target is not None and _names(target, name):
-                yield None
-
-
-def _names(target: ast.expr, name: str) -> bool:
-    """Return whether a target binds the name itself; `name[0] = 1` does not."""
-    if isinstance(target, ast.Tuple | ast.List):
-        return any(_names(one, name) for one in target.elts)
-    if isinstance(target, ast.Starred):
-        return _names(target.value, name)
-    return isinstance(target, ast.Name) and target.id == name

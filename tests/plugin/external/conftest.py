@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from pytest_tarl.external import kept_simulator
 from pytest_tarl.external import simulator as module
 from pytest_tarl.external.arguments import Call, Setup
 from pytest_tarl.external.simulator import Simulator
@@ -74,10 +75,10 @@ class Guardian:
 @pytest.fixture
 def guardian(monkeypatch: pytest.MonkeyPatch) -> Guardian:
     made = Guardian()
-    kept = module.Kept()
+    kept = kept_simulator.Kept()
     kept.client = made  # type: ignore[assignment]
     monkeypatch.setattr(module, "KEPT", kept)
-    monkeypatch.setattr(module, "Client", Guardian)
+    monkeypatch.setattr(kept_simulator, "Client", Guardian)
     monkeypatch.setattr(module, "SETTLED", 0.01)
     return made
 

@@ -11,7 +11,8 @@ import pytest
 
 from pytest_tarl.instrumentation.datafiles import reading
 from pytest_tarl.patching.definitions import Place, configured, defined, package_files, parameter
-from pytest_tarl.patching.mutate import Mutation, mutations, rewrite
+from pytest_tarl.patching.mutate import Mutation, mutations
+from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials

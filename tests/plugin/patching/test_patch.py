@@ -14,8 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.mutate import Mutation, rewrite
+from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.patch import apply_command, blob_id, readable, unified_diff, write
+from pytest_tarl.patching.rewriting import rewrite
 from tests.plugin.patching.repairs import MUD, TOPICS, HandMade, TinyRos, odometry, subscribing, terrain
 
 HEADER = [

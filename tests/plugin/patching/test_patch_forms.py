@@ -10,7 +10,8 @@ from textwrap import indent
 
 import pytest
 
-from pytest_tarl.patching.mutate import Mutation, rewrite
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.rewriting import rewrite
 from tests.plugin.patching.repairs import MUD, TOPICS, HandMade, TinyRos, odometry, subscribing, terrain
 from tests.plugin.patching.test_patch import patched, repository, run, shell
 from tests.plugin.patching.test_subscriptions import NODES

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from pytest_tarl import Sensor
-from pytest_tarl.patching.mutate import rewrite
+from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.patching.templates import SHIPPED, template
 from pytest_tarl.repairing import structural, template_forms, typical_sizes
 from pytest_tarl.repairing.structural import Structures

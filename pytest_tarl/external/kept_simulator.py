@@ -1,0 +1,33 @@
+"""The simulator that runs on after its episode, so that later episodes can reset it instead of starting a new one."""
+
+from __future__ import annotations
+
+import atexit
+
+from pytest_tarl.external.arguments import Setup
+from pytest_tarl.external.client import Client
+
+
+class Kept:
+    """The guardian of this process, and the simulator that it keeps running for further episodes."""
+
+    def __init__(self) -> None:
+        self.client: Client | None = None
+        self.running: Setup | None = None
+
+    def opened(self) -> Client:
+        """Return the guardian; start it on first use."""
+        if self.client is None or not self.client.alive:
+            self.close()
+            self.client = Client()
+        return self.client
+
+    def close(self) -> None:
+        """End the guardian and the simulator."""
+        if self.client is not None:
+            self.client.close()
+        self.client = self.running = None
+
+
+KEPT = Kept()
+atexit.register(KEPT.close)
