@@ -130,7 +130,7 @@ ALL_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     "Temperature": HEADED | _fields("temperature variance"),
     "TimeReference": HEADED | _fields("time_ref source"),
 }
-# the above, and the messages for commands and displays of other packages
+# ALL_FIELDS, and the command and display messages of other packages
 KNOWN_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     **ALL_FIELDS,
     "JointTrajectory": HEADED | _fields("joint_names points"),

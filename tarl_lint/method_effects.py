@@ -20,10 +20,10 @@ REGISTERS: Final = re.compile(
 )  # names of methods that store callables in order to call them later
 OBSERVES: Final = re.compile(
     r"(?:subscribe|on|once|connect|listen|observe|add_?(?:[Ll]istener|[Oo]bserver))(?:_|[A-Z]|$)"
-)  # names of methods that register callables which get what the object gets
+)  # names of methods that register callables; the callables receive the data that the object receives
 DERIVES: Final = re.compile(
     r"(?:pipe|map|flat_map|select|where|share|merge|throttle|debounce|buffer)(?:_|[A-Z]|$)"
-)  # names of methods that return a stream of what their object gets later
+)  # names of methods that return a stream of the data that their object receives later
 WHOLE: Final = re.compile(
     r"(?:model_|to_?|as_?)?(?:json|dict|yaml|xml|bytes|string|msg|message|proto|copy|tuple|dump)(?:_json|_python|s)?$"
     r"|Serialize\w*$|serialize$|encode$|pack$"

@@ -19,7 +19,8 @@ class Surroundings:
     def __init__(self, texts: Texts) -> None:
         self.texts = texts
         self._above: dict[int, Written | None] = {}  # statement → nearest enclosing loop or guard
-        self._known: dict[tuple[Frame, int], tuple[Enclosing, Before]] = {}  # by frame and statement
+        # results by frame and statement
+        self._known: dict[tuple[Frame, int], tuple[Enclosing, Before]] = {}
 
     def registration(self, origin: SourceRecord) -> Written | None:
         """Return the statement that subscribes."""

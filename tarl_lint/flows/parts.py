@@ -26,14 +26,16 @@ class Part:
     nodes: Set[int] = frozenset()
     statement_of: dict[int, int] = field(default_factory=dict)  # node → statement
     written: dict[int, Written] = field(default_factory=dict)
-    placed: dict[tuple[Frame, int], Written] = field(default_factory=dict)  # by frame and statement
+    # (frame, `id` of a statement) → the statement as written
+    placed: dict[tuple[Frame, int], Written] = field(default_factory=dict)
     precedence: Precedence = field(default_factory=Precedence)
     turns: Pairs = field(default_factory=dict)  # dependencies on earlier iterations of a loop
     function: dict[int, object] = field(default_factory=dict)  # statement → its function
     passed: dict[int, Written] = field(
         default_factory=dict
     )  # calls between conditions and the values they choose
-    entrances: Pairs = field(default_factory=dict)  # order of conditions, these calls, and values
+    # pairs that order conditions, the calls between them, and the values they choose
+    entrances: Pairs = field(default_factory=dict)
 
     def copy(self) -> Part:
         """Return an equal part that can be extended without a change of this one."""

@@ -12,8 +12,8 @@ MAX_CALLS = 24  # maximum depth of the call stack; deeper calls are treated as l
 MAX_DELEGATIONS = 6  # maximum number of calls of one method, each for another object, on the call stack
 READS_PER_STATEMENT = 20  # number of object reads or added edges that count as one statement of work
 VALUES_PER_STATEMENT = 40  # number of values shared at a wait that count as one statement of work
-# number of values looked up, compared or copied in bulk that take as long as one statement (measured); they count
-# only for the limits, not for the order of the roots
+# number of values that take as long as one statement to look up, compare or copy in bulk (measured); this work counts
+# towards the limits, but does not change the order of the roots
 VALUES_HANDLED = 300
 MAX_FRAMES = 20_000  # maximum number of call contexts of a program
 # maximum number of statements in one run of a root; afterwards, calls are treated as library calls
@@ -26,8 +26,8 @@ SEPARATE_CALLS = 8  # maximum number of calls of a function in separate contexts
 PROGRAM_LIMIT = 80_000
 # maximum number of statements in one run of a root once its program has reached PROGRAM_LIMIT
 LATE_RUN_LIMIT = 400
-# maximum number of statements in an irrelevant call: one that passes no data among its arguments and leads into a
-# module that neither subscribes nor publishes
+# maximum number of statements in an irrelevant call: a call that passes no data and leads into a module that neither
+# subscribes nor publishes
 IRRELEVANT_CALL_LIMIT = 200
 IRRELEVANT_CALLS_LIMIT = 1_000  # maximum number of statements in all irrelevant calls of one run of a root
 MAX_ROUNDS = 40  # maximum number of fixpoint rounds over the roots

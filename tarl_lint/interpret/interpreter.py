@@ -61,7 +61,8 @@ class Interpreter:
         self.frames: dict[Hashable, Frame] = {}
         self.frame_numbers: dict[Hashable, int] = {}
         self.stack: list[Frame] = []
-        self.building: list[tuple[Obj, int]] = []  # objects in their `__init__`, with the height of the stack
+        # (object whose `__init__` is running, height of the call stack)
+        self.building: list[tuple[Obj, int]] = []
         self.senders: dict[Obj, object] = {}  # library objects that publish → their description
         self.delivered: frozenset[Obj] = frozenset()  # messages delivered in this run
         self.nullness = NullnessFacts()
@@ -81,7 +82,8 @@ class Interpreter:
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.given: set[Obj] = set()  # objects among the arguments of roots
         self.passed: dict[Hashable, list[Value]] = {}  # root → its arguments
-        self.sources: dict[Hashable, SourceRecord] = {}  # by path and position, for a launch also by context
+        # sources by path and position; for a launched node, also by context
+        self.sources: dict[Hashable, SourceRecord] = {}
         self.sinks: dict[Hashable, SinkRecord] = {}
         self.called: set[tuple[str, int]] = set()  # called functions: module, line
         # for each instance made by methods: allocation sites and objects, from the first maker to the instance itself

@@ -309,7 +309,7 @@ class Class(Stmt):
     bases: Sequence[Expr]
     body: Sequence[Stmt]
     decorators: Sequence[Expr] = ()
-    fields: tuple[str, ...] = ()  # names that the body annotates
+    fields: tuple[str, ...] = ()  # names with an annotation in the body
     keywords: Sequence[tuple[str, Expr]] = ()  # except the metaclass
     control: object = None
 

@@ -63,5 +63,5 @@ class Split:
 
     laden: tuple[Obj, ...]
     empty: frozenset[Obj]
-    doubted: list[Obj]  # the empty objects of which it is not recorded yet that this run found no data inside
+    doubted: list[Obj]  # objects without data for which this run has not recorded yet that they are empty
     loaded: int  # value of `Shared.loaded` when the set was split

@@ -31,7 +31,8 @@ LENGTH = "<length>"  # field of a container: dependencies of its length
 HELD = "<callables>"  # field of a library object: callables that were passed to it
 RESULT = "<result>"  # field of a future that holds its result
 SENT = "<sent>"  # field of a port, file or socket: data written to it
-MEMBERS = "members"  # name of a sequence of the known names, or names and values, of an object's attributes
+# name of a sequence that holds the known attribute names of an object, or (name, value) pairs
+MEMBERS = "members"
 GENERATOR = "generator"  # name of a sequence that represents a generator
 METHODS_OF = {
     "publisher": frozenset(["publish"]),

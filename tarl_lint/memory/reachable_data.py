@@ -13,9 +13,10 @@ from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.recency import MAX_NESTING
 from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value, in_order
 
-# maximum number of visited objects of a result that is not cached, since finding it again is as fast as checking it
+# results with at most this number of visited objects are not cached, because computing them again is as fast as
+# checking a cached result
 FEW = 4
-VISIT = 60  # a visit of an object takes as long as looking up this number of values
+VISIT = 60  # visiting an object takes as long as looking up this number of values
 
 
 @dataclass(slots=True, eq=False)

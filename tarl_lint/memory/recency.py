@@ -96,7 +96,8 @@ def _age(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
         older.many = True
         older.name = obj.name
         if obj in ctx.chains:
-            ctx.chains[older] = (*ctx.chains[obj], ctx.chains[obj][-1])  # counts twice: it represents several
+            # the last object is listed twice, because it represents several objects
+            ctx.chains[older] = (*ctx.chains[obj], ctx.chains[obj][-1])
     older.describe(obj.info)
     copy_fields(ctx, obj, older)
     ctx.graph.asked += len(obj.holders)

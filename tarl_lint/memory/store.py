@@ -51,7 +51,8 @@ class Store:
     now: Delta = field(default_factory=dict)
     hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
     insides: dict[object, Inside] = field(default_factory=dict)  # cached results of `deep`
-    wide: set[frozenset[Obj]] = field(default_factory=set)  # few objects from which `deep` visits many
+    # small sets of objects from which `deep` visits many objects
+    wide: set[frozenset[Obj]] = field(default_factory=set)
     tick: int = 0  # number of changes so far of the state outside frames
     split: dict[frozenset[Obj], Split] = field(default_factory=dict)
     versions: dict[Obj, int] = field(

@@ -67,8 +67,8 @@ class Obj:
         self.depth: int = parent.depth + 1 if parent is not None else 0
         self.elements: int = parent.elements + 1 if parent is not None and name.startswith("[") else 0
         self.many: bool = parent.many if parent is not None else False
-        # field → objects that were stored there last, in the order of the first stores; the `holders` and `inside` of
-        # these objects are up to date, so storing the same objects again changes nothing
+        # field → objects that were stored there last, in the order of the first stores; `holders` and `inside` of
+        # these objects are up to date, so storing them again changes nothing
         self.fields: dict[str, frozenset[Obj]] = {}
         self.subs: dict[str, Obj] = {}
         self.holders: dict[tuple[Obj, str], None] = {}  # keys that ever held a pointer to this object
@@ -78,7 +78,8 @@ class Obj:
             parent.laden if parent is not None else kind in MESSAGES
         )  # whether this object may contain data, at any depth
         self.cells = 0  # number of nested elements tracked separately in this object so far
-        self.edition = 0  # number of changes of this object and of its parts; only of an outermost object
+        # number of changes of this object and its parts; counted only for outermost objects
+        self.edition = 0
         self.stamp = 0  # version of this object: the length of `changes`
         self.changes: list[
             str | Obj | None
@@ -299,7 +300,8 @@ class ClassInfo:
     external: list[str] = field(default_factory=list)
     statement: ir.Class | None = None
     module: str = ""
-    fields: tuple[str, ...] = ()  # names that the body annotates: the fields, if the class is a dataclass
+    # names with an annotation in the body: the fields, if the class is a dataclass
+    fields: tuple[str, ...] = ()
     named: bool = False  # whether the class is a named tuple, whose fields are also elements
 
     @property

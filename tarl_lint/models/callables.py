@@ -25,7 +25,8 @@ MAX_INSIDE: Final = 3
 # number of slots for the callables of one call; they differ from the slots of the calls in the code
 KEPT_APART: Final = 500
 INSIDE: Final = ("sequence", "mapping")  # kinds of objects in which callables are searched
-SERVER: Final = "server"  # attribute of a handler in which libraries store what made it
+# attribute of a handler in which libraries store the server that made the handler
+SERVER: Final = "server"
 
 
 def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:

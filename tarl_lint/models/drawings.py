@@ -21,7 +21,7 @@ from tarl_lint.memory.values import Obj, Value
 from tarl_lint.models import containers
 
 PYPLOT: Final = frozenset(["matplotlib.pyplot", "matplotlib.pylab", "pylab"])
-FIGURE: Final = ("Figure", "FigureCanvas")  # prefixes of class names
+FIGURE: Final = ("Figure", "FigureCanvas")  # prefixes of the names of classes that draw
 PLAIN: Final = frozenset(["get_cmap", "imread", "rc"])  # functions of pyplot that do not draw
 SAVING: Final = frozenset(["savefig", "print_png", "print_figure", "print_raw", "print_rgba", "print_jpg"])
 KEY: Final = ("drawing",)
@@ -31,7 +31,7 @@ DRAWS: Final = re.compile(
 OTHER_WINDOWS: Final = frozenset(
     ["cv2", "PIL", "open3d", "pygame", "tkinter", "turtle"]
 )  # draw without matplotlib
-RUN: Final = "__main__"  # occurs in files that are run
+RUN: Final = "__main__"  # a file that is run as a program contains this text
 
 
 def drawn(

@@ -202,7 +202,7 @@ def _connect(ctx: Interpreter, it: Invocation) -> None:
 
 def _loaded(ctx: Interpreter, made: Value, it: Invocation) -> Value:
     """Return the result of a method: parsed options, data loaded from a file, or a stream derived from another."""
-    if derives(it.name):  # what the base gets later is also in the result
+    if derives(it.name):  # data that the base object receives later is also in the result
         updates.add_element(ctx, made, Value(pts=frozenset(o for o in it.base.pts if o.kind == "lib")))
     if it.name not in argument_parsers.PARSING:
         return made

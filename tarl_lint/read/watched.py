@@ -66,7 +66,8 @@ class Watched(Module):
     """A module that records what is read of it."""
 
     answers: list[tuple[Question, bool]] = field(default_factory=list)
-    texts_read: list[None] = field(default_factory=list)  # one entry for each use of the whole text
+    # a list with one entry for each use of the complete text
+    texts_read: list[None] = field(default_factory=list)
 
     def __getattribute__(self, name: str) -> Any:
         """Record uses of the text."""

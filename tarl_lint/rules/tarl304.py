@@ -96,7 +96,7 @@ def findings(system: System) -> Iterator[Finding]:
             )
             and not exclusive(who.node, them.node)
         )
-        # nobody else offers private names of a node that was read
+        # only the node itself offers its private names, and this node was read
         own = [one for one in near if one[1] == name.rpartition("/")[0] or one[2]]
         near = near if system.complete(end) else own
         if name not in served and near and single(end):

@@ -20,7 +20,7 @@ def chains(hops: Sequence[Hop], origin: str = "", target: str = "") -> tuple[tup
     """
     hops = [
         hop for hop in hops if hop.source != hop.sink
-    ]  # without hops from a topic to itself, since otherwise no chain would end at a topic that a node republishes
+    ]  # leave out hops from a topic to itself; otherwise no chain would end at a topic that a node republishes
     from_topic: dict[str, list[Hop]] = {}
     for hop in hops:
         from_topic.setdefault(hop.source, []).append(hop)

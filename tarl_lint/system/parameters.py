@@ -25,7 +25,8 @@ OPEN: Final = re.compile(
 _SERVER: Final = "dynamic_reconfigure.server"
 
 COMMAND_LINE: Final = re.compile(r"\b(?:sys\.argv|myargv|argparse|optparse)\b")
-_GAPS: Final = re.compile(r"%[sdi]|\{[^{}]*\}")  # where a format string takes a value
+# matches the places of a format string where a value is inserted
+_GAPS: Final = re.compile(r"%[sdi]|\{[^{}]*\}")
 COPYING: Final = frozenset(
     ["bool", "int", "float", "str", "list", "tuple"]
 )  # functions that return the value of their argument

@@ -28,7 +28,7 @@ _PLACES: Final = {"create_publisher": 2, "create_subscription": 3}
 _ROW: Final = 3  # minimum length of a row: topic, type and profile
 _RELIABILITY: Final = {"RELIABLE": True, "BEST_EFFORT": False}
 _DURABILITY: Final = {"TRANSIENT_LOCAL": True, "VOLATILE": False}
-# attribute of a profile, its values, and the part of `Qos`
+# (attribute of a profile, its possible values, field of `Qos` that stores it)
 _POLICIES: Final = (("reliability", _RELIABILITY, "reliable"), ("durability", _DURABILITY, "latched"))
 
 

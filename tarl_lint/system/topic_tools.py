@@ -44,7 +44,7 @@ _OF_FIELDS: Final = ("transform", "relay_field")
 _CHOOSING: Final[Mapping[str, str]] = {
     "mux": "Mux",
     "demux": "Demux",
-}  # beginnings of the types of their services
+}  # prefixes of the types of these programs' services
 
 
 def passed_on(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen:
@@ -91,7 +91,8 @@ def _of_arguments(program: str, words: Sequence[str]) -> _Topics:
         return _PROGRAMS[program](words)
     if len(words) < 3:
         return (), ()
-    number = 2 if words[0] == "messages" else 3  # `messages topic rate`, `bytes topic rate window`
+    # the arguments are `messages TOPIC RATE` or `bytes TOPIC RATE WINDOW`
+    number = 2 if words[0] == "messages" else 3
     return _named(words[1:], number, "_throttle")
 
 

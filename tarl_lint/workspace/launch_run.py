@@ -159,7 +159,8 @@ class Runner:
 
     def _include(self, action: Action, context: Context, condition: str) -> None:
         name = performed(action.values.get("source"), context)
-        if name.startswith(_GZ_BRIDGE):  # its package is usually installed without its source
+        # the source of the bridge is usually not in the workspace, because its package is installed
+        if name.startswith(_GZ_BRIDGE):
             given = {
                 key: value for key, value in items_of(action.values.get("arguments")) if isinstance(key, str)
             }

@@ -38,8 +38,8 @@ class Context:
     file: Path
     configurations: dict[str, str] = field(default_factory=dict)
     namespace: str = "/"
-    # remappings and parameters that all following nodes get. launch_ros appends to lists that a group shares with its
-    # surroundings if they are not empty, so what a group adds to them also applies after it
+    # remappings and parameters that all following nodes get. If a list is not empty, launch_ros lets a group share it
+    # with its surroundings, so what a group appends also applies after the group
     remaps: list[tuple[str, str]] = field(default_factory=list)
     settings: list[Setting] = field(default_factory=list)
     # names of the launch configurations that were read; shared by all groups
@@ -47,7 +47,7 @@ class Context:
     # number of substitutions that may still be replaced; shared by all groups
     left: list[int] = field(default_factory=lambda: [WORK])
     readable: frozenset[str] = frozenset({"launch_configurations", "perform_substitution"})
-    saved: list[Context] = field(default_factory=list)  # by PushLaunchConfigurations
+    saved: list[Context] = field(default_factory=list)  # contexts saved by PushLaunchConfigurations
     environment: dict[str, str] = field(default_factory=dict)  # variables that the launch file sets
 
     def spend(self) -> None:

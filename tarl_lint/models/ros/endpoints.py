@@ -10,7 +10,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import Obj
 
-NAMESPACE = "topic_ns"  # field of a server of markers: the namespace of its topics
+NAMESPACE = "topic_ns"  # field of a marker server that holds the namespace of its topics
 Kind = Literal["topic", "service", "action", "transform"]
 
 

@@ -72,7 +72,7 @@ def make_chain(*maps: Any) -> ChainMap[Any, Any]:
     return ChainMap(*maps)
 
 
-# types of values, by the values of their names in interpreted files
+# value that the name of a type has in interpreted files → the type
 TYPES: Final[Mapping[Any, type]] = {
     str: str, int: int, float: float, bool: bool, bytes: bytes, object: object, slice: slice, FilePath: FilePath,
     make_list: list, make_tuple: tuple, make_dict: dict, make_set: Unique, make_frozen: Unique, make_queue: deque,

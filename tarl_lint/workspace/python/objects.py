@@ -103,7 +103,7 @@ class Class:
     def members(self) -> list[Any]:
         """Return the members of an enumeration."""
         found = [one for one in self.names.values() if getattr(one, "kind", None) is self]
-        if self.is_flag():  # neither combinations nor zero, as in Python 3.11 and later
+        if self.is_flag():  # leave out combinations and zero, as Python 3.11 and later do
             found = [one for one in found if _is_single(one.attributes["value"])]
         return list({id(one): one for one in found}.values())
 
