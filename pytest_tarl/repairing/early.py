@@ -23,12 +23,12 @@ from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
 FROM = 60  # number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
-# the same if a constant gains at least `PARTLY`: it may only need another value or a second constant
+# replaces FROM if a constant gains at least `PARTLY`, because it may only need another value or a second constant
 LATER = 100
 PARTLY = 0.2  # share of the wanted gain that a constant must reach for `LATER`
 SEEDS = 2  # number of seeds on which a correction of a reading is tried; a seed may be hard in any world
 HALF = 0.5  # corrections of readings are tried unless a constant gains at least this share of the wanted gain
-MOST = 45  # number of episodes for the changes; half as many more if one of them gains much
+MOST = 45  # number of episodes for the changes; 1.5 times as many if one of them gains much
 
 
 class Early:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 FLIP = -1.0  # factor that flips the sign
-# maximum number of units to try with the opposite sign; only those that gained with a smaller value
+# maximum number of units to try with the opposite sign; only units that gained with a smaller value are tried
 FLIPPED = 3
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
 EASY = 3  # maximum number of easy pairs; changes run on their seeds until one gains

@@ -31,7 +31,8 @@ DIMENSIONS = 8  # maximum number of constants to move
 LEAST = 2  # minimum number of constants to move
 EPISODES = 50  # maximum number of trials
 PATIENCE = 25  # maximum number of consecutive trials without an improvement
-# the same if all these trials earn one reward, above that of the unrepaired program: they only avoid what costs reward
+# maximum number of such trials if they all earn the same reward, above that of the unrepaired program: then they only
+# avoid the part of the mission that costs reward
 FLAT = 12
 FARTHEST = 3.0  # maximum |log(step)|; a step of e³ is a factor of 20
 CHANGED = 3  # maximum number of constants in which a trial differs from the point where it starts

@@ -58,5 +58,5 @@ def _narrow(
         return True
     known = [gains[one] for one in neighbours if one in gains]
     sharp = len(known) == 2 and max(known) <= SHARP * most
-    # a reward that falls far between two close factors shows a narrow range as well as a large gain does
+    # a large fall of the reward between two close factors shows a narrow range, as a large gain does
     return sharp and most - min(0.0, *known) >= PROMISING * wanted

@@ -13,7 +13,8 @@ from pytest_tarl.searching.search import Mutate, operand_effect
 from tarl_lint.model import Operand
 
 NEAR = (2.2, 0.4)  # the first factors to try on every unit
-ENOUGH = 0.9  # a use alone is credited with the gain of all uses if it gains at least this share of that gain
+# if one use gains at least this share of the gain of all uses together, it is credited with all of it
+ENOUGH = 0.9
 
 Scope = Callable[[Operand], str]
 
