@@ -18,11 +18,11 @@ from pytest_tarl.learning.tables import Floats
 from pytest_tarl.stressing.guarantee import Evidence
 
 HOPE = 0.8  # minimum expected probability that a test at a chosen value succeeds
-# A loss that lies this number of standard errors below the tolerated loss is shown to be tolerated in 4 of 5 cases by a
-# bound with 4 % risk.
+# If a loss lies this number of standard errors below the tolerated loss, a bound with 4 % risk shows in 4 of 5 cases
+# that the loss is tolerated.
 HOLDING = 3.0
-# A loss that lies this number of standard errors above the tolerated loss is shown to exceed it in 4 of 5 cases by a
-# bound with 0.4 % risk.
+# If a loss lies this number of standard errors above the tolerated loss, a bound with 0.4 % risk shows in 4 of 5
+# cases that the loss exceeds it.
 FAILING = 4.0
 PLACES = tuple(step / 100 for step in range(1, 101))  # values of t to choose from
 CENTRES = np.linspace(0.0, 1.25, 251)  # possible values of t at which half of the episodes fail

@@ -20,18 +20,18 @@ from pytest_tarl.stressing.guarantee import Part
 from pytest_tarl.stressing.nearest import Nearest
 
 NEARER = 0.98  # maximum distance of the next confirmed drift, as a share of the distance of the last one
-# A chain tests the failure rate alone if a test at its farther drifts shows too many failures with at least the
-# probability LIKELY; it tests the loss alone if that probability is below UNLIKELY.
+# Limits of the probability that a test at the farther drifts of a chain shows too many failures: from LIKELY on, the
+# chain tests only the failure rate; below UNLIKELY, it tests only the loss.
 LIKELY, UNLIKELY = 0.5, 0.05
 ALIKE = 0.02  # probabilities whose difference is at most this count as the same
 VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
 POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a drift beyond the near end
-# Multiples of the near end of a chain that are tested as well:
-# before it, if the chain is about the failure rate alone and the same seeds fail under all drifts
+# multiples of the near end of a chain that are tested before the near end, if the chain tests only the failure rate
+# and the same seeds fail under all drifts
 OUTWARD = (1.12, 1.08, 1.04)
-# before it, if the chain is not about the failure rate alone
+# the same multiples for all other chains
 BEFORE = (1.03,)
-# after it
+# multiples that are tested after the near end
 INWARD = tuple(0.96**step for step in range(1, 17))
 FINE = tuple(0.985**step for step in range(16))  # in a chain of small steps, multiples of its first drift
 # multiples of the drift at the near end of a chain that may become drifts of the chain

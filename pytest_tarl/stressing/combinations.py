@@ -26,7 +26,7 @@ FIRST = 0.44  # share of the budget for the first search for the nearest failing
 # share of the budget that the first chains of tests may use, so that enough is left for the single directions
 CONFIRMED = 0.85
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
-ALONE = 3  # number of rounds of the search with nominal options before the others are searched
+ALONE = 3  # number of rounds of the search with nominal options before other options are searched
 REFINED = 0.08  # share of the budget for the search that runs between the first two chains of tests
 ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first chain that confirms a drift
 # shares of the whole risk for the first chains; each further chain gets half of the rest

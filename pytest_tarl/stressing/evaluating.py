@@ -30,9 +30,11 @@ FRESH = (16, 32)  # numbers of fresh episodes after which a test along a ray che
 GLANCE = 2
 # number of seeds among which the drifts of this search choose their first seed in turn
 TURNS = 16
-# numbers of fresh episodes after which a test of a combination checks for a decision; more show nearer failures
+# numbers of fresh episodes after which a test of a combination checks for a decision; larger numbers show nearer
+# failures
 NEAREST = (16, 32, 64)
-# shares of the risk for these numbers of episodes; the last share is the largest, because most episodes show most
+# shares of the risk for these numbers of episodes; the last share is the largest, because the largest number of
+# episodes shows most
 SPENT = (0.1, 0.2, 0.7)
 SEARCH = "search"  # name of the seeds of the search
 RAYS = "rays"  # name of the fresh seeds that all rays share; chains of combinations have seeds of their own

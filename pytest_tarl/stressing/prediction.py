@@ -37,7 +37,7 @@ STRETCHED = (0.9, 1.0, 1.1)  # tried drifts are also compared at these multiples
 RAREST = 0.007  # minimum failure rate that the model assumes at nominal
 # possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
 SCALES = (9.0, 36.0, 144.0)
-# possible variances of the effect that a seed has on the logit under all drifts, besides none
+# possible variances, besides 0, of the effect that a seed has on the logit under all drifts
 LUCK = (1.0, 4.0)
 IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
 LEAST_LOSS = 0.25  # minimum predicted loss of a drift that is used to estimate the factors of seeds
