@@ -69,7 +69,7 @@ def read_regular(path: Path) -> bytes:
 
     Reading anything else could block or never end.
     """
-    # without O_NONBLOCK, open() waits for a writer of a pipe; Windows has neither
+    # without O_NONBLOCK, open() on a pipe waits for a writer; Windows has neither the flag nor such pipes
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     try:
         kind = os.fstat(handle).st_mode

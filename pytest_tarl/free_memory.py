@@ -9,7 +9,9 @@ from pathlib import Path
 _MEMINFO = Path("/proc/meminfo")  # Linux
 _OWN_GROUPS = Path("/proc/self/cgroup")
 _GROUPS = Path("/sys/fs/cgroup")
-_FILES = {  # for each cgroup version: the limit, the usage, and the statistic of file cache that can be dropped
+# for each cgroup version: the files of the limit and of the usage, and the statistic of the file cache that
+# can be dropped
+_FILES = {
     1: ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
     2: ("memory.max", "memory.current", "inactive_file"),
 }

@@ -111,7 +111,8 @@ def _mcap_records(
         operation = _take(file, 1)[0]
         (size,) = struct.unpack("<Q", _take(file, 8))
         data = file.read(size)
-        if len(data) < size and operation != _MCAP_CHUNK:  # of a chunk, even a truncated part is readable
+        # the truncated part of a chunk is readable, too
+        if len(data) < size and operation != _MCAP_CHUNK:
             raise CutOffError
         record = BytesIO(data)
         if operation == _SCHEMA:
@@ -129,9 +130,9 @@ def _mcap_records(
             key, _, time, _ = struct.unpack("<HIQQ", _take(record, 22))
             yield Recorded(time, channels[key].topic, record.read())
         elif operation == _MCAP_CHUNK:
-            _take(record, 28)  # times, size and checksum
+            _take(record, 28)  # skip the times, the size and the checksum
             compression = _sized(record).decode()
-            _take(record, 8)  # size of the remaining chunk data
+            _take(record, 8)  # skip the size of the remaining chunk data
             with suppress(CutOffError):
                 yield from _mcap_records(BytesIO(_inflated(record.read(), compression)), schemas, channels)
 

@@ -19,7 +19,8 @@ from pytest_tarl.extras import missing_extra
 from tarl_lint.editing import Result, Superseded, Workspace
 from tarl_lint.errors import LintError
 
-Apply = Callable[[Path], Iterable[str]]  # patch → lines to show; raises TarlError if it no longer fits
+# patch → lines to show; raises TarlError if the patch no longer fits the files
+Apply = Callable[[Path], Iterable[str]]
 PAUSE = 0.15  # the workspace is linted once the user has typed nothing for this time (s)
 CHANGES = (
     types.TEXT_DOCUMENT_DID_OPEN,

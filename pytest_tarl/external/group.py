@@ -16,7 +16,7 @@ STEPS = (
     (signal.SIGINT, 2.0),
     (signal.SIGTERM, 1.0),
     (signal.SIGKILL, 5.0),
-)  # (signal, time (s) that the processes have to end after it)
+)  # (signal, time (s) that the processes then have to end)
 
 
 class Group:

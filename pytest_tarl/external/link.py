@@ -12,7 +12,8 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-# number of consecutive attempts without a message after which none is left; an attempt may handle another event
+# number of consecutive attempts without a message after which the queue counts as empty; a single attempt may have
+# handled another event
 IDLE = 3
 
 Say = Callable[[dict[str, Any]], None]

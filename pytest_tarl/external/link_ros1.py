@@ -22,8 +22,8 @@ OWN = ("/rosout", "/rosout_agg")
 DEPTH = 1000
 LOST = "transport error"  # the start of rospy's error message for a broken connection
 PATIENCE = 5.0  # maximum time until a service reports its type (s)
-# pause (s) between a command and a service call on an idle machine; the call has its own connection and could arrive
-# first
+# pause (s) between a command and a service call, enough on an idle machine; the call has its own connection and could
+# otherwise arrive first
 PAUSE = 0.005
 
 Say = Callable[[dict[str, Any]], None]

@@ -98,7 +98,7 @@ def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
     return Span(found.low, found.high, none)
 
 
-# maximum duration in a fault (s), about 30 years; its nanoseconds fit into the 64 bits of a message's time
+# maximum duration in a fault (s): about 30 years, which fit into 64 bits as nanoseconds
 LONGEST = 1e9
 
 

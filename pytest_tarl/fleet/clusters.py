@@ -23,7 +23,8 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.sensors import Cell
 
-MOST = 300  # maximum number of robots to compare; of more, those with the most evidence are chosen
+# maximum number of robots to compare; if there are more, those with the most evidence are chosen
+MOST = 300
 
 
 @dataclass(frozen=True)

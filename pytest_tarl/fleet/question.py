@@ -60,7 +60,7 @@ class Answer:
     copies: int  # number of duplicate rows that were ignored
     cells: tuple[Cell, ...]
     groups: tuple[groups.Group, ...]
-    onsets: robots.Robots  # for each robot, the evidence of a change and the time since when it has changed
+    onsets: robots.Robots  # for each robot, the evidence of a change and the time of that change
     robots: robots.Robots
     parts: decomposition.Decomposition | None  # None if there is only one robot
     clusters: clusters.Clusters

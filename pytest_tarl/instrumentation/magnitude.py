@@ -175,7 +175,7 @@ def _parts(kind: type) -> Parts | None:
     """Return a function that lists the contents of a container or message, or None for other objects."""
     for container in _CONTAINERS:
         if issubclass(kind, container):
-            return container.__iter__  # not the method of a subclass, which can run any code
+            return container.__iter__  # do not use the method of a subclass, which can run any code
     if issubclass(kind, dict):
         return dict.values
     names = _fields(kind)

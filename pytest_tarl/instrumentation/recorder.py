@@ -43,7 +43,7 @@ class _Buffer:
 
     def pack(self) -> None:
         """Convert the entries to columns. Call it in the buffer's own thread, or after the episode."""
-        entries = self.entries[:]  # atomic, since another thread may still append
+        entries = self.entries[:]  # this copy is atomic, because another thread may still append
         self.entries.clear()
         site, flow, starts = paired(entries)
         self.packed.append((site, flow, starts + self.gone if self.gone else starts))

@@ -25,7 +25,7 @@ class Evidence:
     cells that share a bin of one sensor, and a column for the total reward of each episode.
     """
 
-    move: Floats  # shape (episodes, cells), as the next two fields
+    move: Floats  # shape (episodes, cells), like the next two fields
     reward: Floats
     novel: Floats
     move_error: Floats  # rounding errors of `move` and `reward`; values below their error are set to 0

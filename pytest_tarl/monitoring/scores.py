@@ -84,7 +84,7 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
     bare = Scale(sample.cells, ~np.isnan(model.utility), model, np.empty((0, BINS - 1)))
     wide = replace(
         sample, cells=(*sample.cells, ())
-    )  # the additional cell gives the arrays the same layout as for new missions, so sums are rounded equally
+    )  # with the additional cell, the arrays have the same layout as those of new missions, so sums are rounded equally
     values = _values(bare, wide)
     units = _units(chain, int(fit.sum()), count)
     found = [

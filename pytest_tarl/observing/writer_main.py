@@ -23,7 +23,7 @@ from pytest_tarl.observing.frames import LogFile
 from pytest_tarl.observing.ring import Ring
 from pytest_tarl.observing.writer import Rotation, Writer
 
-PERIOD = 0.25  # time between two syncs (s); a power cut loses about the records of this time
+PERIOD = 0.25  # time between two syncs (s); a power cut loses about the records of one such period
 LENGTH = struct.Struct("<I")  # length of a message (bytes); 0 marks the end
 READY = "ready"
 NICER = 5  # nice value that gives the node's threads priority

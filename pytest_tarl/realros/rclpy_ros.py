@@ -128,7 +128,8 @@ class RclpyRos(RealRos):
 def rclpy_network() -> RclpyNetwork:
     """Return the network of this test run; start it at first use."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # from rclpy's imports, which the user cannot fix
+        # these warnings come from rclpy's imports, so the user cannot fix them
+        warnings.simplefilter("ignore", DeprecationWarning)
         network = RclpyNetwork()
         patch(network)
     return network

@@ -61,7 +61,7 @@ class Terminal(io.TextIOBase):
             lines = list(iter(self.readline, ""))
             return "".join(lines)
         if size == 0:
-            return ""  # returned without waiting, as by a file
+            return ""  # return without waiting, as a file does
         self._wait()
         return self._take(min(size, self._readable()))
 

@@ -10,7 +10,8 @@ from typing import Any
 
 from pytest_tarl.ros.launch_sources import NOTHING, Given
 
-Start = tuple[Given, Path]  # what a launch file gives, and the file
+# the settings that a launch file gives to a node, and the path of the file
+Start = tuple[Given, Path]
 
 
 def chosen(script: Path, package: Path | None, starts: Sequence[Start]) -> Given:

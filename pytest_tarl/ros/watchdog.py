@@ -16,7 +16,8 @@ _PATIENCE = 12  # multiple of the limit for waits outside ROS, which use no CPU 
 _HOLD = 12  # multiple of the limit for a node that holds the interpreter lock
 _INTERVAL = 0.1  # time between two checks (s)
 _IDLE_EXIT = 50  # number of checks after which an unused watching thread ends
-_MOST_JUMPS = 1000  # bound of a loop in which the interpreter raises a sent exception; one jump is enough
+# maximum number of jumps in a loop in which the interpreter raises the sent exception; one jump is enough
+_MOST_JUMPS = 1000
 _DEBUGGERS = ("pdb", "bdb", "pydevd", "debugpy")
 _CLOCK_OF: Callable[[int], int] | None = getattr(
     time, "pthread_getcpuclockid", None
@@ -44,7 +45,8 @@ class Watchdog:
         self._watching = False
         self._allowed = False  # whether the kernel's CPU timer runs as well
         self.fired = False
-        self.hung = False  # whether it fired because of a wait outside ROS, not because of computing
+        # whether the watchdog fired because of a wait outside ROS, not because of computing
+        self.hung = False
 
     def arm(self, limit: float) -> None:
         """Watch the calling thread: fire after `limit` CPU seconds without `beat`."""
@@ -102,7 +104,8 @@ class Watchdog:
             if idle or moves != seen:
                 seen, looks, computed = moves, 0, self._computed()
                 continue
-            looks += 1  # a count, not a time: a suspended process makes no checks
+            # count checks instead of measuring time, because a suspended process makes no checks
+            looks += 1
             worked = self._computed() - computed >= self._limit
             if worked or (looks * _INTERVAL >= self._limit * _PATIENCE and not _debugged(self._target)):
                 self._fire(moves, hung=not worked)

@@ -18,7 +18,7 @@ MESSAGES = ["ImageMarker", "InteractiveMarker", "InteractiveMarkerControl", "Int
 __all__ = ["InteractiveMarkerServer", *MESSAGES]  # nodes get the messages by `import *` from here
 
 Callbacks = dict[int, Callable[[Any], Any]]
-DEFAULT = 255  # type of event whose callback gets the feedback that no other callback gets
+DEFAULT = 255  # type of event whose callback gets the feedback for which there is no other callback
 
 
 def __getattr__(name: str) -> Any:

@@ -28,7 +28,7 @@ class WireError(ValueError):
 def serialize(message: Any) -> bytes:
     """Serialise a message. Raise FieldError for a value that its field's type does not allow."""
     parts: list[bytes] = []
-    # classes of an installed ROS lack it, because they check the values themselves while they serialise
+    # message classes of an installed ROS lack `_tarl_copy`, because they check values when they serialise
     copied = getattr(type(message), "_tarl_copy", None)
     _write_message(message if copied is None else copied(message), parts)
     return b"".join(parts)
@@ -116,7 +116,7 @@ def _read(kind: str, data: bytes, at: int, find: Find) -> tuple[Any, int]:
     count = int(size.rstrip("]") or 0)
     if size == "]":
         (count,), at = _LENGTH.unpack_from(data, at), at + _LENGTH.size
-    # impossible, because each element takes at least one byte unless it is an empty message
+    # not possible: each element takes at least one byte, unless it is an empty message
     if count > len(data):
         raise WireError(f"an array of {count} elements does not fit {len(data)} bytes")
     if base in ("uint8", "char"):

@@ -59,7 +59,8 @@ def _copier(field: Field, nested: Nested) -> Callable[[Any], Any]:
     if not field.primitive:
         element = nested(field.base)._tarl_copy
         return lambda value: [element(item) for item in value]
-    if field.shape == "one":  # sending does not change a single value, except that float32 is rounded
+    # a field with one value is sent unchanged, except that a float32 is rounded
+    if field.shape == "one":
         return lambda value: values.as_float32(value, field.name)
     if field.base in CODES and field.base != "byte":
         return (

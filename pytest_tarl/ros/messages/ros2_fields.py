@@ -89,7 +89,8 @@ def _accepted(field: Field, check: Callable[[Any], None], value: Any) -> Any:
     assert isinstance(value, Sequence | set) and not isinstance(value, str), (  # noqa: PT018
         f"The '{field.name}' field must be a sequence of {field.base}, not {type(value).__name__}"
     )
-    if field.base != "uint8" or not isinstance(value, bytes | bytearray):  # whose elements need no check
+    # the elements of bytes need no check
+    if field.base != "uint8" or not isinstance(value, bytes | bytearray):
         for element in value:
             check(element)
     _sized(field, value)
