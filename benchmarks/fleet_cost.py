@@ -71,7 +71,8 @@ def main() -> None:
     print(f"  a question: {hours:,.1f} core hours, {hours * order.core_hour:,.2f} dollars")
     print(f"  of these on one machine, whatever the cluster: {(1 - PARALLEL) * hours:,.1f} core hours")
     print(f"  memory of the machine that asks: {peak.at(many) / 1000:,.0f} GB")
-    moved = many * (SCORES + 2 * TAKEN)  # twice TAKEN, because robots and groups are judged in separate tasks
+    # counts TAKEN twice, because robots and groups are judged in separate tasks
+    moved = many * (SCORES + 2 * TAKEN)
     print(f"  scores from and to the workers: {moved / 1e9:,.0f} GB, {moved / TRANSFER / 60:,.0f} minutes")
 
 

@@ -103,7 +103,8 @@ def _compared(workspace: Workspace, files: Sequence[Path], python: str, name: st
         }
         ours = {fact for fact in ours if fact[:-1] not in robots} | wrong
         others = {fact for fact in others if fact[:-1] not in robots}
-        vague = {key[:-1] for key in robots if key[-1] == "*"}  # a module that is not installed sets some
+        # a module that is not installed sets some of these parameters
+        vague = {key[:-1] for key in robots if key[-1] == "*"}
         ours = {fact for fact in ours if fact in others or fact[0] != "param" or fact[:-2] not in vague}
         for fact in ours | others:
             counts[f"{fact[0]} all"] += 1

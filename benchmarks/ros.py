@@ -139,7 +139,7 @@ def main() -> None:
             if make is None:
                 print(f"real {name:<11}{'not installed here':>16}")
                 continue
-            episode(program, odometry, make())  # warm-up, in which connections are made
+            episode(program, odometry, make())  # warm up: connections are made
             cpu, wall, same = measured(program, odometry, make, path, seconds)
             told = "that of the embedded ROS, to the last bit" if same else "ANOTHER"
             print(f"{kind + ' ' + name:<16}{cpu:>16.1f}{wall:>12.1f}{1e6 / cpu / STEPS:>15.1f}   {told}")

@@ -152,7 +152,7 @@ def infusion(
         if known < 78.0:
             dose = 0.0
         if now == eaten:
-            dose += 18.0  # dose for an announced meal: as much as a usual meal needs
+            dose += 18.0  # the same dose for every announced meal: what a usual meal needs
         gut += meal if now == eaten else 0.0
         absorbed, gut = 0.075 * gut, 0.925 * gut
         stored += 0.12 * (min(dose, 20.0) * (1.0 - leak) - stored)

@@ -30,7 +30,7 @@ def glider(
     path. The landing passes if the drone touches down between 25 m before and 45 m behind the mark with a sink rate
     below 1.7 m/s. The reward falls with the distance from the mark and with the sink rate.
     """
-    step, density, wing = 0.1, 1.225, 0.45  # s, kg/m³, m²
+    step, density, wing = 0.1, 1.225, 0.45  # units: s, kg/m³, m²
     shocks, reads = rng.normal(0.0, 1.0, 700).tolist(), rng.normal(0.0, 0.3, 700).tolist()
     there, height, speed, path = -260.0, 26.0 + float(rng.normal(0.0, 0.7)), 12.0, -0.1
     thrust, total, bent, gust, sink = 3.0, 0.0, 0.0, 0.0, 0.0
@@ -74,7 +74,7 @@ def lathe(
     cutting = 8.0e8 * hardness * 1e-3 * depth * float(rng.normal(1.0, 0.03))  # N/m
     rough = rng.normal(0.0, 4.0, 2000).tolist()
     period = max(2, round(60.0 / turns / step))
-    feed, place, speed = 1.0e-4, 0.0, 0.0  # pitch (m per revolution), m, m/s
+    feed, place, speed = 1.0e-4, 0.0, 0.0  # units: m per revolution, m, m/s
     past, waves, kept = [0.0] * period, [], 0.0
     for lap in range(16):
         laid, low, high = [], 1.0, -1.0

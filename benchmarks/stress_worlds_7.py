@@ -104,7 +104,8 @@ def neutraliser(
     step, steps = 5.0, 420
     shocks, reads = rng.normal(0.0, 1.0, steps).tolist(), rng.normal(0.0, 0.03, steps).tolist()
     usual, buffer = 2.0 * acid * float(rng.normal(1.0, 0.03)), 0.3 * float(rng.normal(1.0, 0.05))
-    inflow, excess, basin, load = flow / 3600.0, 0.0, 0.0, 0.0  # m³/s; acid in tank and basin (mol/m³)
+    # inflow (m³/s); acid in tank and basin (mol/m³)
+    inflow, excess, basin, load = flow / 3600.0, 0.0, 0.0, 0.0
     seen, dosed, total, good, wrong, soda = 7.2, 0.5, 0.5, 0, 0.0, 0.0
     for now in range(steps):
         load += -0.02 * load + 0.035 * shocks[now]

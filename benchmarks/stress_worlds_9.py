@@ -18,7 +18,8 @@ from stress_worlds_5 import GRAVITY, Machine, clipped, told
 
 from pytest_tarl.spaces import Choice, Span
 
-CARTONS = {"plain": (90.0, 0.42), "glossy": (96.0, 0.18), "film": (74.0, 0.0)}  # N, share lost if wet
+# force (N), and the share that is lost if the carton is wet
+CARTONS = {"plain": (90.0, 0.42), "glossy": (96.0, 0.18), "film": (74.0, 0.0)}
 
 
 def palletiser(

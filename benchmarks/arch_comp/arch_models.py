@@ -164,19 +164,20 @@ def _mode(mode: int, gap: float) -> int:
 
 
 # Wind turbine: NREL 5 MW
-AIR, ROTOR, GEARBOX = 1.225, 63.0, 1.0 / 97.0  # kg/m³, m, ratio
+AIR, ROTOR, GEARBOX = 1.225, 63.0, 1.0 / 97.0  # units: kg/m³, m, ratio
 TOWER_MASS = 522617.0 / 4 + 240000.0 + 56780.0 + 3 * 17740.0  # kg, modal
 TOWER_FREQUENCY, TOWER_DAMPING = 0.31994, 0.01  # Hz, -
 INERTIA = (
     115926.0 + 3 * 11776047.0 + 534.116 * GEARBOX**2
 )  # moment of inertia, computed as in the published parameter file (kg m²)
-RATED = 12.1 * 2 * pi / 60 / GEARBOX  # rad/s of the generator
+RATED = 12.1 * 2 * pi / 60 / GEARBOX  # speed of the generator (rad/s)
 WIND = (0.0, 11.4, 12.0, 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0, 21.0, 22.0, 23.0, 24.0, 25.0)
 PITCH = (
     0.0, 0.0, 0.0529, 0.1152, 0.1518, 0.1824, 0.2105, 0.2363,
     0.2604, 0.2833, 0.3049, 0.3264, 0.348, 0.3697, 0.3901, 0.4096,
 )  # fmt: skip
-CUT_IN, REGION_2, RATED_99, POWER = 70.16224, 91.21091, 121.6805, 5296610.0  # rad/s, rad/s, rad/s, W
+# units: rad/s, rad/s, rad/s, W
+CUT_IN, REGION_2, RATED_99, POWER = 70.16224, 91.21091, 121.6805, 5296610.0
 OPTIMAL, REGION_3_PITCH, MOST_TORQUE, TORQUE_RATE = 2.332287, 0.01745329, 47402.91, 15000.0
 SLIP = RATED_99 / 1.1
 SLOPE_2 = POWER / RATED_99 / (RATED_99 - SLIP)

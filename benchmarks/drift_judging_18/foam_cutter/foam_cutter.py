@@ -6,21 +6,25 @@ import math
 import rospy
 from std_msgs.msg import Bool, Float32, String
 
-WIRE_LENGTH = 0.82  # m, between the clamps
+WIRE_LENGTH = 0.82  # length between the clamps (m)
 OHM_PER_M = 5.1  # constantan, 0.35 mm
 SUPPLY_MAX = 48.0  # V
 
 
 class FoamCutter(object):
     def __init__(self):
-        self.idle_watts = rospy.get_param("~idle_watts", 16.0)  # holds the wire warm in air
-        self.watts_per_area = rospy.get_param("~watts_per_area", 0.115)  # W per mm2/s of cut face
+        # power that keeps the wire warm in air (W)
+        self.idle_watts = rospy.get_param("~idle_watts", 16.0)
+        # power per cut area and time (W per mm2/s)
+        self.watts_per_area = rospy.get_param("~watts_per_area", 0.115)
         self.max_feed = rospy.get_param("~max_feed", 6.0)  # mm/s
         self.min_feed = rospy.get_param("~min_feed", 1.5)
-        self.face_rate = rospy.get_param("~face_rate", 380.0)  # mm2/s, what the foam bears
+        # maximum cut area per time that the foam bears (mm2/s)
+        self.face_rate = rospy.get_param("~face_rate", 380.0)
         self.warm_up = rospy.get_param("~warm_up", 5.0)  # s
         self.broken_below = rospy.get_param("~broken_below", 0.25)  # A
-        self.overrun = rospy.get_param("~overrun", 8.0)  # mm behind the block
+        # distance behind the block at which the cut ends (mm)
+        self.overrun = rospy.get_param("~overrun", 8.0)
         self.state = "WARM"
         self.started = rospy.get_time()
         self.thickness = None
