@@ -5,8 +5,8 @@ publishing and not publishing (an *implicit* flow). A statement does not depend 
 the loop. The mere arrival of a message is not a condition.
 
 The `execute_callback` of an action server of rclpy runs only if its `goal_callback` accepts the goal, so a condition
-there decides what `execute_callback` publishes. The same holds for a condition on `goal_handle.execute()` in its
-`handle_accepted_callback`.
+there decides what `execute_callback` publishes. A condition on the call of `goal_handle.execute()` in the
+`handle_accepted_callback` has the same effect.
 """
 
 from __future__ import annotations

@@ -12,8 +12,8 @@ An access is reported only if other code guards the same state with a lock, and 
 - a function reads the state twice and may see two different values,
 - a function reads several parts that belong together.
 
-Reading a value once is harmless if the threads only ever replace the whole value, because Python replaces it
-atomically. The rule also does not report
+Reading a value once is harmless if threads replace the value only as a whole, because Python does this atomically.
+The rule also does not report
 
 - flags that are set to constants,
 - checks before the lock is taken, such as whether a value exists, how long it is, or whether to return,

@@ -1,9 +1,9 @@
 """TARL202: a command follows a sensor without limit.
 
 A command for actuators (a velocity, a throttle, an angle) is computed from a number in a received message, and
-nothing on the way bounds it: no `min`, `max`, `clip` or similarly named function, no function with a bounded result
-(`sin`, `atan2`), and no comparison that replaces values that are too large. Sensors sometimes send infinity, jumps or
-invalid values, and the command follows them. Clamp the value at the reported line, where it is computed.
+nothing bounds the number on the way. A bound is a function such as `min`, `max` or `clip`, a function with a bounded
+result (`sin`, `atan2`), or a comparison that replaces values that are too large. Sensors sometimes send infinity,
+jumps or invalid values, and the command follows them. Clamp the value at the reported line, where it is computed.
 
 A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound it.
 

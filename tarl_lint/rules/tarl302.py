@@ -5,8 +5,8 @@ example, some nodes use `Twist` and others `TwistStamped`
 (https://github.com/ros-teleop/teleop_twist_keyboard/issues/39). Two packages may also have types of the same
 name, such as `std_msgs/String` and `my_msgs/String`.
 
-The rule reports only types that the code names by constants. It compares packages only if both are known; the
-package of a class that comes from another module of the program is not known.
+The rule reports only types that the code names by constants. Packages are compared only if both are known. If a class
+comes from another module of the program, its package is not known.
 """
 
 from __future__ import annotations

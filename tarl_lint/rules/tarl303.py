@@ -1,10 +1,10 @@
 """TARL303: a subscription requests a stricter quality of service than its publisher offers.
 
-ROS 2 does not connect a subscription that asks for `RELIABLE` with a publisher that offers `BEST_EFFORT`, nor one
-that asks for `TRANSIENT_LOCAL` with one that offers `VOLATILE`. No message arrives. If the code gives a
-number instead of a profile, the profile is `RELIABLE` and `VOLATILE`. Drivers of sensors publish with
-`qos_profile_sensor_data`, which is `BEST_EFFORT`. A subscription with the number 10 therefore receives nothing from a
-laser scanner (https://github.com/ros2/ros2_documentation/issues/569).
+ROS 2 does not connect a `RELIABLE` subscription with a `BEST_EFFORT` publisher, nor a `TRANSIENT_LOCAL` subscription
+with a `VOLATILE` publisher. No message arrives. If the code gives a number instead of a profile, the profile is
+`RELIABLE` and `VOLATILE`. Drivers of sensors publish with `qos_profile_sensor_data`, which is `BEST_EFFORT`. A
+subscription with the number 10 therefore receives nothing from a laser scanner
+(https://github.com/ros2/ros2_documentation/issues/569).
 
 The rule reports a connection only if both profiles are constant in the code. They may come from another module, from a
 function, or from the row of a table that also names the topic.

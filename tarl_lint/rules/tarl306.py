@@ -6,9 +6,9 @@ last command. For this reason, a Pioneer robot collided with expensive equipment
 (https://github.com/amor-ros-pkg/rosaria/pull/51). Store the time of the last message, and stop the robot when the
 message is too old.
 
-The rule reports nothing if the program reads the time anywhere, except for the stamp of a message, or resets the
-values that the callback stored: to `None`, or to a constant in the function that publishes. The rule also reports
-nothing if the program contains words such as `timeout`, `last_` and `counter`, because such words suggest that the
+The rule reports nothing if the program reads the time anywhere; the stamp of a message does not count. The rule also
+reports nothing if the program resets the stored values to `None` or, in the function that publishes, to a constant.
+Words such as `timeout`, `last_` and `counter` in the program also suppress the report, because they suggest that the
 program detects old messages in another way.
 """
 

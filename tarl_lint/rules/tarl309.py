@@ -3,10 +3,10 @@
 The callback raises AttributeError at its first message. rospy logs the error and continues, so the rest of the robot
 runs without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
 
-The rule covers messages that packages of the workspace define, and messages of `std_msgs`, `geometry_msgs`, `nav_msgs`,
-`sensor_msgs` and a few other packages, whose fields are known.
-The rule examines the arguments of new messages, and variables that always hold a message: a message that a callback
-receives, or one that the function creates.
+The rule covers messages that packages of the workspace define, and messages of `std_msgs`, `geometry_msgs`,
+`nav_msgs`, `sensor_msgs` and a few other packages whose fields tarl-lint knows. The rule examines the arguments of
+new messages, and variables that always hold a message: a message that a callback receives, or one that the function
+creates.
 """
 
 from __future__ import annotations

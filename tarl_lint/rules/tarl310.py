@@ -6,10 +6,10 @@ by chance. The launch files of a perception stack could not be started with one 
 because two nodes were named `to_pose_array`
 (https://github.com/strands-project/strands_perception_people/issues/212).
 
-Names are compared in full, including the namespace. Two nodes named `$(anon view)` in one file also get the same name.
-The rule does not cover nodes that have no name in the launch file and whose program was not read, or nodes that an
-event starts. It also does not cover nodes that are started under a condition known only on the robot, because one of
-them may replace the other.
+Names are compared in full, including the namespace. Two nodes named `$(anon view)` in one file also get the same
+name. The rule does not cover nodes that have no name in the launch file and whose program was not read, or nodes that
+an event starts. Nodes that are started under a condition known only on the robot are not covered either, because one
+of them may replace the other.
 """
 
 from __future__ import annotations
