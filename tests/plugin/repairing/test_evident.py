@@ -231,7 +231,7 @@ def test_changes_with_symptoms_come_before_all_other_structural_changes(tmp_path
     assert set(labels) > {"confirmed"}
 
 
-def test_changes_without_parameters_are_tried_first_and_once_without_any_symptom(tmp_path: Path) -> None:
+def test_changes_without_parameters_are_tried_first_and_once_even_without_any_symptom(tmp_path: Path) -> None:
     order = order_of(tmp_path)
     names: list[str] = []
 

@@ -142,7 +142,7 @@ def test_the_first_seed_decides_whether_the_outcomes_are_equal(tmp_path: Path) -
     assert not trials.equated
 
 
-def test_the_fourth_seed_is_not_run(tmp_path: Path) -> None:
+def test_a_change_at_the_definition_runs_on_three_seeds_only(tmp_path: Path) -> None:
     of, trials = placing(tmp_path), Scripted(lambda moved, seed: (9.5 if seed < 13 else 0.0) + (not moved))
     found: Any = of(tripled(of), trials)  # type: ignore[arg-type]
     assert found.mutations[0].place is not None

@@ -114,7 +114,7 @@ def test_a_named_constant_is_changed_where_it_is_defined(
         ("gains.json", '{"pid": {\n  "gain": 2.0\n}}\n', "json.load(file)", '+  "gain": '),
     ],
 )
-def test_a_file_that_the_node_loads_is_changed(
+def test_a_constant_from_a_file_that_the_node_loads_is_changed_in_this_file(
     worn: pytest.Pytester, name: str, text: str, load: str, line: str
 ) -> None:
     (worn.path / name).write_text(text)

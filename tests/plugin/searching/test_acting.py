@@ -54,7 +54,9 @@ def test_the_unchanged_program_runs_once_for_each_seed_that_is_compared() -> Non
     assert trials.beside == 2
 
 
-def test_until_a_change_gains_changed_commands_count_as_an_effect_and_for_named_constants_as_a_loss() -> None:
+def test_before_any_change_gains_changed_commands_count_as_an_effect_and_for_named_constants_as_a_loss() -> (
+    None
+):
     named, other = Unit((TEETH,)), Unit((INERT[0],))
     gains = Gains(0.5, acting=lambda unit: unit == named)
     for unit in (named, other):

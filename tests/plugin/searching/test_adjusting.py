@@ -84,7 +84,7 @@ def test_constants_with_a_noise_gain_a_refusal_or_enough_refinements_are_not_ref
     assert search.tried != []
 
 
-def test_an_offset_is_refined_half_as_often() -> None:
+def test_an_offset_is_refined_half_as_often_as_other_constants() -> None:
     offset = Unit((operand(3, "0.0", 0.0),))
     found, search = adjusted(entered((offset, 2.2, 3.0)), {})
     search.tried.clear()

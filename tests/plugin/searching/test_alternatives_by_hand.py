@@ -72,7 +72,7 @@ def test_the_exponent_stays_within_its_limits() -> None:
     assert fitted(9.0)[1][-1] == pytest.approx(MOST, abs=2e-3)
 
 
-def test_the_factor_is_kept_if_nothing_is_closer() -> None:
+def test_the_factor_is_kept_if_no_exponent_gives_a_smaller_deviation() -> None:
     assert fitted(1.0) == (2.0, [1.0, WEAKER, STRONGER])
     assert fitted(0.98)[0] == pytest.approx(2.0, rel=0.02)
     assert nearest(2.0, lambda _: 3.0) == (2.0, 3.0)
@@ -221,7 +221,7 @@ def test_small_steps_are_tried_on_a_limited_number_of_constants() -> None:
     assert {unit for unit, _ in found} == {*units[:OTHERS]}
 
 
-def test_booleans_other_scales_and_the_constant_itself_are_not_made_smaller() -> None:
+def test_booleans_and_constants_on_other_scales_and_the_constant_found_get_no_smaller_change() -> None:
     flag, share = Unit((constant(6, "ON", True),)), Unit((constant(7, "S", 0.9),), SHARE)
     again = Unit(A.operands, SHARE)
     assert smaller(A, 9.0, [A, again, flag, share, LITERAL], Gains(0.1), ALWAYS) == []
@@ -251,7 +251,7 @@ def test_a_gain_of_half_a_percent_is_followed_by_larger_steps(gain: float, follo
     assert bool(onward([(B, 1.22)], A, 50.0, entered((B, 1.22, gain)), ALWAYS, 10.0)) is followed
 
 
-def test_the_halfway_factor_is_the_square_root_and_the_ends_are_not_between() -> None:
+def test_the_factor_halfway_to_one_is_the_square_root_and_the_ends_do_not_count_as_between() -> None:
     assert milder(A, 2.25, {1.0: 0.0, 2.25: 9.0, 0.4: 1.0, 3.0: 1.0}) == 1.5
     assert milder(A, 0.25, {1.0: 0.0, 0.25: 9.0, 2.2: 1.0, 0.2: 1.0}) == 0.5
     assert milder(A, 2.25, {2.0: 1.0}) is None

@@ -129,7 +129,7 @@ def test_the_leaders_of_the_statements_are_united_with_what_has_no_effect_alone(
 
 
 @pytest.mark.parametrize(("gain", "united"), [(1.0, False), (1.1, True), (8.9, True), (9.0, False)])
-def test_leaders_are_united_if_they_gain_more_than_noise_and_less_than_almost_all(
+def test_leaders_are_combined_if_they_gain_more_than_noise_and_less_than_almost_all_of_the_wanted_gain(
     gain: float, united: bool
 ) -> None:
     search = searching([A, B], (A, 2.2, gain))

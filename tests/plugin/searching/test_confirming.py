@@ -26,7 +26,9 @@ def trials(lost: float, designed: float = 8.5, passed: bool = True) -> Trials:
 
 
 @pytest.mark.parametrize(("lost", "expected"), [(0.0, True), (0.35, True), (0.45, False)])
-def test_seeds_that_earn_less_as_designed_do_not_reject_a_candidate(lost: float, expected: bool) -> None:
+def test_a_seed_on_which_the_designed_mission_also_earns_little_does_not_reject_a_candidate(
+    lost: float, expected: bool
+) -> None:
     assert confirmed(CANDIDATE, trials(lost), GOAL, 0) is expected
 
 

@@ -49,7 +49,7 @@ def test_the_best_change_counts_as_far_if_no_smaller_change_gains_about_as_much(
 
 
 @pytest.mark.parametrize("count", [1, 3, 8])
-def test_inward_steps_are_many_if_few_constants_matter_and_few_if_many_do(count: int) -> None:
+def test_the_fewer_constants_matter_the_more_inward_steps_are_tried(count: int) -> None:
     table = gains_of(*((unit, 5.0, -1.0) for unit in UNITS[:count]))
     matter, steps = inward(UNITS, table)
     assert matter == list(UNITS[:count])

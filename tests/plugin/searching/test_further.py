@@ -57,7 +57,9 @@ def test_constants_that_gained_under_one_guard_are_tried_first_under_the_next() 
     assert trials.spent <= 2 * len(GAINS) + 8 + CONFIRMATIONS
 
 
-def test_a_far_change_that_gains_a_part_under_a_condition_is_tried_without_it_before_other_changes() -> None:
+def test_a_far_change_that_gains_under_a_condition_is_tried_without_the_condition_before_other_changes() -> (
+    None
+):
     def earned(factors: dict[int, float], guard: Guard) -> float:
         right = factors.get(6, 1.0) > 4.0
         return (

@@ -209,7 +209,7 @@ def test_a_named_constant_in_the_same_statement_is_tried_before_the_others() -> 
     assert plainer(Oddness.OFFSET, {}, [*others, beside], 5.0, beside) == [others[3], *others[:3], beside]
 
 
-def test_a_named_constant_in_the_next_lines_is_tried_before_one_above() -> None:
+def test_a_named_constant_in_the_next_lines_is_tried_before_one_in_the_lines_above() -> None:
     """A value that reads too low is scaled, or the threshold with which it is compared below is lowered."""
     above, beside, threshold, further = (Unit((constant(n, f"N{n}"),)) for n in (50, 51, 52, 60))
     ranked = plainer(Oddness.INNER, {}, [above, further, threshold], 5.0, beside)

@@ -96,7 +96,7 @@ def test_a_repair_that_makes_missions_longer_comes_after_one_that_does_not() -> 
     assert order(as_designed, 1) == [CRUISE]
 
 
-def test_if_there_is_no_gentler_repair_the_search_for_one_takes_few_episodes() -> None:
+def test_the_search_for_a_gentler_repair_takes_few_episodes_if_there_is_none() -> None:
     many = tuple(named(at, f"LIMIT_{at}", 2.0) for at in range(10, 18))
     kept = searched((*many, CRUISE), {CRUISE: (0.3, 0.5)})
     slow = searched((*many, CRUISE), {CRUISE: (0.3, 0.5)}, {CRUISE: 3 * STEPS})

@@ -191,7 +191,7 @@ def test_a_guard_on_two_sensors_holds_if_both_conditions_do() -> None:
     assert [holds(both, one, (X, WET)) for one in cells] == [True, False, False, False, False]
 
 
-def test_the_best_guard_comes_before_no_guard_and_the_next_ones_follow() -> None:
+def test_the_best_guard_is_searched_before_the_search_without_a_guard_and_further_guards_follow() -> None:
     seen = along([1, 1, 2, 2, 3, 8, 8, 8], [1, 2, 3, 4, 5, 6, 7, 8], {1: 4.0, 2: 4.0, 3: 1.0})
     best, second, third = guard_on(1.0, 3.0), guard_on(1.0, 4.0), guard_on(2.0, 3.0)
     assert telling([third, second, best], seen, 4) == (best, ALWAYS, second, third)
@@ -199,7 +199,7 @@ def test_the_best_guard_comes_before_no_guard_and_the_next_ones_follow() -> None
     assert telling([third, second, best], seen, 1) == (ALWAYS,)
 
 
-def test_a_guard_with_little_merit_comes_after_no_guard() -> None:
+def test_a_guard_with_little_merit_is_searched_after_the_search_without_a_guard() -> None:
     seen = along([1, 2, 3, 4], [1, 2, 3, 4], {1: 1.3, 2: 1.0, 3: 1.0, 4: 1.0})
     assert telling([guard_on(1.0, 2.0)], seen, 2)[0] == ALWAYS
 

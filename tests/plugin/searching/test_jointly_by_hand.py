@@ -64,7 +64,7 @@ def test_the_length_scales_are_the_likeliest_found_one_coordinate_at_a_time() ->
     assert Surrogate(POINTS, VALUES).fitted.tolist() == best.tolist()
 
 
-def test_equal_values_are_predicted_everywhere() -> None:
+def test_if_all_values_are_equal_this_value_is_predicted_everywhere() -> None:
     mean, deviation = Surrogate(POINTS, np.full(4, 7.0)).predict(np.array([[0.3, 0.2], [50.0, 50.0]]))
     assert mean.tolist() == [7.0, 7.0]
     assert deviation[1] == pytest.approx(1.0)

@@ -64,7 +64,7 @@ def test_half_of_the_choices_explore_untried_mutations() -> None:
     assert made.generator.ranges == [2]  # type: ignore[attr-defined]
 
 
-def test_the_best_known_mutation_is_chosen_unless_it_explores() -> None:
+def test_the_best_known_mutation_is_chosen_unless_the_search_explores() -> None:
     made = learner(3, 0.5, 0.2)
     made.seen = {0: [1.0, 3.0], 2: [1.5]}
     assert made._choose(0) == 0

@@ -81,7 +81,7 @@ def test_if_no_constant_matters_every_step_is_tried_once() -> None:
     ]
 
 
-def test_each_step_runs_on_the_next_seed_and_all_constants_of_a_step_on_the_same_one() -> None:
+def test_each_step_runs_on_the_next_seed_and_all_constants_of_a_step_run_on_the_same_seed() -> None:
     seeds: dict[str, set[int]] = {}
     for words, seed in order(dead, [LITERAL, ZERO, FLAG]):
         seeds.setdefault(words, set()).add(seed)
@@ -115,7 +115,9 @@ def test_larger_steps_are_not_tried_if_the_smaller_ones_lost_more_than_the_slack
     assert found[late:] == ["A=10", "A=0.05", "A=5", "A=0.15"]
 
 
-def test_constants_that_lose_both_ways_get_steps_between_and_then_finer_ones() -> None:
+def test_constants_that_lose_when_raised_and_when_lowered_get_the_steps_between_and_then_finer_steps() -> (
+    None
+):
     found = tried(lambda changes: -3.0 * float(LITERAL in changes), [LITERAL])
     assert found[:6] == ["3.0=6.6", "3.0=1.2", "3.0=4.5", "3.0=1.95", "3.0=3.66", "3.0=2.46"]
 
@@ -159,7 +161,7 @@ def test_a_second_guard_is_searched_as_well_only_if_the_first_has_a_condition() 
     assert guarded[:4] == ["3.0=6.6|", "3.0=1.2|", "3.0=4.5|", "3.0=4.5"]
 
 
-def test_a_gain_under_a_condition_is_tried_without_it_at_once() -> None:
+def test_a_change_that_gains_under_a_condition_is_tried_without_the_condition_immediately() -> None:
     search, seen = sweeping(lambda changes: 4.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL, A])
     search.attempts.guards = (WET, ALWAYS)
     list(search.candidates())
@@ -167,7 +169,7 @@ def test_a_gain_under_a_condition_is_tried_without_it_at_once() -> None:
     assert words.index("3.0=6.6") < words.index("A=2.2")
 
 
-def test_a_gain_is_not_tried_without_its_condition_if_the_search_has_only_conditions() -> None:
+def test_a_change_is_not_tried_without_its_condition_if_the_search_allows_only_conditional_changes() -> None:
     found = tried(lambda changes: 4.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL, A], guards=(WET,))
     assert all(words.endswith("|") for words in found)
 
@@ -201,7 +203,7 @@ def test_a_proposal_without_an_effect_is_made_stronger_only_where_constants_resp
     assert "3.0=15" not in tried(dead, [LITERAL], proposed=True)[:5]
 
 
-def test_a_factor_that_makes_an_idle_proposal_weaker_is_skipped() -> None:
+def test_a_factor_that_makes_a_proposal_without_an_effect_weaker_is_skipped() -> None:
     found = tried(dead, [LITERAL], proposed=True, weaker=lambda _, factor: factor < 1.0)
     assert found[:2] == ["3.0=3", "3.0=6.6"]
     assert not [one for one in found if one in ("3.0=1.2", "3.0=0.45", "3.0=1.95", "3.0=0.15", "3.0=-3")]
@@ -311,7 +313,7 @@ def test_the_effects_are_those_of_the_best_factor_by_statement() -> None:
     assert name.effect == 0.0
 
 
-def test_reaching_the_goal_once_leaves_a_change_open_only_if_it_may_be_confirmed_later() -> None:
+def test_a_change_that_reached_the_goal_once_stays_open_only_if_it_may_still_be_confirmed() -> None:
     search, seen = sweeping(lambda changes: 10.0, [LITERAL])
     (unit,) = units([LITERAL])
     assert search.attempts.reaches(unit, 2.2, ALWAYS, 1, confirmable=False)

@@ -511,7 +511,7 @@ def test_a_change_that_restores_the_designed_mission_exactly_has_no_rivals() -> 
     assert search.log == []
 
 
-def test_a_rival_comes_first_if_its_missions_deviate_by_at_most_six_tenths() -> None:
+def test_a_rival_comes_first_if_its_missions_deviate_at_most_six_tenths_as_much() -> None:
     for level, rival in ((0.29, [change(B, 0.5)]), (0.31, [])):
         search, made = rivalling({"A": 0.5, "B": level, "C": 1.0}, [(B, 0.5)])
         assert list(made.before(change(A, 2.0), A, 2.0, 0, True, True)) == rival

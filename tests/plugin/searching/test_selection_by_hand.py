@@ -318,7 +318,7 @@ def test_an_unchanged_factor_is_not_confirmed() -> None:
 # uses
 
 
-def test_each_use_of_a_constant_that_holds_is_learned_from() -> None:
+def test_the_search_learns_from_each_use_of_a_constant_that_holds() -> None:
     one, two = constant(3, "AHEAD"), replace(constant(8, "AHEAD"), definition=constant(3, "AHEAD").definition)
     seen: list[int] = []
 
@@ -507,7 +507,7 @@ def test_the_leaders_of_statements_are_sorted_by_gain() -> None:
     assert found.leaders(ALWAYS) == [(9.0, (B, 2.2)), (3.0, (A, 0.4))]
 
 
-def test_units_lead_a_step_by_their_gain_with_the_step_before() -> None:
+def test_units_are_ordered_in_a_step_by_their_gain_with_the_step_before() -> None:
     found = table((A, 2.2, -0.5), (B, 2.2, 3.0), (C, 2.2, 1.0), (D, 0.4, 9.0))
     assert found.leading(2.2, ALWAYS, [A, B, C, D], -1.0) == [B, C, A]
     assert found.leading(2.2, ALWAYS, [A, B, C, D], 1.0) == [B, C]
@@ -524,7 +524,7 @@ def test_units_that_have_no_effect_in_two_tries_are_not_moved_further() -> None:
     assert acting.moving([A]) == []  # a gain shows the way, so changed commands no longer count
 
 
-def test_the_largest_gain_is_at_least_zero_and_above_the_slack_counts() -> None:
+def test_the_largest_gain_is_at_least_zero_and_counts_only_above_the_slack() -> None:
     assert Gains(1.0).best() == 0.0
     assert table((A, 2.2, -3.0)).best() == 0.0
     found = table((A, 2.2, 1.5))
@@ -539,7 +539,7 @@ def test_the_largest_gain_is_at_least_zero_and_above_the_slack_counts() -> None:
     assert found.most((B, ALWAYS)) == 0.0
 
 
-def test_a_proposal_is_idle_if_its_own_value_changed_nothing() -> None:
+def test_a_proposal_has_no_effect_if_its_own_value_changed_nothing() -> None:
     found = table((A, 1.0, 0.0), (B, 1.0, 2.0), (C, 2.2, 0.0), proposed=True)
     assert [found.idle(one) for one in (A, B, C, D)] == [True, False, False, False]
     assert not table((A, 1.0, 0.0)).idle(A)

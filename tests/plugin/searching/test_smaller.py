@@ -74,7 +74,7 @@ def test_a_small_change_does_not_come_first_if_missions_then_differ_more_from_th
     assert order(searched((TARGET, TAU, HOTTEST), windows, {TARGET: LATE}), 1) == [HOTTEST]
 
 
-def test_a_repair_found_late_is_not_compared() -> None:
+def test_a_repair_that_is_found_late_is_not_compared_with_smaller_changes() -> None:
     windows = {HOTTEST: (2.0, 2.4), TARGET: (0.8, 0.85)}
     late = searched((TARGET, TAU, HOTTEST), windows, budget=15)
     assert order(late, 1) == [HOTTEST]
@@ -107,7 +107,7 @@ def test_the_value_halfway_to_the_original_one_does_not_come_first_if_it_earns_l
     assert next(found).mutations[0].value == 2.2
 
 
-def test_no_halfway_value_is_proposed_if_one_between_was_tried_or_the_constant_has_no_scale() -> None:
+def test_no_halfway_value_is_proposed_if_a_value_in_between_was_tried_or_the_constant_has_no_scale() -> None:
     unit = Unit((HOTTEST,))
     assert milder(unit, 0.4, {1.0: 0.0, 0.4: 9.0, 2.2: 1.0}) == 0.632
     assert milder(unit, 0.15, {1.0: 0.0, 0.15: 9.0, 0.4: 1.0}) is None

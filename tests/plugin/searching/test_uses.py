@@ -81,7 +81,7 @@ def test_each_use_is_credited_with_the_gain_of_all_uses_if_none_suffices_alone()
     assert {each.effect for effects in found.values() for each in effects} == {9.0}
 
 
-def test_a_use_with_a_small_gain_is_not_credited_with_what_an_untried_use_may_bring() -> None:
+def test_a_use_with_a_small_gain_is_not_credited_with_the_possible_gain_of_an_untried_use() -> None:
     whole, first = Unit((FIRST, SECOND)), Unit((FIRST,))
     found = best_effects([(whole, {2.2: 9.0}), (first, {2.2: 1.0})], mutations)
     assert (found[str(FIRST.site)][0].effect, found[str(SECOND.site)][0].effect) == (1.0, 9.0)
