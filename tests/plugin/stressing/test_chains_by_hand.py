@@ -124,7 +124,7 @@ def test_a_drift_that_fails_on_the_same_seeds_is_confirmed_by_these_seeds_alone(
     assert tests.ran == {*ran[0]}
 
 
-def test_the_estimate_extends_the_share_of_seeds_that_failed_before_to_all_of_them() -> None:
+def test_the_estimate_extends_the_share_of_failed_seeds_to_all_seeds() -> None:
     failed = {row for row in confirmed(even)[1][0] if even(row)}
     half = sorted(failed)[1::2]
     _, ran, counts, __ = confirmed(even, lambda row: row in half)

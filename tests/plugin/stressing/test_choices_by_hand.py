@@ -91,7 +91,9 @@ def searching(
     return found
 
 
-def test_predictions_vary_in_boldness_and_each_is_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_predictions_vary_in_the_error_that_they_allow_for_and_each_is_tried(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     model = Model([np.array([0.5, 0.0]), np.array([0.4, 0.0]), np.array([0.3, 0.0])])
     search = searching(monkeypatch, model)
     search._predict()
@@ -117,7 +119,7 @@ def test_without_a_failing_prediction_the_most_promising_drift_is_tried_if_it_ga
     assert search.probed == [drift(0.2, 0.1)] * tried
 
 
-def test_nothing_is_predicted_or_explored_in_one_direction(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_in_one_direction_neither_predicts_nor_explores(monkeypatch: pytest.MonkeyPatch) -> None:
     line = space_of(a=Drift.range(0.0, 1.0, nominal=0.0))
     search = searching(monkeypatch, Model([]), space=line)
     search._predict()
@@ -209,7 +211,7 @@ def test_a_probe_runs_more_episodes_only_while_they_fail(monkeypatch: pytest.Mon
         assert search.tried == [drift(0.5)]
 
 
-def test_the_rate_that_fresh_episodes_show_is_above_the_one_that_refutes() -> None:
+def test_the_failure_rate_that_fresh_episodes_can_show_is_above_the_rate_that_refutes_the_guarantee() -> None:
     evaluator = evaluator_of(lambda *_: (True, 10.0), SQUARE)
     search = Nearest(evaluator, [], risk=0.02)
     most = most_passed(evaluator.guarantee, NEAREST[-1], 0.02 * SPENT[-1])
@@ -220,7 +222,7 @@ def test_the_rate_that_fresh_episodes_show_is_above_the_one_that_refutes() -> No
     assert hopeless_._share == 0.99
 
 
-def test_a_bisection_is_as_fine_as_a_fiftieth_of_the_declared_range_on_a_shorter_ray() -> None:
+def test_on_a_shorter_ray_a_bisection_also_stops_at_a_fiftieth_of_the_declared_range() -> None:
     space = space_of(b=Drift.range(-1.0, 1.0, nominal=0.0))
     evaluator = evaluator_of(lambda point, _: (point["b"] < 0.6, 10.0), space)
     one = Curve(

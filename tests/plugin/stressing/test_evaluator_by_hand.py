@@ -303,7 +303,7 @@ def test_the_margin_is_measured_again_after_further_episodes() -> None:
     assert made.measured(UP)[0] < first[0]
 
 
-def test_the_seeds_of_a_chain_run_in_the_order_that_is_asked_for() -> None:
+def test_the_seeds_of_a_chain_run_in_the_requested_order() -> None:
     made, ran = evaluator(lambda point, draws: (True, float(draws.normal())))
     made.ordered("chain 0", UP, [5, 2])
     found = made.ordered("chain 0", UP, [2, 7])

@@ -81,12 +81,16 @@ def explored(space: Any = CUBE, **given: Any) -> str:
 ORDER = ["made", ("nominal", 0.01), "begin", ("rays", 0.01), ["mud"], "end", ["slope"], "draw"]
 
 
-def test_a_search_in_several_directions_surrounds_that_along_the_rays(trail: list[Any]) -> None:
+def test_a_search_in_several_directions_runs_before_and_after_the_search_along_the_rays(
+    trail: list[Any],
+) -> None:
     assert explored() == ""
     assert trail == ORDER
 
 
-def test_a_search_in_one_direction_or_without_combinations_has_the_rays_only(trail: list[Any]) -> None:
+def test_a_search_in_one_direction_or_without_combinations_searches_only_along_the_rays(
+    trail: list[Any],
+) -> None:
     alone = [("nominal", 0.01), ("rays", 0.01), ["mud"], ["slope"]]
     assert explored(LINE) == ""
     assert trail == alone

@@ -111,7 +111,7 @@ def test_a_test_of_one_part_has_the_whole_risk_and_ignores_the_other_part() -> N
     assert most_passed(GIVEN, 64, 0.01, "rate") == most_passed(GIVEN, 64, 0.02)
 
 
-def test_unlucky_seeds_explain_failures_that_all_drifts_on_them_have() -> None:
+def test_failures_that_all_drifts_have_on_the_same_seeds_are_explained_by_these_seeds() -> None:
     """Of eight drifts with two pairs of seeds in turn, those on the second pair fail, wherever they are."""
     vectors = np.array([[0.1 * number, 0.0] for number in range(1, 9)])
     failed, episodes = np.array([0.0, 2.0] * 4), np.full(8, 2.0)

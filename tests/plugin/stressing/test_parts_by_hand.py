@@ -184,7 +184,7 @@ def test_a_direction_that_is_not_drawn_is_nominal() -> None:
 # predictions
 
 
-def test_vectors_within_the_room_are_kept_and_longer_ones_get_a_random_length() -> None:
+def test_vectors_within_the_limits_are_kept_and_longer_ones_get_a_random_length() -> None:
     vectors = np.array([[0.3, 0.4], [3.0, 4.0]])
     draws: Any = SimpleNamespace(random=lambda count: np.full(count, 1 / 16))
     assert _within(vectors, 1.0, draws)[0].tolist() == [0.3, 0.4]
@@ -241,7 +241,7 @@ def test_without_a_nearer_place_the_margin_falls_from_one_at_nominal() -> None:
     assert found.at == pytest.approx(0.25)
 
 
-def test_undecided_evidence_fails_if_its_margin_is_negative() -> None:
+def test_undecided_evidence_counts_as_a_failure_if_its_margin_is_negative() -> None:
     results = [("open", -0.1), ("open", 0.0), ("holds", -0.1), ("fails", 0.1)]
     assert [seen(margin, result).failing for result, margin in results] == [True, False, False, True]
 
@@ -363,7 +363,7 @@ def test_columns_count_characters_and_not_bytes() -> None:
     assert list(places_in('é = "ü"; b = 2')) == [(1, 1), (1, 10)]
 
 
-def test_a_statement_that_also_ran_in_passing_episodes_is_no_statement_of_failures() -> None:
+def test_a_statement_that_also_ran_in_passing_episodes_is_not_listed_as_a_statement_of_failures() -> None:
     places = [("a.py", 1, "x"), ("a.py", 2, "y"), ("a.py", 3, "z")]
     found = only_in_failures(places, [{0, 1}, {1, 2}, {0}], [{0}])
     assert found == (Executed("a.py", 2, "y", 2), Executed("a.py", 3, "z", 1))

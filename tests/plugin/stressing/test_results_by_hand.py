@@ -192,7 +192,7 @@ def test_a_test_stops_early_if_the_guarantee_can_hardly_be_refuted_any_more() ->
     assert not ends(8, 0.0)
 
 
-def test_a_strict_test_also_stops_if_alike_further_losses_would_not_refute_the_guarantee() -> None:
+def test_a_strict_test_also_stops_if_further_losses_of_the_same_size_would_not_refute_the_guarantee() -> None:
     """Losses alternate around their mean; they deviate by 0.1, so the mean of 16 has a standard error of 0.026.
 
     If 48 of 64 episodes lose one standard error more, the mean grows by 0.019. The quantiles are Student's.

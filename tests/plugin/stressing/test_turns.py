@@ -127,7 +127,9 @@ def shared(seeds: int, own: float, common: float, typical: float, loss: float = 
     return shared_error(samples, np.full(60, loss), typical)
 
 
-def test_the_error_that_common_seeds_cause_shrinks_with_their_number_and_not_with_that_of_drifts() -> None:
+def test_the_error_of_common_seeds_shrinks_with_the_number_of_seeds_and_not_with_the_number_of_drifts() -> (
+    None
+):
     assert shared(16, 0.0, 0.4, 0.0) == pytest.approx(0.4 / sqrt(16), rel=0.4)
     assert shared(60, 0.0, 0.4, 0.0) == pytest.approx(0.4 / sqrt(60), rel=0.4)
     assert shared(16, 0.3, 0.4, 0.3**2) == pytest.approx(0.4 / sqrt(16), rel=0.4)
