@@ -72,7 +72,7 @@ def test_a_topic_name_without_a_default_is_unknown(tmp_path, name):
     assert ends(tmp_path, name) == ((), ())
 
 
-def test_a_topic_name_that_is_a_literal_does_not_count_as_default(tmp_path):
+def test_a_literal_topic_name_does_not_count_as_a_default(tmp_path):
     assert ends(tmp_path, '"cmd_vel"') == (("cmd_vel",), ())
 
 

@@ -158,7 +158,7 @@ def test_a_join_without_change_returns_the_same_object():
     assert join(value, Value(DATA)) is value
 
 
-def test_stores_of_other_roots_are_read_once_per_run(ctx):
+def test_stores_of_other_entry_points_are_read_once_per_run(ctx):
     obj = instance(ctx, "a")
     key, other = (obj, "x"), Root("other", "other")
     ctx.shared.leave(ctx.shared.ends, other, key, Value(DATA))

@@ -63,7 +63,7 @@ def linked(*lines):
         ["if msg.data > 0:", "    twice = 2", "    self.pub.register(lambda: twice)"],
     ],
 )
-def test_stores_to_objects_of_one_run_do_not_rerun_the_root(lines):
+def test_stores_to_objects_of_one_run_do_not_rerun_the_entry_point(lines):
     assert linked(*lines).runs["on"] == 1
 
 
@@ -130,7 +130,7 @@ rospy.spin()
 """
 
 
-def test_when_an_object_begins_to_stand_for_several_only_roots_that_stored_to_it_run_again():
+def test_when_an_object_begins_to_stand_for_several_only_entry_points_that_stored_to_it_run_again():
     machine = Counted(ROBOTS)
     with_deep_stack(machine.link)
     assert any(obj.many and obj.name == "Robot" for obj in machine.objects.values())

@@ -222,7 +222,9 @@ def test_equal_nodes_of_two_ros_packages_are_distinguished(example, in_directory
         ("implicit", (), False),
     ],
 )
-def test_each_level_of_fail_on_includes_the_lower_levels(example, in_directory, level, codes, fails):
+def test_each_level_of_the_option_fail_on_includes_the_lower_levels(
+    example, in_directory, level, codes, fails
+):
     in_directory({})
     result = Result(findings=tuple(replace(example.finding(), code=code) for code in codes))
     assert exceeds(result, resolve(Options(fail_on=level))) is fails

@@ -80,7 +80,7 @@ def test_a_call_does_not_see_a_field_that_was_added_on_another_path(store, obj):
     assert not same(store, reads)
 
 
-def test_a_call_that_waits_reads_what_other_roots_store_in_new_fields(store, obj):
+def test_a_call_that_waits_reads_what_other_entry_points_store_in_new_fields(store, obj):
     reads = noted(store, obj)
     hidden(store, obj, "x", BOTTOM)
     reads.wait(0)
@@ -139,7 +139,7 @@ def test_a_call_is_not_replayed_if_an_object_that_it_creates_is_already_referenc
     assert not same(store, reads)  # creating the object would first merge the held one into the older ones
 
 
-def test_an_object_that_points_to_another_one_counts_only_if_the_call_can_see_it(store, obj):
+def test_a_pointer_to_an_object_counts_only_if_the_call_can_see_the_object_that_holds_the_pointer(store, obj):
     one, other = Obj("instance", "one"), Obj("instance", "other")
     store.put((one, "x"), pointer(obj))
     reads = Reads(holders={obj: len(obj.holders)})
@@ -149,7 +149,7 @@ def test_an_object_that_points_to_another_one_counts_only_if_the_call_can_see_it
     assert not same(store, reads)
 
 
-def test_a_wait_ignores_keys_to_which_no_other_root_stores():
+def test_a_wait_ignores_keys_to_which_no_other_entry_point_stores():
     shared, root, other = Shared(), Root("one", "test"), Root("other", "test")
     mine, theirs = (Obj("instance", "a"), "x"), (Obj("instance", "b"), "x")
     shared.leave(shared.pauses, other, theirs, Value(DATA))

@@ -292,7 +292,7 @@ rospy.spin()
 """
 
 
-def test_an_instance_that_a_library_calls_is_not_passed_to_its_own_call():
+def test_a_library_does_not_pass_an_instance_to_the_call_of_this_instance():
     layers = ", ".join(f"conv{n}=lib.Conv({n})" for n in range(8))
     body = "\n".join(f"        x = self.conv{n}(x)" for n in range(8))
     machine = work(NET.replace("LAYERS", layers).replace("BODY", body))
@@ -300,7 +300,7 @@ def test_an_instance_that_a_library_calls_is_not_passed_to_its_own_call():
     assert len(called) == 2  # called by `on` and by the library
 
 
-def test_escapes_of_nested_calls_do_not_multiply() -> None:
+def test_exceptions_that_leave_nested_calls_do_not_multiply() -> None:
     levels = "\n".join(
         f"    def step_{n}(self, x):\n        if x > {n}:\n            self.step_{n + 1}(x)\n"
         f"        self.step_{n + 1}(x)\n"

@@ -150,7 +150,7 @@ def test_an_interrupt_caught_by_the_node_still_ends_the_run_and_keeps_the_old_re
     tank.runpytest_subprocess(*RECORD).stdout.fnmatch_lines(["Interrupted *: no recording was written.*"])
 
 
-def test_a_callback_that_is_the_publish_call_itself_does_not_count_as_not_driven(
+def test_a_callback_that_is_the_publish_call_itself_counts_as_driven(
     tank: pytest.Pytester,
 ) -> None:
     copy = 'rospy.Subscriber("/level", Float64, rospy.Publisher("/copy", Float64, queue_size=1).publish)'

@@ -185,7 +185,7 @@ def test_a_cycle_of_carry_nodes_depends_on_its_origin(graph, node):
     assert item in graph.data[one] | graph.data[two]
 
 
-def test_a_copy_of_a_node_has_other_conditions_instead_of_one_decision(graph, node):
+def test_a_copy_of_a_node_can_replace_one_decision_by_other_conditions(graph, node):
     kept, decided = (7, True), (3, False)
     read = node("read", kept, decided)
     copy = graph.under(read, 3, frozenset([(5, True)]))

@@ -122,7 +122,9 @@ def test_an_unset_attribute_of_a_library_object_is_its_bound_method(ctx, kind, n
 
 
 @pytest.mark.parametrize(("name", "held"), [("create_subscription", True), ("name", False)])
-def test_only_a_ros_method_of_an_unknown_object_is_held(ctx, name, held):
+def test_an_attribute_of_an_unknown_object_is_a_stored_callable_only_if_ros_has_a_method_of_this_name(
+    ctx, name, held
+):
     value = heap.read_or_hold(ctx, ONE, name)
     assert [(one.kind, one.info[1]) for one in value.pts] == ([("method", name)] if held else [])
     assert value.deps == ONE.deps
@@ -365,7 +367,9 @@ def test_joining_a_single_continuation_leaves_it_unchanged(ctx):
     assert ctx.store.get((obj, "x")) is ONE
 
 
-def test_a_field_set_on_one_path_may_have_its_default_but_a_variable_has_only_the_set_value(ctx, frame):
+def test_a_field_set_on_one_path_may_have_its_default_on_the_other_but_a_variable_has_only_the_set_value(
+    ctx, frame
+):
     obj = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((cls, "x"), ONE)
     both = joins.joined(ctx, [{(frame, "v"): TWO, (obj, "x"): TWO}, {}])
@@ -645,7 +649,7 @@ def test_an_object_with_callbacks_stands_for_all_objects_of_its_allocation_site(
     assert ctx.store.get((box, "x")) == Value(consts=frozenset([1, 2]))
 
 
-def test_roots_that_relied_on_a_single_object_run_again_when_it_stands_for_several(ctx, frame):
+def test_entry_points_that_relied_on_a_single_object_run_again_when_it_stands_for_several(ctx, frame):
     first, other = Root("first", "callback"), Root("other", "callback")
     box, lib = recency.intern(ctx, "instance", "box"), made(ctx, "lib", "lib")
     ctx.store.root = first

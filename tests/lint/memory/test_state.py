@@ -143,7 +143,7 @@ def test_a_constant_is_not_data(store, obj):
     assert obj.changes == ["x"]
 
 
-def test_holders_of_objects_that_may_become_older_ones_are_recorded(store, obj):
+def test_holders_of_objects_that_may_become_older_objects_are_recorded(store, obj):
     library = Obj("lib", "l")
     store.put((obj, "x"), pointer(library))
     function = Obj("closure", "f")
@@ -229,7 +229,7 @@ def test_finished_reads_keep_what_a_replay_needs_and_drop_values_that_the_call_s
     assert (outer.taken, outer.arrivals, outer.written) == ({}, set(), set())
 
 
-def test_values_that_a_root_reads_at_several_waits_are_joined_per_key(obj):
+def test_values_that_an_entry_point_reads_at_several_waits_are_joined_per_key(obj):
     reads = Reads()
     reads.admit((obj, "x"), ONE)
     reads.admit((obj, "x"), TWO)
@@ -335,7 +335,7 @@ def test_recorded_reads_are_outdated_when_an_object_ceases_to_be_a_single_one(st
 # --- shared stores ------------------------------------------------------------------------------------
 
 
-def test_a_run_begins_with_the_stores_of_all_roots(shared, obj):
+def test_a_run_begins_with_the_stores_of_all_entry_points(shared, obj):
     mine, other, once = Root("mine", "callback"), Root("other", "callback"), Root("once", "timer", once=True)
     key = (obj, "x")
     assert shared.entry(key, mine) is None
@@ -348,7 +348,7 @@ def test_a_run_begins_with_the_stores_of_all_roots(shared, obj):
     assert shared.entry(key, mine) == Value(frozenset([1, 2, 3]))
 
 
-def test_the_stores_during_a_wait_are_those_that_other_roots_make(shared, obj):
+def test_the_stores_during_a_wait_are_those_that_other_entry_points_make(shared, obj):
     mine, other = Root("mine", "callback"), Root("other", "callback")
     key = (obj, "x")
     shared.leave(shared.ends, mine, key, ONE)
@@ -358,7 +358,7 @@ def test_the_stores_during_a_wait_are_those_that_other_roots_make(shared, obj):
     assert shared.others(key, other) == ONE
 
 
-def test_changing_a_stored_value_reruns_the_roots_that_read_it(shared, obj):
+def test_changing_a_stored_value_reruns_the_entry_points_that_read_it(shared, obj):
     reader, writer = Root("reader", "callback"), Root("writer", "callback", once=True)
     key = (obj, "x")
     shared.entry(key, reader)
@@ -373,14 +373,14 @@ def test_changing_a_stored_value_reruns_the_roots_that_read_it(shared, obj):
     assert shared.ends[key][writer] == BOTH
 
 
-def test_a_root_that_can_run_concurrently_with_itself_reads_its_own_stores(shared, obj):
+def test_an_entry_point_that_can_run_concurrently_with_itself_reads_its_own_stores(shared, obj):
     mine = Root("mine", "callback")
     shared.entry((obj, "x"), mine)
     shared.leave(shared.ends, mine, (obj, "x"), ONE)
     assert shared.dirty == {mine}
 
 
-def test_a_new_field_reruns_the_roots_that_read_the_object_or_its_enclosing_object(shared):
+def test_a_new_field_reruns_the_entry_points_that_read_the_object_or_its_enclosing_object(shared):
     whole, watcher, writer = Obj("message", "m"), Root("watcher", "callback"), Root("writer", "timer")
     shared.look(whole, watcher)
     shared.leave(shared.ends, writer, (whole.sub("pose"), BORN), BOTTOM)
@@ -389,7 +389,7 @@ def test_a_new_field_reruns_the_roots_that_read_the_object_or_its_enclosing_obje
     assert shared.dirty == {watcher}
 
 
-def test_new_data_in_an_object_reruns_the_roots_that_found_no_data_in_it(shared):
+def test_new_data_in_an_object_reruns_the_entry_points_that_found_no_data_in_it(shared):
     obj, doubter = Obj("lib", "a"), Root("doubter", "callback")
     part, outer = obj.sub("x"), Obj("lib", "outer")
     obj.inside[outer] = None
@@ -411,7 +411,7 @@ def test_the_generation_of_a_frame_is_its_number_of_ancestors_with_the_same_func
     assert Root("d", "timer", function=program.function, maker=third).generations() == 2
 
 
-def test_an_object_created_on_another_path_has_only_the_stores_of_other_roots(shared, store):
+def test_an_object_created_on_another_path_has_only_the_stores_of_other_entry_points(shared, store):
     obj, other, mine = Obj("lib", "made"), Root("other", "callback"), store.root
     store.push()
     store.put((obj, BORN), BOTTOM)
@@ -442,7 +442,7 @@ def test_an_object_created_on_the_current_path_is_invisible_to_others_until_a_wa
 # --- waits --------------------------------------------------------------------------------------------
 
 
-def test_reads_after_a_wait_depend_on_the_stores_of_other_roots(store, obj):
+def test_reads_after_a_wait_depend_on_the_stores_of_other_entry_points(store, obj):
     key, other = (obj, "x"), Root("other", "callback")
     store.put(key, ONE)
     store.shared.leave(store.shared.ends, other, key, TWO)
@@ -455,7 +455,7 @@ def test_reads_after_a_wait_depend_on_the_stores_of_other_roots(store, obj):
     assert store.heard() == {key: TWO}
 
 
-def test_a_store_of_another_root_reruns_no_root_if_it_adds_nothing_new(store, obj):
+def test_a_store_of_another_entry_point_reruns_no_entry_point_if_it_adds_nothing_new(store, obj):
     store.put((obj, "x"), BOTH)
     store.shared.leave(store.shared.ends, Root("other", "callback"), (obj, "x"), TWO)
     store.waited = True
@@ -464,19 +464,19 @@ def test_a_store_of_another_root_reruns_no_root_if_it_adds_nothing_new(store, ob
     assert store.shared.dirty == set()
 
 
-def test_reading_a_local_variable_after_a_wait_does_not_depend_on_other_roots(store, frame):
+def test_reading_a_local_variable_after_a_wait_does_not_depend_on_other_entry_points(store, frame):
     store.put((frame, "x"), ONE)
     store.waited = True
     assert store.get((frame, "x")) is ONE
     assert store.root.heeds == set()
 
 
-def test_a_wait_skips_keys_that_no_other_root_stores_to(store, obj):
+def test_a_wait_skips_keys_that_no_other_entry_point_stores_to(store, obj):
     store.root.heeds.add((obj, "x"))
     assert store.heard() == {}
 
 
-def test_a_root_publishes_no_values_that_came_from_other_roots(store, obj):
+def test_an_entry_point_publishes_no_values_that_came_from_other_entry_points(store, obj):
     key = (obj, "x")
     assert store.admit(key, BOTH, TWO) is BOTH
     assert key not in store.foreign
@@ -489,7 +489,7 @@ def test_a_root_publishes_no_values_that_came_from_other_roots(store, obj):
     assert store.mine(key, Value(frozenset([1, 2]), consts=frozenset())) is None
 
 
-def test_a_root_publishes_only_values_that_did_not_exist_at_its_start(store, obj):
+def test_an_entry_point_publishes_only_values_that_did_not_exist_at_its_start(store, obj):
     key = (obj, "x")
     assert store.mine(key, ONE) is ONE
     store.found[key] = ONE

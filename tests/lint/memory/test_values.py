@@ -48,7 +48,7 @@ def instance(cls: Obj) -> Obj:
 # --- values -------------------------------------------------------------------------------------------
 
 
-def test_a_join_has_the_nodes_objects_and_constants_of_both():
+def test_a_join_has_the_nodes_objects_and_constants_of_both_values():
     one, two = Obj("lib", 1), Obj("lib", 2)
     both = join(
         Value(frozenset([1]), frozenset([one]), frozenset(["a"])),

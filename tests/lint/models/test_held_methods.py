@@ -46,17 +46,17 @@ def ends(make: str, main: str) -> list[tuple[str, tuple[str, ...], tuple[str, ..
 
 @pytest.mark.parametrize("main", MAINS.values(), ids=MAINS)
 @pytest.mark.parametrize("subscribe", [DIRECT, *HELD.values()], ids=["called directly", *HELD])
-def test_a_held_method_subscribes(subscribe, main):
+def test_a_stored_reference_to_a_subscribe_method_makes_a_subscription(subscribe, main):
     assert ends(PLAIN.format(subscribe=subscribe), main) == [("explicit", ("in",), ("out",))]
 
 
 @pytest.mark.parametrize("main", MAINS.values(), ids=MAINS)
-def test_a_held_method_makes_a_publisher(main):
+def test_a_stored_reference_to_a_publisher_method_makes_a_publisher(main):
     make = 'make = node.create_publisher; self.pub = make(Float64, "out", 10)'
     assert ends(f"{make}\n        {DIRECT}", main) == [("explicit", ("in",), ("out",))]
 
 
-def test_a_method_of_another_name_makes_nothing():
+def test_a_stored_reference_to_any_other_method_makes_nothing():
     subscribe = 'make = node.create_something; make(Float64, "in", self.receive, 10)'
     assert ends(PLAIN.format(subscribe=subscribe), MAINS["a node of a library"]) == []
 
@@ -72,5 +72,5 @@ def test_a_method_of_another_name_makes_nothing():
         ("create_subscriptions", False),
     ],
 )
-def test_a_file_that_names_a_held_method_may_start_a_node(text, starts):
+def test_a_file_that_stores_a_reference_to_such_a_method_may_start_a_node(text, starts):
     assert (STARTING.search(text) is not None) is starts

@@ -78,7 +78,7 @@ def test_the_largest_task_starts_first(pool, monkeypatch):
 
 @pytest.mark.parametrize(("count", "chunk"), [(31, 1), (32, 2), (64, 3)])
 @pytest.mark.usefixtures("safe_path")
-def test_much_work_is_given_in_chunks_of_a_sixteenth_for_each_process(pool, count, chunk):
+def test_many_tasks_are_divided_into_sixteen_chunks_for_each_process(pool, count, chunk):
     in_processes(str, range(count), [1] * count, 2, silent)
     assert pool.chunk == chunk
 

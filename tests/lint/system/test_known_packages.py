@@ -67,7 +67,9 @@ def codes(root: Path, launch: str, pilot: str = "Twist", base: str = "Twist") ->
         ("rviz", "rviz", ["TARL301"]),
     ],
 )
-def test_a_node_may_be_the_other_end_only_if_its_package_uses_the_type(tmp_path, package, program, found):
+def test_a_node_that_was_not_read_may_be_the_other_end_only_if_its_package_uses_the_type(
+    tmp_path, package, program, found
+):
     assert codes(tmp_path, PAIR.format(NODE.format(package, program))) == found
 
 
@@ -78,7 +80,7 @@ def test_the_velocities_of_a_multiplexer_are_twists(tmp_path):
     assert codes(tmp_path / "b", PAIR.format(stamped), base="TwistStamped") == []
 
 
-def test_the_type_of_messages_of_the_workspace_is_used_only_there(tmp_path):
+def test_a_message_type_of_the_workspace_is_used_only_by_packages_of_the_workspace(tmp_path):
     (tmp_path / "robot/msg").mkdir(parents=True)
     (tmp_path / "robot/msg/Twist.msg").write_text("float64 speed\n")
     (tmp_path / "robot/launch").mkdir()

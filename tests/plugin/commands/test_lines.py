@@ -263,7 +263,7 @@ def test_many_statements_are_listed_only_on_request() -> None:
     assert len([*show.lines(given, 9000, [1500, 2500])]) == 8 + 2 * 13
 
 
-def test_a_loss_of_success_alone_is_told_with_both_shares() -> None:
+def test_a_decrease_of_successes_without_a_loss_of_reward_is_reported_with_both_shares() -> None:
     verdict = {
         "result": "degraded",
         "because": ["success"],

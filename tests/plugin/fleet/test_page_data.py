@@ -74,7 +74,7 @@ def test_the_period_is_that_of_the_missions_or_unknown() -> None:
         ),
     ],
 )
-def test_the_headline_counts_groups_that_always_differed_or_changed_later(
+def test_the_headline_counts_groups_that_always_differed_and_groups_that_changed_later(
     groups: tuple[str | None, ...], found: tuple[str, ...], expected: str
 ) -> None:
     watched = [robot(f"g{n}") for n in range(len(groups))]

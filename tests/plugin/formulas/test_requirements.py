@@ -259,7 +259,7 @@ def test_an_episode_without_virtual_time_is_an_error(pytester: pytest.Pytester) 
     assert "No virtual time passed" in told(pytester.runpytest("-q", "-p", "no:asyncio"))
 
 
-def test_a_missing_rtamt_gives_the_install_command(
+def test_the_error_for_a_missing_rtamt_names_the_install_command(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from pytest_tarl.formulas import parsing
@@ -270,7 +270,7 @@ def test_a_missing_rtamt_gives_the_install_command(
     assert install_command("stl") in told(run(pytester, 'requires=["always wet"]'))
 
 
-def test_a_python_too_new_for_rtamt_gives_the_supported_versions(
+def test_the_error_for_a_python_that_is_too_new_for_rtamt_names_the_supported_versions(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from pytest_tarl.formulas import parsing

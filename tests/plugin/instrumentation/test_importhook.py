@@ -219,7 +219,7 @@ def test_functions_classes_and_instances_can_be_pickled(project, monkeypatch):
         del sys.modules["numbers_of_a_robot"]
 
 
-def test_doctests_of_a_recorded_module_pass(project, monkeypatch):
+def test_the_doctests_of_a_recorded_module_pass(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     with library(project, Recorder()) as module:
         assert doctest.testmod(module) == (0, 3)

@@ -126,7 +126,7 @@ def test_the_region_of_the_paper_has_the_cells_with_at_least_half_of_the_largest
     assert paper_region(np.empty((0, 2)), np.empty((0, 2))).tolist() == []
 
 
-def test_there_is_a_slab_for_each_bin_of_each_sensor_and_one_for_all_cells() -> None:
+def test_there_is_a_slab_of_cells_for_each_bin_of_each_sensor_and_one_slab_for_all_cells() -> None:
     assert [slab.tolist() for slab in slabs([(0, 5), (0, 6), (1, 5)])] == [
         [0, 1],
         [2],

@@ -181,7 +181,7 @@ def test_the_error_about_a_file_of_another_format_names_the_file(
         load(path)
 
 
-def test_a_missing_recording_gives_the_command_to_run(tmp_path: Path) -> None:
+def test_the_error_for_a_missing_recording_names_the_command_to_run(tmp_path: Path) -> None:
     with pytest.raises(FixtureError, match=r"no such recording.*--tarl-record"):
         load(tmp_path / "a.npz")
 

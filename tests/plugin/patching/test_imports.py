@@ -26,7 +26,9 @@ from pytest_tarl.patching.imports import Import, import_edits, imported, referen
         ("if True:\n    from std_msgs.msg import Bool", "Bool"),
     ],
 )
-def test_an_imported_name_has_its_expression_in_the_file(text: str, expression: str) -> None:
+def test_the_expression_for_an_imported_name_follows_the_imports_of_the_file(
+    text: str, expression: str
+) -> None:
     assert imported(document("node.py", text + "\n"), "std_msgs.msg", "Bool") == expression
 
 

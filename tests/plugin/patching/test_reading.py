@@ -175,7 +175,7 @@ def test_a_patch_that_is_sealed_again_is_read(tmp_path: Path) -> None:
         "header",
     ],
 )
-def test_a_patch_that_was_edited_is_damaged_even_if_its_seal_is_right(
+def test_an_edited_patch_counts_as_damaged_even_if_its_seal_is_right(
     tmp_path: Path, changes: list[tuple[str, str]]
 ) -> None:
     path = rewritten(tmp_path)
@@ -201,7 +201,7 @@ def edited(new: str, path: Path) -> str:
     return f"@@ -{one},{int(count) + (first.endswith('5'))} +{begin},{int(size) - (second.endswith('3'))} @@"
 
 
-def test_two_sections_of_one_file_are_damaged(tmp_path: Path) -> None:
+def test_a_patch_with_two_sections_for_one_file_counts_as_damaged(tmp_path: Path) -> None:
     path = rewritten(tmp_path)
     body = path.read_text().partition("diff --git")[2]
     with pytest.raises(RepairError, match="is damaged"):

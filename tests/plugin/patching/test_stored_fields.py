@@ -38,7 +38,7 @@ def test_an_index_of_a_field_is_checked_against_the_length(field: str, expected:
 
 
 @pytest.mark.parametrize("field", ["a b", "", "a..b", "ranges()", "1.5x"])
-def test_a_field_that_is_no_path_is_refused(field: str) -> None:
+def test_a_field_that_is_not_a_path_is_refused(field: str) -> None:
     with pytest.raises(RepairError, match="not a dotted path"):
         _field("message", field)
 

@@ -56,7 +56,7 @@ def test_the_annotation_at_the_line_contains_the_whole_conclusion(
     )
 
 
-def test_a_drift_without_loss_is_a_warning_and_slices_are_named_as_the_evidence(varied: Varied) -> None:
+def test_a_drift_without_loss_gives_a_warning_that_names_the_slices_as_its_evidence(varied: Varied) -> None:
     drifted = Verdict("drifted", 0.001, 0.5, 0.0, 0.4, 0.5)
     one = varied(
         verdict=drifted, drift=None, culprits=(Culprit(SITE, 0.0, "slices"),), repair=None, region=Region()

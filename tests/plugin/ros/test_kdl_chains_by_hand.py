@@ -62,7 +62,7 @@ def test_a_jacobian_has_a_twist_for_each_joint() -> None:
             one[place] = 1.0
 
 
-def test_the_columns_of_a_jacobian_are_expressed_elsewhere() -> None:
+def test_the_columns_of_a_jacobian_are_expressed_in_another_frame_or_at_another_point() -> None:
     for change, expected in (
         (lambda one: one.changeRefPoint(A), MOTION.RefPoint(A)),
         (lambda one: one.changeBase(TURN), TURN * MOTION),

@@ -239,7 +239,7 @@ def test_a_namespace_has_a_slash_at_both_ends(start: Start) -> None:
     assert ros.namespace["found"] == ("/r/", "/r/n")  # type: ignore[attr-defined]
 
 
-def test_the_keys_of_a_terminal_are_read_up_to_the_size_and_the_line(start: Start) -> None:
+def test_a_terminal_is_read_up_to_the_requested_size_or_the_end_of_the_line(start: Start) -> None:
     ros = start("""
         import sys, rospy
         rospy.init_node("n")

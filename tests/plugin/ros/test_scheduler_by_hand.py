@@ -255,7 +255,7 @@ def test_greenlets_are_reused_and_end_with_the_scheduler(clock: Scheduler, progr
     assert clock.spawn(program, lambda: None).worker is not workers[0]
 
 
-def test_only_tasks_can_wait_and_hand_over(clock: Scheduler) -> None:
+def test_only_tasks_can_wait_and_hand_over_control(clock: Scheduler) -> None:
     assert running_task() is None
     for wrong, words in (
         (clock.wait, "only a task can wait"),

@@ -300,7 +300,7 @@ def test_random_rotations_are_determined_by_three_numbers() -> None:
     assert ((tf.random_vector(100) >= 0) & (tf.random_vector(100) < 1)).all()
 
 
-def test_transforms_are_the_same_up_to_a_common_factor() -> None:
+def test_transforms_count_as_the_same_if_they_differ_by_a_common_factor() -> None:
     matrix = tf.euler_matrix(0.1, 0.2, 0.3)
     assert tf.is_same_transform(matrix, -2 * matrix)
     assert not tf.is_same_transform(matrix, tf.euler_matrix(0.1, 0.2, 0.31))
