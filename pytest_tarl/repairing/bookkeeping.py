@@ -1,7 +1,7 @@
-"""Bookkeeping: numbers that ROS needs but that do not say how a node controls anything, so that no search moves them.
+"""Bookkeeping: numbers that ROS needs but that do not influence how a node controls the robot.
 
-Examples are the `0` in `rospy.Time(0)`, which means the latest transform, the timeout of a look-up, the length of a
-queue or of a transform buffer, the id of a marker, and the period of a timer that only logs.
+No search changes them. Examples are the `0` in `rospy.Time(0)`, which means the latest transform, the timeout of a
+look-up, the length of a queue or of a transform buffer, the id of a marker, and the period of a timer that only logs.
 """
 
 from __future__ import annotations

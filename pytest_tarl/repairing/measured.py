@@ -40,8 +40,8 @@ class Change:
 def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand]) -> list[Hint]:
     """Return the changes of named constants that the recorded mission pairs suggest, the most certain ones first.
 
-    A constant that is compared with a value, added to it or subtracted from it has its unit, so that it must change as
-    the value did: constants next to values with the same factor change together, then each alone, then by the
+    A constant that is compared with a value, added to it or subtracted from it has the unit of this value, so it must
+    change as the value did: constants next to values with the same factor change together, then each alone, then by the
     difference. A constant that multiplies or divides a value changes by the factor of the result, in either direction.
     """
     changes = _changes(order, recorded)

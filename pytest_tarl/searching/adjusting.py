@@ -97,7 +97,7 @@ class Adjusting:
         ]
 
     def _in_a_wide_bracket(self, key: tuple[Unit, Guard]) -> bool:
-        """Return whether a named constant has a sharp peak between factors far enough apart for a better one."""
+        """Return whether a named constant has a sharp peak between factors far enough apart to try one between them."""
         named = kind(key[0]) is Oddness.NAMED and not self.search.proposed
         return named and bracket(self.search.gains.of(*key)) >= WIDE
 

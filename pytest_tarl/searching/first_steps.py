@@ -110,7 +110,7 @@ class FirstSteps:
     def _uses_apart(self, guard: Guard, block: Sequence[Unit]) -> Iterator[Candidate]:
         """Change a constant at one of its uses only, because its effects at several uses may cancel each other.
 
-        Each use runs on the seed of the whole constant, which shows whether it acts alike.
+        Each use runs on the seed on which the constant ran as a whole, which shows whether both have the same effect.
         """
         tries, gains = self.attempts, self.attempts.gains
         wholes = [whole for whole in gains.moving(block) if tries.uses.of(whole)]

@@ -39,7 +39,7 @@ def nearest(factor: float, deviation: Callable[[float], float]) -> tuple[float, 
 
 
 def _approach(start: float, better: float, at: Callable[[float], float]) -> None:
-    """Try where the minimum lies if it is between two exponents, then where it lies if it is beyond the better one."""
+    """Try the place of the minimum if it is between two exponents, then its place beyond the better exponent."""
     if at(_between(start, better, at)) < at(better):
         return
     slope = (at(start) - at(better)) / (start - better)

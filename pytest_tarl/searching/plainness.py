@@ -46,10 +46,10 @@ def plainer(
 ) -> list[Unit]:
     """Return the units whose change would be less unusual than the candidate's, best gain first.
 
-    Units that gain at least `promising` come first. Untried units follow, the least unusual first. Of equally unusual
-    ones, those in the statement of `beside` come first: in a product, a named constant has the same effect as the
-    literal next to it. Those in the next lines follow: a lower threshold has the same effect as a larger value that is
-    compared with it. If the candidate changes a literal, only `UNTRIED` untried units follow.
+    Units that gain at least `promising` come first. Untried units follow, the least unusual first. Among equally
+    unusual constants, those in the statement of `beside` come first: in a product, a named constant has the same effect
+    as the literal next to it. Those in the next lines follow: a lower threshold has the same effect as a larger value
+    that is compared with it. If the candidate changes a literal, only `UNTRIED` untried units follow.
     """
     read = [unit for unit in units if kind(unit) < odd]
     gaining = [unit for unit in read if unit in gains and max(gains[unit].values()) >= promising]

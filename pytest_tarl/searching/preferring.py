@@ -303,7 +303,7 @@ class Preferences:
     def _smaller_holding(
         self, unit: Unit, step: float, guard: Guard, pair: int
     ) -> tuple[float, Candidate | None]:
-        """Try a small step, and those beside it if it earns nearly enough; return the first that is confirmed."""
+        """Try a small step and, if it earns nearly enough, the steps beside it; return the first confirmed one."""
         if (unit, guard) in self.search.refused:
             return step, None
         candidate = self.search.holding(unit, step, guard, pair)

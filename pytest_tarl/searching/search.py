@@ -154,7 +154,7 @@ class Trials:
         self._known = {**other._known, **self._known}
 
     def equate(self, candidate: Candidate, other: Candidate) -> None:
-        """Take the outcomes of a candidate as those of another one that acts alike, unless that one ran itself."""
+        """Use the outcomes of a candidate for another candidate that acts alike, unless the other one ran itself."""
         for (one, seed), outcome in list(self._known.items()):
             if one == candidate:
                 self._known.setdefault((other, seed), outcome)

@@ -125,8 +125,8 @@ def best_effects(
 ) -> dict[str, list[OperandEffect]]:
     """Return for each site id the gain of each operand at its best factor; on ties, the factor tried first wins.
 
-    If all uses of a constant together gain more than some of them alone, and others may bring the gain, the former get
-    only their own gain.
+    If all uses of a constant together gain more than the uses that were tried alone, untried uses may bring the
+    difference, so each tried use gets only its own gain.
     """
     gained = list(gained)
     best: dict[Operand, OperandEffect] = {}

@@ -34,8 +34,8 @@ def longer(base: Joint, selection: ForwardSelection) -> bool:
 def unmasked(base: Joint, hidden: Sequence[Unit], selection: ForwardSelection) -> Iterator[Candidate]:
     """Yield confirmed combinations of `base` and one of the `hidden` units. Raise BudgetSpentError.
 
-    Each unit is tried with a larger value, then those without an effect with a smaller one. A unit with an effect is
-    tried at once with further factors.
+    Each unit is tried with a larger value; units without an effect are then tried with a smaller one. A unit with an
+    effect is tried at once with further factors.
     """
     gain = yield from selection.gain(base)
     if gain is None:

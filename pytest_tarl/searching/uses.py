@@ -46,7 +46,7 @@ class Uses:
     def alone(self, whole: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
         """Once try each use alone of a constant that reached the goal on some seeds only.
 
-        Its other uses may be what fails missions.
+        The other uses may be the reason why missions fail.
         """
         uses = self.of(whole)
         if len(uses) <= MOST and (whole, guard) not in self._apart:
