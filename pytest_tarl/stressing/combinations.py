@@ -119,7 +119,7 @@ def _share(number: int) -> float:
 def _apart(found: Sequence[Failure], evaluator: Evaluator) -> list[Failure]:
     """Return failures in the same order without those that hardly differ from a nearer one.
 
-    Such a failure contains the nearer one, and its distance is less than APART times that of the nearer one.
+    Such a failure contains the nearer one, and its distance is less than APART times the distance of the nearer one.
     """
     kept: list[Failure] = []
     for one in sorted(found, key=lambda one: (one.distance, one.names)):

@@ -195,7 +195,7 @@ class Evaluator:
 
     @property
     def fresh_pools(self) -> list[str]:
-        """Return the pools of fresh seeds: that of the rays and the released ones."""
+        """Return the pools of fresh seeds: the pool of the rays and the released pools."""
         return [RAYS, *self._released]
 
     def losses(self, point: Point) -> tuple[list[float], int]:

@@ -193,9 +193,9 @@ def hopeless(
 ) -> bool:
     """Return whether the first episodes make it unlikely that `most` episodes will refute the guarantee.
 
-    A refutation is unlikely if the guarantee would still hold after adding about one standard error to both
-    the loss and the number of failures; `part` is that of `refuted`. With `strict`, a refutation is also unlikely if
-    further episodes that lose as much as these, plus one standard error, would not refute the guarantee.
+    A refutation is unlikely if the guarantee would still hold after adding about one standard error to both the loss
+    and the number of failures; `part` has the same meaning as in `refuted`. With `strict`, a refutation is also
+    unlikely if further episodes that lose as much as these, plus one standard error, would not refute the guarantee.
     """
     if part != "loss":
         count, failed = len(outcomes), sum(not one.passed for one in outcomes)

@@ -48,9 +48,9 @@ def nominal_variance(given: Guarantee, typical: float) -> float:
 def variance_near(loss: float, every: Sequence[Vector], typical: float) -> float:
     """Return the variance of the losses of drifts whose mean loss is about `loss`.
 
-    Episodes often vary more at the boundary than near nominal. Each drift counts by its degrees of freedom and by how
-    near its mean is; the typical variance counts as `LIKE` degrees of freedom. The losses are cut off, and drifts far
-    beyond the boundary do not count.
+    Episodes often vary more at the boundary than near nominal. Each drift is weighted by its degrees of freedom and by
+    the nearness of its mean; the typical variance counts as `LIKE` degrees of freedom. The losses are cut off, and
+    drifts far beyond the boundary do not count.
     """
     known = [one for one in every if len(one) > 1 and one.min() < HIGHEST]
     if not known:

@@ -78,7 +78,7 @@ class RateTests:
         return failures, seeds
 
     def _groups(self) -> list[list[int]]:
-        """Return the seeds in the order in which they run: those that failed before, new ones, those that passed."""
+        """Return the seeds in the order of their runs: those that failed before, then new ones, then the rest."""
         every = range(LOOKS[-1])
         parts = (
             [row for row in every if row in self.failed],
