@@ -265,7 +265,7 @@ class Tarl:
         self._situation.hear(topic, message)
 
     def type(self, text: str, node: str | None = None) -> None:
-        """Type text on the terminal of all running nodes, or of one, given by the name of its file or its node name.
+        """Type text on the terminals of all running nodes, or on that of `node`, the name of a file or of a node.
 
         Raise SettingsError if no such node runs.
         """

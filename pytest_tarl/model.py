@@ -329,7 +329,7 @@ class ListComparison:
 
 @dataclass(frozen=True, slots=True)
 class FormulaWorld:
-    """A formula in one world: its mean and least robustness, and how many episodes judged and violated it.
+    """A formula in one world: its mean and least robustness, and the numbers of judged and violated episodes.
 
     `first` is the time of the earliest violation in s, from the start of its episode.
     """

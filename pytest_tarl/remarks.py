@@ -86,7 +86,7 @@ def failing(verdict: Verdict) -> tuple[str, ...]:
 def unheard_of(
     offline: Sample, online: Sample, difference: Difference, sensors: Sequence[Sensor]
 ) -> Iterator[str]:
-    """Yield a remark if nearly all deployed situations are new; it says what was compared instead of them."""
+    """Yield a remark if nearly all deployed situations are new; the remark states what was compared instead."""
     if difference.verdict.result == "no difference" or not apart(offline, online):
         return
     names = [sensors[d].name for d in difference.region.without]

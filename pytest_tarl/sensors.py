@@ -34,8 +34,8 @@ class Sensor:
     `edges` gives bins of unequal width. With `bins` alone, the edges are learned from recorded episodes, so that all
     bins hold about equally many values. An `angle` wraps around; its range is -π to π unless `low` and `high` say
     otherwise. `categories` lists the values of a text sensor. Without any of these, the values are booleans or small
-    integers, and each has its own bin. `tilings` stores the utility in that many overlapping grids of tiles instead of
-    bins, so that values close to each other share what they learn.
+    integers, and each has its own bin. If `tilings` is set, the utility is stored in this number of overlapping grids
+    of tiles instead of bins, so that similar values share what they learn.
     """
 
     name: str

@@ -174,7 +174,7 @@ def _show(typed: Namespace, result: Result) -> None:
 
 
 def _view(typed: Namespace, stream: TextIO | None = None) -> View:
-    """Return the display settings; they are those of the terminal if the report goes to one."""
+    """Return the display settings: those of the terminal if the report goes to a terminal."""
     view = View(
         show_paths=typed.show_paths or typed.all_steps,
         all_steps=typed.all_steps,

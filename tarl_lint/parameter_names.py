@@ -19,7 +19,7 @@ _MARKED: Final = re.compile(f"{MARK}(\\d+){MARK}")
 
 @dataclass(frozen=True, slots=True)
 class ParameterName:
-    """A parameter: its name in the code, and its default; None if the default is not one known text.
+    """A parameter: its name in the code and its default, which is None if the default is not a single known text.
 
     Other kinds are the node's name, the last part of it ("own"), its namespace, and a name after resolving and
     remapping.

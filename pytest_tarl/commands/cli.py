@@ -24,7 +24,7 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # errno values tha
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command and return its exit code: 0; 1 if it refuses or a check fails; 2 after a user error."""
+    """Run a command and return its exit code: 1 if it refuses or a check fails, 2 after a user error, otherwise 0."""
     _prepare_streams()
     arguments = parser().parse_args(argv)
     sentence = arguments.needs(f"tarl {arguments.command}")

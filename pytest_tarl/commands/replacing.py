@@ -44,7 +44,7 @@ class _Opened:
     folder: int | None
 
     def name(self, suffix: str = "") -> str:
-        """Return the file's name, or that of a temporary file beside it, relative to the open folder."""
+        """Return the name of the file, or of a temporary file beside it, relative to the open folder."""
         name = f".{self.change.path.name}.{suffix}" if suffix else self.change.path.name
         return name if self.folder is not None else str(self.change.path.with_name(name))
 

@@ -39,7 +39,7 @@ def markdown(folder: Path, since: str | None = None) -> str:
 
 
 def _margins(folder: Path, since: str | None) -> list[str]:
-    """Return the margins as a table, compared with those of a revision if one is given."""
+    """Return the margins as a table; with a revision, compare them with the margins of that revision."""
     now = margins_in(str(folder))
     before = [] if since is None else margins_in(f"{since}:{folder.as_posix()}")
     rows = compared(before, now)

@@ -101,7 +101,7 @@ class Simulator:
         return -1 if self._clock is None else self._clock
 
     def _stop(self, running: Setup) -> None:
-        """End the running simulator, and print what it said while it ended."""
+        """End the running simulator, and print the output of its shutdown."""
         KEPT.running = None
         self._client.stop()
         _print(running, without_interrupts(self._client.output()), " after TARL had ended it")

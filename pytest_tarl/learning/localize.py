@@ -37,7 +37,7 @@ def prior(
     """Rank sites by score: the difference of a site's slices, relative to the largest one in its taint list.
 
     A site in several lists gets its best score. Sites without a difference are omitted. `changeable` holds the ids of
-    the sites with an operand that a repair can change: their scores are above 0.5, those of all others below.
+    the sites with an operand that a repair can change: these sites get scores above 0.5, all others scores below.
     """
     best: dict[str, tuple[float, SitePlace]] = {}
     for ranked in per_list:

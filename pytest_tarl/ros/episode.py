@@ -220,5 +220,5 @@ class Ros(Network):
 
 
 def _program(node: str) -> str:
-    """Return the name under which `tarl.start` starts a script, given its path; the name of a ROS node as it is."""
+    """Return the name under which `tarl.start` starts a script, given its path; a name of a ROS node is unchanged."""
     return node if node.startswith("/") else Path(node).stem

@@ -111,7 +111,7 @@ class LaunchPlan:
 
 
 def _check_alternatives(nodes: Sequence[Launched]) -> None:
-    """Raise SettingsError if one node is started only without another one, such as `if` and `unless` of an argument."""
+    """Raise SettingsError if two nodes exclude each other, as with `if` and `unless` of one argument."""
     for one, other in combinations(nodes, 2):
         if exclusive(one.node, other.node):
             argument = _ARGUMENT.search(one.node.condition)

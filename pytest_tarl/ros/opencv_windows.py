@@ -75,7 +75,7 @@ class Windows:
             self.moved[place](pos)
 
     def wait(self, delay: int = 0) -> int:
-        """Return the code of the next key that the test types, or -1 after `delay` ms without one (0: no limit)."""
+        """Return the code of the next key that the test types, or -1 after `delay` ms without a key (0: no limit)."""
         return _code(nanoseconds(delay / 1000) if delay > 0 else None)
 
     def poll(self) -> int:

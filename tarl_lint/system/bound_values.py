@@ -56,7 +56,7 @@ def binds(function: Function | ast.Lambda, name: str) -> bool:
 
 
 def bound_values(inside: ast.AST, name: str, texts: Collection[str]) -> Iterator[ast.expr | None]:
-    """Yield the values that statements bind to a name: assigned ones, and what loops iterate over; None if unknown.
+    """Yield the values that statements bind to a name: assigned values and iterables of loops; None if unknown.
 
     `texts` are names of variables that hold one text.
     """

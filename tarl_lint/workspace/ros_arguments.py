@@ -66,7 +66,7 @@ def ros2(arguments: str) -> Given:
 
 
 def first_of_each(remaps: Iterable[tuple[str, str]], namespace: str, node: str) -> Pairs:
-    """Return the remappings that ROS 2 applies to a node: the first of each name, without those of other nodes."""
+    """Return the remappings that ROS 2 applies to a node: the first of each name, and none of other nodes."""
     found: dict[str, tuple[str, str]] = {}
     for old, new in remaps:
         of, colon, name = old.rpartition(":")

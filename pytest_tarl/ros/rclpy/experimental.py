@@ -1,4 +1,4 @@
-"""rclpy.experimental: its executor runs callbacks like a single-threaded one; on a robot, it is faster."""
+"""rclpy.experimental: its executor runs callbacks like a single-threaded executor; on a robot, it is faster."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def method(bound: Bound, args: list[Any], keywords: dict[str, Any]) -> Any:
 
 
 def items_or_mapping(value: Any) -> Any:
-    """Return a mapping as it is, and the elements of other values."""
+    """Return a mapping unchanged, or the elements of another value."""
     return value if isinstance(value, dict) else listed(value)
 
 
