@@ -24,9 +24,9 @@ from pytest_tarl.spaces import Choice, Span
 def bottler(rng: np.random.Generator, syrup: float, head: float, lag: float) -> tuple[bool, float]:
     """Fill 24 bottles of 500 ml through a valve that a flow meter closes.
 
-    `syrup` is the temperature of the syrup in °C, `head` the height of the tank in m, and `lag` that of the valve in s.
-    The flow meter is blind below 60 ml/s. Now and then a bubble passes, so the errors have heavy tails. The tray passes
-    if at most two bottles are more than 20 ml off. The reward falls with the error and with the time.
+    `syrup` is the temperature of the syrup in °C, `head` the height of the tank in m, and `lag` the lag of the valve in
+    s. The flow meter is blind below 60 ml/s. Now and then a bubble passes, so the errors have heavy tails. The tray
+    passes if at most two bottles are more than 20 ml off. The reward falls with the error and with the time.
     """
     bubbles, trims = rng.standard_t(3.0, 24), float(rng.normal(0.0, 0.01))
     thick = exp(0.035 * (20.0 - syrup))
@@ -43,9 +43,9 @@ def hoist(
 ) -> tuple[bool, float]:
     """Stop a goods lift at ten floors, with a pulse counter on the motor and a rope that stretches.
 
-    `cars` is the load in t, `slip` of the rope on the sheave in percent per t, `stretch` of the rope in mm per t, and
-    `heat` the temperature of the brake in °C. The day passes if no step at a door is higher than 30 mm. The reward
-    falls with the mean step.
+    `cars` is the load in t, `slip` the slip of the rope on the sheave in percent per t, `stretch` the stretch of the
+    rope in mm per t, and `heat` the temperature of the brake in °C. The day passes if no step at a door is higher than
+    30 mm. The reward falls with the mean step.
     """
     floors = rng.integers(1, 9, 10)
     loads = cars * np.clip(rng.normal(0.8, 0.2, 10), 0.0, 1.2)

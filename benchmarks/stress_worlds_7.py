@@ -26,7 +26,7 @@ def unloader(
 ) -> tuple[bool, float]:
     """Unload twelve cartons from a trailer with two suction cups, one carton after the other.
 
-    `pores` is the air that leaks through a usual carton at full vacuum in l/s, `mass` that of a usual carton in kg,
+    `pores` is the air in l/s that leaks through a usual carton at full vacuum, `mass` the mass of a usual carton in kg,
     `lip` the wear of the cups from 0 to 1, and `supply` the pressure of the compressed air in bar. The arm grips up to
     three times until the vacuum reaches 42 kPa, and otherwise lifts the carton slowly. The mission passes if at most
     one carton falls. The reward is the number of cartons, less the time.
@@ -96,10 +96,10 @@ def neutraliser(
 ) -> tuple[bool, float]:
     """Neutralise waste water in a stirred tank with caustic soda before it enters the river.
 
-    `acid` is the concentration of the water relative to the usual one, `flow` in m³/h, `lag` that of the probe in s,
-    and `reagent` the strength of the soda relative to the usual one. A PI loop on the pH doses with a pump of limited
-    stroke. The run passes if the water in the basin behind the tank stays between pH 6 and 9 for 96 % of the time.
-    The reward falls with the distance from pH 7.3 and with the soda.
+    `acid` is the concentration of the water relative to the usual one, `flow` its flow in m³/h, `lag` the lag of the
+    probe in s, and `reagent` the strength of the soda relative to the usual one. A PI loop on the pH doses with a pump
+    of limited stroke. The run passes if the water in the basin behind the tank stays between pH 6 and 9 for 96 % of the
+    time. The reward falls with the distance from pH 7.3 and with the soda.
     """
     step, steps = 5.0, 420
     shocks, reads = rng.normal(0.0, 1.0, steps).tolist(), rng.normal(0.0, 0.03, steps).tolist()

@@ -42,9 +42,10 @@ def kiln(
 ) -> tuple[bool, float]:
     """Hold a tile kiln at 900 °C for four hours with a PI loop on the fuel, burning wood chips.
 
-    `moisture` is that of the chips (a share), `draught` that of the chimney in Pa, `grate` its free share, and `soot`
-    the thickness on the probe in mm. Wet chips need much air. The firing passes if the kiln stays within 60 K of its
-    temperature for 85 % of the time. The reward falls with the error and with the fuel.
+    `moisture` is the moisture of the chips (a share), `draught` the draught of the chimney in Pa, `grate` the free
+    share of the grate, and `soot` the thickness of the soot on the probe in mm. Wet chips need much air. The firing
+    passes if the kiln stays within 60 K of its temperature for 85 % of the time. The reward falls with the error and
+    with the fuel.
     """
     shocks, reads = rng.normal(0.0, 1.0, 80).tolist(), rng.normal(0.0, 4.0, 80).tolist()
     wall = float(rng.normal(1.0, 0.03))
@@ -104,9 +105,9 @@ def labeller(
 ) -> tuple[bool, float]:
     """Stick labels on thirty jars; a camera behind the machine counts those that are more than 3 mm off.
 
-    `speed` is that of the belt in m/s, `tilt` of the light barrier in degrees, `cold` the temperature of the glue below
-    the usual one in K, and `slip` that of the belt in percent. The batch passes with at most two bad labels; the reward
-    is 10 for a good batch and 8 for a bad one.
+    `speed` is the speed of the belt in m/s, `tilt` the tilt of the light barrier in degrees, `cold` the difference of
+    the glue's temperature from the usual one in K (downwards), and `slip` the slip of the belt in percent. The batch
+    passes with at most two bad labels; the reward is 10 for a good batch and 8 for a bad one.
     """
     jitter, dabs = rng.normal(0.0, 0.45, 30), rng.exponential(1.0, 30)
     middle = 9.0 * (speed - 0.5) - 0.55 * tilt + 0.06 * speed * slip * slip

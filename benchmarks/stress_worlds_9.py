@@ -27,9 +27,9 @@ def palletiser(
 ) -> tuple[bool, float]:
     """Stack 24 cartons of about 4 kg with a suction gripper.
 
-    `carton` is plain, glossy or wrapped in film; `humidity` is a share, `pace` the acceleration of the arm in m/s²,
-    and `tilt` that of the floor in degrees. The pallet passes if at most one carton falls. The reward is the number
-    of cartons, less the time.
+    `carton` is plain, glossy or wrapped in film; `humidity` is a share, `pace` the acceleration of the arm in m/s², and
+    `tilt` the tilt of the floor in degrees. The pallet passes if at most one carton falls. The reward is the number of
+    cartons, less the time.
     """
     force, wet = CARTONS[carton]
     masses, seals = rng.normal(4.0, 0.25, 24), rng.normal(1.0, 0.05, 24)
@@ -45,8 +45,8 @@ def skimmer(
 ) -> tuple[bool, float]:
     """Collect litter on a lake for a day with a solar boat.
 
-    `wind` is in m/s, `weed` the share of the lake that is overgrown, `sun` the energy of the day in kWh, and `drag`
-    that of the fouled hull, 1 when clean. The amount of litter on the lake varies widely. The day passes if
+    `wind` is in m/s, `weed` the share of the lake that is overgrown, `sun` the energy of the day in kWh, and `drag` the
+    relative drag of the fouled hull, 1 when clean. The amount of litter on the lake varies widely. The day passes if
     the boat comes home with energy left. The reward is the litter in kg.
     """
     litter = 18.0 * float(rng.lognormal(0.0, 0.45))
@@ -65,9 +65,9 @@ def matlander(
 ) -> tuple[bool, float]:
     """Land a courier drone on a mat of 1.2 m in a yard.
 
-    `gusts` is their scale in m/s, `swing` of the parcel on its cord in degrees, `dusk` from 0 (day) to 1 (night), and
-    `battery` the share of the thrust that is left. A landing fails if a single gust or a lost mark carries the drone
-    off the mat. The reward is the accuracy, which hardly depends on the drifts.
+    `gusts` is the scale of the gusts in m/s, `swing` the swing of the parcel on its cord in degrees, `dusk` runs from 0
+    (day) to 1 (night), and `battery` is the share of the thrust that is left. A landing fails if a single gust or a
+    lost mark carries the drone off the mat. The reward is the accuracy, which hardly depends on the drifts.
     """
     gust = gusts * float(rng.gumbel(0.9, 0.28))
     lost = float(rng.exponential(0.06)) * (0.4 + 1.2 * dusk**2)
@@ -82,9 +82,9 @@ def walkway(
 ) -> tuple[bool, float]:
     """Carry samples over a boardwalk with a wheeled robot on springs; each plank is a small bump.
 
-    `speed` is in m/s, `plank` the width of a plank in m, `load` in kg, and `wear` that of the dampers from 0 to 1. The
-    springs resonate if the planks come at the frequency of the loaded robot. The trip passes if the samples are shaken
-    by less than 20.5 mm. The reward falls with the shaking.
+    `speed` is in m/s, `plank` the width of a plank in m, `load` in kg, and `wear` the wear of the dampers from 0 to 1.
+    The springs resonate if the planks come at the frequency of the loaded robot. The trip passes if the samples are
+    shaken by less than 20.5 mm. The reward falls with the shaking.
     """
     rhythm = 2 * pi * speed * float(rng.normal(1.0, 0.01)) / plank
     own = sqrt(26000.0 / (55.0 + load + float(rng.normal(0.0, 0.5))))
