@@ -39,6 +39,6 @@ def test_the_gain_of_the_repair_is_shown_if_the_search_did_not_measure_that_chan
     assert found["other"][0].code == "X"
 
 
-def test_a_change_of_several_constants_has_no_effect_of_one_line() -> None:
+def test_a_change_of_several_constants_is_not_shown_as_the_effect_of_one_line() -> None:
     several = Candidate(Unit((KP, operand(5, "2.0", 2.0))).mutations(mutations, 5.0), ALWAYS)
     assert with_confirmed({}, several, [6.0], [1.0]) == {}

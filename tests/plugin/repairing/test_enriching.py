@@ -147,7 +147,7 @@ def test_the_search_for_failing_missions_stays_within_any_budget(
 
 
 @pytest.mark.parametrize(("less", "found"), [(0.01, True), (0.0, False)])
-def test_a_mission_fails_if_it_earns_less_than_designed_by_more_than_the_slack(
+def test_a_mission_fails_if_it_earns_less_than_the_designed_mission_by_more_than_the_slack(
     less: float, found: bool
 ) -> None:
     """The first recorded mission that visits the bins of failed ones loses reward; the others lose nothing."""

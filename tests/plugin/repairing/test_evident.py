@@ -110,7 +110,7 @@ def test_jumps_are_limited_next_to_the_publish_call(tmp_path: Path) -> None:
     assert limited == ["0.4 * self.range", "msg.data"]
 
 
-def test_stronger_symptoms_come_first_and_weak_ones_not_at_all(tmp_path: Path) -> None:
+def test_stronger_symptoms_come_first_and_weak_symptoms_are_ignored(tmp_path: Path) -> None:
     order = order_of(tmp_path)
     here = site(order, "speed = 0.4")
     told = [name for name, _ in tried(order, {here: {"swing": 0.6, "offset": 0.9, "runaway": 0.4}})]

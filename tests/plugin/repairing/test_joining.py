@@ -145,7 +145,7 @@ def test_patches_that_do_not_compile_together_are_not_merged(robot: Path) -> Non
 
 
 @pytest.mark.usefixtures("quick_acceptance")
-def test_a_run_with_one_change_ends_with_one_command(tank: pytest.Pytester) -> None:
+def test_the_output_of_a_run_with_one_change_ends_with_one_command(tank: pytest.Pytester) -> None:
     test = (tank.path / "test_tank.py").read_text()
     (tank.path / "test_twin.py").write_text(
         test[: test.index("def test_ordinary")].replace("test_fills", "test_twin")

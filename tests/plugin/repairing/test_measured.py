@@ -138,7 +138,7 @@ def test_a_value_that_vanishes_or_was_zero_has_no_factor_but_a_difference(tmp_pa
     assert suggested(tmp_path, {LEVEL: (0.0, 0.0)}) == []
 
 
-def test_changes_of_five_percent_suggest_a_step_and_smaller_ones_do_not(tmp_path: Path) -> None:
+def test_changes_of_five_percent_suggest_a_step_and_smaller_changes_suggest_none(tmp_path: Path) -> None:
     assert suggested(tmp_path, {PUSH: (1.0, 1.06)}) == [{"GAIN": 0.943}, {"GAIN": 1.06}]
     assert suggested(tmp_path, {PUSH: (1.0, 1.04)}) == []
     assert {"GAIN": 19.0} in suggested(tmp_path, {PUSH: (1.0, 19.0)})

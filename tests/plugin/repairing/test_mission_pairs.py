@@ -190,7 +190,9 @@ def test_changes_begin_with_a_fixed_number_of_episodes(early: Early) -> None:
     assert list(charged(early, 1).candidates()) == [scaled(2.0), scaled(3.0)]
 
 
-def test_the_episodes_of_the_changes_are_counted_with_those_of_the_pairs(early: Early) -> None:
+def test_the_episodes_of_the_changes_are_counted_together_with_the_episodes_of_the_mission_pairs(
+    early: Early,
+) -> None:
     found = charged(early, FROM).candidates()
     assert not early.waiting
     next(found)

@@ -58,7 +58,7 @@ def test_the_best_constant_is_refined_between_its_neighbours() -> None:
     assert found.refined == {(A, ALWAYS): 2}
 
 
-def test_refining_goes_on_while_the_gain_grows_or_is_almost_the_wanted_one() -> None:
+def test_refining_goes_on_while_the_gain_grows_or_is_almost_the_wanted_gain() -> None:
     _, search = adjusted(entered((A, 2.2, 3.0)), {1.483: 4.5})
     assert len(search.tried) == 4
     _, search = adjusted(entered((A, 2.2, 3.0)), {1.483: 4.0})  # less than a promising gain

@@ -208,7 +208,7 @@ def test_rivals_that_were_not_tried_are_included_and_others_are_not() -> None:
 # smaller
 
 
-def test_the_constant_that_gained_most_is_tried_first_and_untried_ones_last() -> None:
+def test_the_constant_that_gained_most_is_tried_first_and_untried_constants_come_last() -> None:
     gains = entered((B, 2.2, -1.0), (C, 2.2, 3.0), (C, 0.82, 1.0), (A, 9.0, 9.0))
     found = smaller(A, 9.0, [A, B, C, D], gains, ALWAYS)
     down, up = STEPS

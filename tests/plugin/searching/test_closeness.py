@@ -36,7 +36,7 @@ LEAK, POWER, ROOM = named(3, "LEAK"), named(4, "POWER"), named(5, "ROOM")
 ELSEWHERE = named(6, "ELSEWHERE", "cool")
 
 
-def test_a_mission_that_earns_its_reward_later_deviates_more_from_the_designed_one() -> None:
+def test_a_mission_that_earns_its_reward_later_deviates_more_from_the_designed_mission() -> None:
     assert deviation(STEADY, STEADY) == 0.0
     assert deviation(LATE, STEADY) == pytest.approx(2.5 / 10)
     assert deviation((), STEADY) == pytest.approx(0.55)

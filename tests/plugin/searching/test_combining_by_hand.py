@@ -247,7 +247,7 @@ def test_units_without_an_effect_get_a_larger_and_then_a_smaller_value_under_the
     assert seen == ["A2.2", "A2.2 B2.2", "A2.2 C2.2", "A2.2 B0.4", "A2.2 C0.4"]
 
 
-def test_a_unit_with_an_effect_gets_finer_factors_at_once_and_is_refined_while_it_gains() -> None:
+def test_a_unit_with_an_effect_gets_finer_factors_immediately_and_is_refined_while_it_gains() -> None:
     def world(changes: Mapping[Operand, float]) -> Outcome:
         return Outcome(2.0 if B.operands[0] in changes else 0.0, False)
 

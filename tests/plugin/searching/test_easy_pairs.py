@@ -52,7 +52,7 @@ def test_a_value_that_is_good_in_a_narrow_range_is_found_on_an_easy_seed_first()
     assert trials.spent < 100
 
 
-def test_the_seeds_of_a_flat_search_are_the_easy_ones() -> None:
+def test_while_no_change_gains_anything_the_search_uses_the_easy_seeds() -> None:
     ran: set[int] = set()
 
     def run(candidate: Candidate, seed: int) -> Outcome:

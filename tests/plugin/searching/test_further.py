@@ -105,7 +105,7 @@ def test_seeds_on_which_other_candidates_failed_come_first_in_a_confirmation() -
     assert trials.spent == before + 1
 
 
-def test_a_candidate_that_loses_the_missions_of_rejected_ones_is_not_confirmed() -> None:
+def test_a_candidate_that_loses_the_missions_of_rejected_candidates_is_not_confirmed() -> None:
     trials = world(lambda _, __: 10.0)
     candidate = Candidate((mutations(GAINS[0], 2.2),), ALWAYS)  # type: ignore[arg-type]
     trials.loses = lambda one: one == candidate

@@ -190,7 +190,7 @@ def test_a_constant_of_nature_with_a_flipped_sign_is_still_a_constant_of_nature(
     assert oddness([Mutation(GRAVITY, -1.0)]) is Oddness.NATURE
 
 
-def test_more_readable_changes_come_first_and_those_with_a_gain_before_untried_ones() -> None:
+def test_more_readable_changes_come_first_and_changes_with_a_gain_come_before_untried_changes() -> None:
     literal = Unit((LITERAL,))
     found = gains()
     assert plainer(Oddness.VARIABLE, found.under(ALWAYS), [C, B, A, literal], 4.0) == [A, literal]

@@ -49,12 +49,12 @@ def along(
 # shares
 
 
-def test_the_shares_of_the_change_are_reduced_by_those_of_the_designed_steps() -> None:
+def test_each_share_of_the_change_is_reduced_by_the_share_of_the_designed_steps() -> None:
     shares = along([1, 1, 2, 3], [1, 2, 2, 4], {1: 3.0, 2: 1.0}).shares()
     assert shares == {(1,): 0.75 - 0.25, (2,): 0.25 - 0.5, (3,): 0.0, (4,): -0.25}
 
 
-def test_a_new_cell_has_its_share_of_the_drifted_steps_and_the_others_divide_the_rest() -> None:
+def test_a_new_cell_has_its_share_of_the_drifted_steps_and_the_other_cells_divide_the_rest() -> None:
     shares = along([1, 5, 5, 5], [1, 1], {1: 8.0}, novel=(5,)).shares()
     assert shares == {(1,): 0.25 - 1.0, (5,): 0.75}
 

@@ -94,7 +94,7 @@ def test_a_boolean_is_flipped_once() -> None:
     assert tried(dead, [FLAG]) == ["True=0"]
 
 
-def test_constants_that_change_the_reward_get_moderate_steps_before_others_begin() -> None:
+def test_constants_that_change_the_reward_get_moderate_steps_before_other_constants_begin() -> None:
     found = tried(lambda changes: -float(A in changes), [LITERAL, A])
     assert found[:5] == ["A=2.2", "A=0.4", "A=1.5", "A=0.65", "3.0=6.6"]
 
@@ -108,7 +108,7 @@ def test_every_step_of_the_plateau_is_tried_on_a_constant_that_loses_a_little() 
     ]
 
 
-def test_larger_steps_are_not_tried_if_the_smaller_ones_lost_more_than_the_slack() -> None:
+def test_larger_steps_are_not_tried_if_the_smaller_steps_lost_more_than_the_slack() -> None:
     found = tried(lambda changes: -1.5 if changes.get(A, 1.0) in (2.2, 0.4) else 0.0, [A])
     late = found.index("A=10")
     assert "A=5" not in found[:late]
@@ -174,7 +174,7 @@ def test_a_change_is_not_tried_without_its_condition_if_the_search_allows_only_c
     assert all(words.endswith("|") for words in found)
 
 
-def test_constants_in_no_data_flow_come_after_the_others_failed() -> None:
+def test_constants_in_no_data_flow_come_after_all_other_constants_failed() -> None:
     found = tried(dead, [A], late=[LITERAL], aside=[B])
     assert found[:2] == ["A=2.2", "A=0.4"]
     first = {name: next(at for at, one in enumerate(found) if one.startswith(name)) for name in "AB3"}
@@ -264,7 +264,7 @@ def test_a_change_that_was_yielded_counts_as_refused_when_the_search_goes_on() -
     assert search.attempts.refused == {(unit, ALWAYS)}
 
 
-def test_a_change_that_loses_missions_of_refused_ones_counts_as_refused() -> None:
+def test_a_change_that_loses_missions_of_refused_changes_counts_as_refused() -> None:
     search, _ = sweeping(lambda changes: 10.0, [LITERAL])
     search.attempts.trials.loses = lambda _: True
     (unit,) = units([LITERAL])

@@ -148,7 +148,7 @@ def test_larger_steps_are_only_for_constants_whose_smaller_step_lost_no_reward()
     assert search.tries[4:] == [("B", 5.0), ("A", 0.15), ("B", 0.15)]
 
 
-def test_a_named_constant_is_not_compared_with_larger_steps_of_others() -> None:
+def test_a_named_constant_is_not_compared_with_larger_steps_of_other_constants() -> None:
     search = Scripted([A, B, C], proposed=True)
     assert before(search, A, 2.2) == []
     assert search.log == []
@@ -264,7 +264,9 @@ def test_a_constant_of_nature_has_alternatives_even_if_it_is_only_nearly_confirm
     assert search.tries == [("A", 1.5), ("A", 0.65), ("B", 1.5), ("B", 0.65)][:tries]
 
 
-def test_a_change_is_compared_with_gentler_ones_once_and_on_the_seed_where_most_candidates_failed() -> None:
+def test_a_change_is_compared_with_gentler_changes_once_and_on_the_seed_where_most_candidates_failed() -> (
+    None
+):
     search = Scripted([A, B], longer, goal=replace(GOAL, steps=10.0), proposed=True)
     search.trials.misses.update({1: 1, 4: 2, 2: 2})
     made, found = Preferences(search), change(A, 2.2)
@@ -297,7 +299,7 @@ def window(*good: tuple[Unit, float, float], total: float = 10.0) -> Act:
     return run
 
 
-def test_the_value_halfway_to_the_old_one_comes_first_if_a_closer_one_succeeds_on_three_seeds() -> None:
+def test_the_value_halfway_to_the_old_value_comes_first_if_a_closer_value_succeeds_on_three_seeds() -> None:
     search = Scripted([A], window((A, 1.3, 3.0)), [(A, 1.483)])
     assert before(search, A, 2.2) == [change(A, 1.483)]
     assert search.log == [("holding", "A", 1.483, 0)]

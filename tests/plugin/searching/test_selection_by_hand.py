@@ -560,7 +560,7 @@ def test_episodes_of_the_designed_world_are_announced_only_for_new_seeds() -> No
     assert heard == [[3, 4], [5]]
 
 
-def test_the_tolerated_failure_rate_is_five_points_above_the_recorded_one_and_at_most_one() -> None:
+def test_the_tolerated_failure_rate_is_five_points_above_the_recorded_rate_and_at_most_one() -> None:
     reference = Reference((10.0, 8.0), 0.9, 0.5, 0.0)
     assert reference.tolerated == pytest.approx(0.15)
     assert replace(reference, pass_rate=0.01).tolerated == 1.0

@@ -88,7 +88,7 @@ def test_the_search_for_smaller_changes_takes_few_episodes_if_there_is_none() ->
     assert search.attempts.trials.spent == confirming + 2 * OTHERS + halfway + search.attempts.trials.beside
 
 
-def test_the_value_halfway_to_the_original_one_comes_first_if_it_restores_as_much_reward() -> None:
+def test_the_value_halfway_to_the_original_value_comes_first_if_it_restores_as_much_reward() -> None:
     found = searched((HOTTEST,), {HOTTEST: (1.35, 2.4)}).candidates()
     assert [next(found).mutations[0].value for _ in range(2)] == [1.483, 2.2]
     for low in (1.6, 1.45):  # at 1.45, the value halfway lies at the edge of the good range
@@ -96,7 +96,7 @@ def test_the_value_halfway_to_the_original_one_comes_first_if_it_restores_as_muc
         assert next(only).mutations[0].value == 2.2
 
 
-def test_the_value_halfway_to_the_original_one_does_not_come_first_if_it_earns_less() -> None:
+def test_the_value_halfway_to_the_original_value_does_not_come_first_if_it_earns_less() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         (change,) = candidate.mutations
         value = change.value
@@ -184,7 +184,7 @@ def test_every_confirmed_change_is_examined(seed: int) -> None:
     assert search.attempts._settled.held <= examined
 
 
-def test_a_small_step_that_gains_something_is_followed_by_larger_ones() -> None:
+def test_a_small_step_that_gains_something_is_followed_by_larger_steps() -> None:
     """The brake is worn by 39 %; a set point seven times as large hides this."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:

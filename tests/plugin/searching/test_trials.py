@@ -52,7 +52,7 @@ def test_a_candidate_that_acts_like_another_one_takes_its_outcomes_but_keeps_its
     assert made.spent == 3
 
 
-def test_the_wanted_gain_is_that_of_the_episodes_that_lost() -> None:
+def test_the_wanted_gain_is_computed_from_the_episodes_that_lost_reward() -> None:
     assert GOAL.wanted == 9.0 - 1.5
     assert replace(GOAL, harder={0: 2.0, 2: 2.0}).wanted == 8.0 - 1.5
     assert replace(GOAL, pairs=()).wanted == 6.5
@@ -176,7 +176,7 @@ def test_a_candidate_similar_to_a_failed_one_is_predicted_to_fail() -> None:
     assert not ran.falls_short(THREE, PAIRS, 99.0)  # one common seed only
 
 
-def test_a_confirmation_begins_with_at_most_two_seeds_on_which_others_failed() -> None:
+def test_a_confirmation_begins_with_at_most_two_seeds_on_which_other_candidates_failed() -> None:
     ran = Trials(lambda *_: Outcome(0.0, True), 9)
     goal = replace(GOAL, pairs=tuple(Pair(seed, 0.0) for seed in range(8)))
     assert _hardest_first(ran, goal, 6) == [7, 0, 1, 2, 3]

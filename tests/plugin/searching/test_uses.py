@@ -53,7 +53,7 @@ def test_a_single_use_is_changed_if_the_effects_of_all_uses_cancel_out() -> None
     assert [one.operand for one in found.mutations] == [SECOND]
 
 
-def test_uses_are_tried_alone_at_once_if_all_of_them_together_suffice_in_some_missions_only() -> None:
+def test_uses_are_tried_alone_immediately_if_all_uses_together_suffice_in_some_missions_only() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         by = {one.operand: factor(one) or 1.0 for one in candidate.mutations}
         right = 2.0 < by.get(SECOND, 1.0) < 2.4 and (seed % 2 == 0 or FIRST not in by)
