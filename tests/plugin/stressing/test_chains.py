@@ -74,7 +74,7 @@ def test_clearly_failing_drifts_are_tested_if_the_model_was_wrong_nearby() -> No
     assert chains.clear(nearest) == []
 
 
-def test_a_chain_ends_at_the_first_drift_that_is_not_confirmed_and_keeps_those_before() -> None:
+def test_a_chain_ends_at_the_first_drift_that_is_not_confirmed_and_keeps_the_drifts_before_it() -> None:
     evaluator = evaluator_of(sloping, SQUARE)
     together = Together(0.02, [])
     far, middle, holding, nearer = ({"a": a, "b": 0.5} for a in (0.6, 0.4, 0.2, 0.1))

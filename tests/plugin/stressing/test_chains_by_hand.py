@@ -103,7 +103,7 @@ def test_failures_after_a_look_do_not_count_in_that_look() -> None:
     assert ran == blocks(-(-LEAST[0] // BLOCK))
 
 
-def test_the_next_drift_first_runs_seeds_that_failed_then_new_ones_then_those_that_passed() -> None:
+def test_the_next_drift_first_runs_seeds_that_failed_then_new_seeds_then_seeds_that_passed() -> None:
     shown, ran, _, tests = confirmed(even, lambda _: False)
     assert shown == [True, False]
     failed, passed = ([row for row in ran[0] if row % 2 == at] for at in (0, 1))

@@ -249,7 +249,7 @@ def test_spread_vectors_have_lengths_between_the_limits_and_signs_that_the_space
     assert 20 <= unchanged <= 65  # a fifth, apart from vectors without any change
 
 
-def test_vectors_around_another_one_are_moved_by_a_quarter_of_its_length() -> None:
+def test_vectors_around_another_vector_are_moved_by_a_quarter_of_its_length() -> None:
     draws: Any = SimpleNamespace(
         standard_normal=lambda count: np.array([1.0, 0.0]), uniform=lambda low, high: 0.9
     )
@@ -371,7 +371,7 @@ def test_enough_passes_and_a_small_loss_show_the_guarantee_at_a_risk() -> None:
     )  # 16 episodes bound a range of 20 badly
 
 
-def test_a_nominal_world_that_fails_or_earns_less_differs_from_the_recorded_one() -> None:
+def test_a_nominal_world_that_fails_or_earns_less_differs_from_the_recorded_world() -> None:
     assert not unlike_recorded(GIVEN, outcomes(*[10.0] * 16), 0.01)
     assert unlike_recorded(GIVEN, outcomes(*[10.0] * 16, failed=8), 0.01)
     assert unlike_recorded(GIVEN, outcomes(*[5.0] * 16), 0.01)

@@ -114,7 +114,7 @@ def test_the_evidence_on_a_drift_covers_all_its_episodes() -> None:
     assert made.spent == spent
 
 
-def test_fresh_seeds_are_not_those_of_the_search() -> None:
+def test_fresh_seeds_differ_from_the_seeds_of_the_search() -> None:
     made, ran = evaluator(constant(9.5))
     made.fresh(UP, 3)
     assert [plan.seed for plan in ran.plans] == seeds(RAYS, 3)
@@ -174,7 +174,7 @@ def test_whether_a_test_is_hopeless_is_judged_by_its_last_look(monkeypatch: pyte
 # budgets
 
 
-def test_the_budget_covers_its_last_episode_and_no_further_one() -> None:
+def test_the_budget_covers_its_last_episode_and_no_further_episode() -> None:
     made, _ = evaluator(constant(9.5), budget=4)
     made.glance(UP)
     assert made.left == 0

@@ -88,7 +88,7 @@ def test_a_chain_of_failures_continues_towards_nominal_in_short_steps_if_the_sam
     ]
 
 
-def test_failures_that_contain_a_nearer_one_and_hardly_differ_from_it_are_not_reported() -> None:
+def test_failures_that_contain_a_nearer_failure_and_hardly_differ_from_it_are_not_reported() -> None:
     evaluator = evaluator_of(lambda point, _: (point["a"] < 0.9, 1.0), SQUARE)
     every = [failure(SQUARE, point) for point in (at(0.6), at(0.51), at(0.505), at(0.5), at(0.4, 0.31))]
     assert 0.505 < 0.51 < APART * 0.5 < 0.6

@@ -79,7 +79,7 @@ def test_losses_are_cut_off_at_both_limits_of_the_model() -> None:
     assert HIGHEST == 2.5
 
 
-def test_the_typical_variance_is_the_mean_of_those_of_all_drifts() -> None:
+def test_the_typical_variance_is_the_mean_of_the_variances_of_all_drifts() -> None:
     one, other = np.array([0.0, 1.0]), np.array([0.0, 2.0])
     assert typical_variance([one, other]) == pytest.approx((0.5 + 2.0) / 2)
     assert typical_variance([one, np.array([3.0])]) == pytest.approx(0.5)
@@ -381,7 +381,7 @@ class Recalling:
         return self.known.get((pool, where["slope"]), [])
 
 
-def test_episodes_of_failures_alternate_and_are_compared_with_similar_ones_that_pass() -> None:
+def test_episodes_of_failures_alternate_and_are_compared_with_similar_episodes_that_pass() -> None:
     evaluator: Any = Recalling(
         {
             ("rays", 0.5): [("f1", True), ("p1", False), ("f2", True)],
@@ -629,7 +629,7 @@ def test_the_failure_rate_to_hope_for_is_a_standard_error_higher() -> None:
 @pytest.mark.parametrize(
     ("share", "failed", "risk", "expected"), [(0.9, 0, 0.05, 29), (0.95, 0, 0.05, 59), (0.9, 1, 0.05, 46)]
 )
-def test_the_fewest_episodes_that_show_a_rate_are_those_of_clopper_and_pearson(
+def test_the_minimum_number_of_episodes_that_show_a_rate_equals_that_of_clopper_and_pearson(
     share: float, failed: int, risk: float, expected: int
 ) -> None:
     assert least(share, failed, risk) == expected

@@ -198,7 +198,7 @@ def test_the_json_result_also_lists_farther_failures_along_a_direction() -> None
     assert document["directions"][0]["boundary"]["failed_at"] == MUD.value(0.5)
 
 
-def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_confirmed_ones() -> None:
+def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_confirmed_failures() -> None:
     near, nearer = combined(mud=3.0, slope=0.5), combined(mud=3.6, slope=0.25)  # distances 0.35 and 0.16
     told = "The guarantee probably already fails with mud=3.6 and slope=0.25 (distance 0.16); this is not confirmed."
     confirmed_one = (
@@ -290,7 +290,7 @@ def test_the_lines_of_a_run_have_one_label_each() -> None:
         (curve(DOWN, confirmed=1.0), {"camera": ("left",)}, False),
     ],
 )
-def test_a_failure_inside_a_must_hold_range_violates_it_and_one_outside_does_not(
+def test_a_failure_inside_a_must_hold_range_violates_it_and_a_failure_outside_does_not(
     one: Curve, must_hold: dict[str, Any], broken: bool
 ) -> None:
     assert bool(words.broken_promises(stress(one, must_hold=must_hold))) is broken
