@@ -100,6 +100,6 @@ def test_the_result_of_a_library_call_includes_the_result_of_a_callable_argument
 
 
 @pytest.mark.parametrize("handed", [way for way in WAYS if "0.0" in way])
-def test_a_library_may_pass_its_other_arguments_to_a_callable_argument(tmp_path, handed):
+def test_a_library_may_pass_the_other_arguments_of_a_call_to_a_callable_argument(tmp_path, handed):
     text = NODE.replace("{callable}", "self.idle").replace("{handed}", handed.replace("0.0", "self.other"))
     assert {f.source.topics for f in analysed(tmp_path, node=text).flows} == {("other",)}

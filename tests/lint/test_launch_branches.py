@@ -307,7 +307,7 @@ class Writer:
 @example([("for", [("if", [("continue",)], []), ("return",)])])
 @example([("for", [("if", [("continue",)], []), ("break",)]), ("append",)])
 @example([("for", [("if", [("break",)], []), ("append",), ("return",)]), ("append",)])
-def test_the_nodes_are_those_of_all_branches(
+def test_the_nodes_of_all_branches_are_found(
     tmp_path_factory: pytest.TempPathFactory, block: Statements
 ) -> None:
     folder, writer = tmp_path_factory.mktemp("w"), Writer()

@@ -415,7 +415,7 @@ def test_the_line_of_a_node_is_in_the_launch_file(tmp_path: Path) -> None:
     assert all("made(name)" in lines[one.line - 1] for one in found.nodes)
 
 
-def test_known_nodes_in_a_list_with_unknown_ones_are_found(tmp_path: Path) -> None:
+def test_known_nodes_in_a_list_with_unknown_nodes_are_found(tmp_path: Path) -> None:
     text = """
         from robots_that_are_not_installed import nodes
         def generate_launch_description():

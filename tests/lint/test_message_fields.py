@@ -28,7 +28,7 @@ def test_all_fields_of_all_releases_are_known() -> None:
     assert {name: set(fields) for name, fields in ALL_FIELDS.items()} == expected
 
 
-def test_the_types_of_fields_are_those_of_the_definitions() -> None:
+def test_the_types_of_fields_are_the_types_in_the_definitions() -> None:
     expected = defined(list(Stores))
     stated = {
         (name, field): kind for name, fields in ALL_FIELDS.items() for field, kind in fields.items() if kind

@@ -186,7 +186,7 @@ def test_json_states_the_name_as_written_in_the_code(arm, capsys):
     ("source", "inside"),
     [(DIRECT, [param("in_topic", "/scan")]), (MODES, [param("fast", "true"), param("debug", "1")])],
 )
-def test_fingerprints_are_those_of_a_run_without_launch_files(arm, capsys, source, inside):
+def test_fingerprints_are_the_same_as_in_a_run_without_a_launch_file(arm, capsys, source, inside):
     write(arm, {"arm/scripts/relay.py": TOP + source})
     write(arm, {"arm/launch/a.launch": f"<launch>{node('first', *inside)}</launch>"})
     document = json.loads(run(capsys, "--launch", "a.launch", "--format", "json")[1])

@@ -259,7 +259,7 @@ def test_the_report_counts_omitted_findings_and_shortened_flows_only_if_there_ar
     assert told["message"]["text"].startswith("2 flows reduced to the shortest chain of statements")
 
 
-def test_new_findings_come_before_accepted_ones_and_severe_before_minor():
+def test_new_findings_come_before_accepted_findings_and_severe_findings_before_minor_ones():
     failing = SimpleNamespace(failing={"TARL201"})
     accepted, silenced = finding(status="accepted"), finding(code="TARL101")
     order = [finding(), finding(code="TARL202"), finding(code="TARL102"), accepted, silenced]

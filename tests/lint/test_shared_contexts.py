@@ -61,7 +61,7 @@ rospy.Subscriber("in", F, on)
 """
 
 
-def test_data_of_one_caller_reaches_another_only_if_they_share_a_call_context(tmp_path, monkeypatch):
+def test_data_of_one_caller_reaches_another_caller_only_if_both_share_a_call_context(tmp_path, monkeypatch):
     (tmp_path / "node.py").write_text(TWO)
     assert [f.sink.topics for f in analyse([tmp_path]).flows] == [("out",)]
     monkeypatch.setattr(context_selection, "SEPARATE_STATEMENTS", -1)

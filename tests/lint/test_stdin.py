@@ -41,7 +41,7 @@ def test_other_files_are_read_from_disk(example, in_directory, lint):
     assert [d["path"] for d in json.loads(out)["diagnostics"]] == ["node.py", "other.py"]
 
 
-def test_settings_are_those_of_the_named_file(example, in_directory, lint):
+def test_the_settings_of_the_named_file_are_used(example, in_directory, lint):
     in_directory({"package/pyproject.toml": '[tool.tarl-lint]\nignore = ["TARL101"]\n'})
     assert lint(example.text, "-", "--stdin-filename", "package/node.py")[0] == 0
     assert lint(example.text, "-", "--stdin-filename", "node.py")[0] == 1

@@ -185,7 +185,7 @@ def test_main_blocks_and_functions_of_imported_modules_do_not_run(workspace, cap
     assert "unasked" not in out
 
 
-def test_fingerprints_equal_those_of_a_run_without_launch_files(workspace, capsys):
+def test_fingerprints_are_the_same_as_in_a_run_without_a_launch_file(workspace, capsys):
     file = launched(workspace, relay("one", "/scan", "/cmd_vel"))
     (system,) = json.loads(run(capsys, "--launch", file, "--format", "json")[1])["systems"]
     plain = json.loads(run(capsys, ".", "--format", "json")[1])["diagnostics"]

@@ -57,7 +57,7 @@ def test_tables_are_extended_to_the_cells_of_both_worlds() -> None:
     assert np.flatnonzero(np.isfinite(after[:, 0])).tolist() == [3]
 
 
-def test_the_rows_are_those_of_the_region_or_else_of_the_other_cells() -> None:
+def test_the_rows_are_the_cells_of_the_region_or_else_the_other_cells() -> None:
     assert _rows(Region(cells=((4,),), novel=((1,),)), ((2,),), CELLS).tolist() == [0, 2]
     assert _rows(Region(), ((2,), (7,)), CELLS).tolist() == [1, 3]
     assert _rows(Region(left=((4,),)), (), CELLS).tolist() == []

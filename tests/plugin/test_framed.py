@@ -14,7 +14,7 @@ def test_records_are_read_in_order_until_the_end_of_the_file() -> None:
     assert [next_payload(file, 100) for _ in range(4)] == [b"one", b"", b"three", None]
 
 
-def test_a_record_is_its_length_and_its_checksum_and_its_payload() -> None:
+def test_a_record_consists_of_its_length_its_checksum_and_its_payload() -> None:
     assert framed(b"123456789") == bytes.fromhex("09000000 2639f4cb") + b"123456789"
     assert unpack_head(framed(b"123456789"), 0) == (9, 0xCBF43926)
     assert HEAD == 8

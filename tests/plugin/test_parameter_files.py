@@ -58,7 +58,7 @@ def test_a_node_gets_the_parameters_of_a_file_beside_the_test(
     assert sent(tmp_path, program, parameters=tmp_path / "config.yaml") == 1.5
 
 
-def test_a_mapping_is_returned_as_it_is_and_nothing_is_an_empty_mapping(tmp_path: Path) -> None:
+def test_a_mapping_is_returned_unchanged_and_nothing_gives_an_empty_mapping(tmp_path: Path) -> None:
     values = {"gain": 2.0}
     assert parameters_of(values, tmp_path, "tarl.start") is values
     assert parameters_of(None, tmp_path, "tarl.start") == {}

@@ -120,7 +120,7 @@ def test_a_missing_recording_skips_the_test_and_fails_it_with_strict(
     tank.runpytest(*ONLINE, "--tarl-strict").assert_outcomes(failed=1, deselected=1)
 
 
-def test_an_unknown_drift_is_reported_with_the_known_ones(tank: pytest.Pytester) -> None:
+def test_the_error_for_an_unknown_drift_names_the_known_drifts(tank: pytest.Pytester) -> None:
     result = tank.runpytest(*ONLINE, "--tarl-drift=mud")
     result.stderr.fnmatch_lines(["*No test declares the drift 'mud' (declared: clogged).*"])
     assert result.ret == pytest.ExitCode.USAGE_ERROR

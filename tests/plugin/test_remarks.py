@@ -41,7 +41,7 @@ def test_lost_sites_are_named_once_and_at_most_three() -> None:
     assert "`a`, node.py:3 `b`, node.py:3 `c` and 2 more are lost" in told
 
 
-def test_moved_sites_are_named_only_if_others_are_lost() -> None:
+def test_moved_sites_are_named_only_if_other_sites_are_lost() -> None:
     moved = tuple(place(name, line=7) for name in "abcd")
     assert remarks.lost_sites(recorded(ALL[:4]), now(*moved)) == ()
     assert remarks.lost_sites(recorded(ALL), now(*moved[:1], *ALL[1:4]))[1:] == (
@@ -112,7 +112,7 @@ def comparison(p_drift: float, p_loss: float, episodes: int = 20, tolerance: flo
     return Comparison("t", "mud", 0, (), (), (), verdict, Region(cells=((1,),)), (), totals, notes=("first",))
 
 
-def test_p_values_of_a_run_are_corrected_and_uncorrected_ones_are_noted() -> None:
+def test_p_values_of_a_run_are_corrected_and_a_note_states_the_uncorrected_values() -> None:
     one, other = corrected([comparison(0.01, 0.02), comparison(0.5, 0.6)], 0.05)
     assert (one.verdict.p_drift, one.verdict.p_loss) == pytest.approx((0.02, 0.04))
     assert (other.verdict.p_drift, other.verdict.p_loss) == pytest.approx((0.5, 0.6))

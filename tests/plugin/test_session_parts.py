@@ -128,7 +128,7 @@ def collected(of: TarlSession, *items: Any) -> tuple[list[Any], list[Any]]:
     return found, gone
 
 
-def test_tests_without_the_marker_are_deselected_and_holm_counts_the_others() -> None:
+def test_tests_without_the_marker_are_deselected_and_holm_counts_the_remaining_tests() -> None:
     one, other, plain = item("a"), item("b"), item("c", marked=False)
     of: Any = run(holm=True)
     of.options = SimpleNamespace(drift=None, mode="online", holm=True, total=None)

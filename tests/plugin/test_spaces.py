@@ -31,7 +31,7 @@ seeds = st.integers(0, 2**63 - 1)
 
 
 @given(seeds)
-def test_an_episode_draws_all_directions_and_passes_on_those_of_the_world(seed: int) -> None:
+def test_an_episode_draws_all_directions_and_passes_on_the_directions_of_the_world(seed: int) -> None:
     found = drawn(WORLD, "world", seed)
     assert found.keys() == {"mud", "camera"}
     assert 0.05 <= found["mud"] <= 1.0

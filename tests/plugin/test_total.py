@@ -66,7 +66,7 @@ def test_an_undecided_comparison_gets_the_episodes_that_a_decided_one_did_not_ne
     )
 
 
-def test_a_shared_comparison_equals_one_that_runs_alone_with_as_many_episodes(
+def test_a_shared_comparison_equals_a_separate_comparison_with_as_many_episodes(
     sharing: pytest.Pytester,
 ) -> None:
     """The command in the output repeats the comparison, with the same episodes and the same loss."""

@@ -32,7 +32,7 @@ def launched(name: str = "k", **given: Any) -> LaunchedNode:
     return LaunchedNode("arm", "k.py", name, given.pop("namespace", "/n"), FILE, 3, **given)
 
 
-def test_a_node_has_its_own_parameters_and_those_of_enclosing_namespaces():
+def test_a_node_has_its_own_parameters_and_the_parameters_of_enclosing_namespaces():
     node = launched(
         settings=(
             Setting("~a", FILE, 1),
@@ -125,7 +125,7 @@ def test_an_endpoint_is_undetermined_unless_it_has_exactly_one_name(example):
     assert not undetermined(Interface("n.py", flows=(replace(unnamed, flow=None),)))
 
 
-def test_fingerprints_and_names_in_the_code_are_those_of_a_run_without_a_launch_file(example):
+def test_fingerprints_and_names_in_the_code_are_the_same_as_in_a_run_without_a_launch_file(example):
     every = Interface("n.py", flows=(replace(example.finding(), fingerprint="old"),))
     other = example.finding("implicit")
     decided = Interface("n.py", flows=(replace(example.finding(), fingerprint="new"), other))

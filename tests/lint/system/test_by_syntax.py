@@ -330,7 +330,7 @@ def test_a_command_that_a_timer_repeats_is_stale(example):
     assert stale([found], [module(CONTROL)]) == (found,)
 
 
-def test_numbers_are_commands_to_move_on_a_topic_with_such_a_name(example):
+def test_numbers_count_as_movement_commands_if_the_name_of_their_topic_says_so(example):
     sink = command(example, type="Float64").flow.sink
     names = {"wheel_velocity/command": True, "cmd_vel": True, "arm/command": False, "speed": False}
     assert {one: commands(replace(sink, topics=(one,))) for one in names} == names

@@ -226,7 +226,7 @@ def test_parameters_and_remappings_of_actions_apply_to_later_nodes(package):
     assert [(one.remaps, one.inherited) for one in found.nodes] == [((), 0), ((("x", "y"), ("z", "/w")), 1)]
 
 
-def test_a_remapping_in_a_group_also_applies_after_the_group_if_one_was_set_before_it(package):
+def test_a_remapping_in_a_group_also_applies_after_the_group_if_an_earlier_remapping_was_set(package):
     inside = "GroupAction([SetRemap('x', 'y'), SetParameter('p', 1)]), node('a')"
     alone = described(package, inside).nodes[0]
     assert (alone.remaps, settings(alone)) == ((), {})

@@ -87,7 +87,7 @@ def test_sections_are_found_at_any_depth():
     ]
 
 
-def test_a_node_has_the_parameters_of_its_sections_and_later_ones_win():
+def test_a_node_has_the_parameters_of_its_sections_and_later_sections_take_precedence():
     file = {
         "/**": {"ros__parameters": {"a": 1, "b": {"c": 2}}},
         "gate": {"ros__parameters": {"a": 5}},

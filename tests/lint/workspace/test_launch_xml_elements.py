@@ -143,7 +143,7 @@ def test_an_included_file_gets_the_arguments_that_the_include_gives(package):
     assert {one.file.name for one in found.nodes} == {"part.launch"}
 
 
-def test_a_default_may_use_earlier_arguments_and_unknown_ones_are_reported(package):
+def test_a_default_may_use_earlier_arguments_and_an_unknown_argument_is_reported(package):
     found = launched(
         package,
         """<launch><arg name="a" default="x"/><arg name="b" default="$(arg a)y"/><arg name="c" default="$(arg d)"/>
@@ -191,7 +191,7 @@ def test_a_launch_file_that_does_not_exist_is_reported(package):
     assert (found.nodes, len(found.problems)) == ((), 1)
 
 
-def test_a_parameter_that_is_set_after_its_node_replaces_the_one_of_the_node(package):
+def test_a_parameter_that_is_set_after_a_node_replaces_the_parameter_that_the_node_sets(package):
     found = launched(
         package,
         """<launch><param name="/left/drive/early" value="1"/>

@@ -450,7 +450,7 @@ def test_the_command_fleet_writes_its_result_to_the_named_files(
         (("robot",), ["--fail-if", "degraded", "--fail-if", "robot"], 1),
     ],
 )
-def test_the_command_fleet_fails_if_one_condition_of_its_option_fail_if_holds(
+def test_the_command_fleet_fails_if_a_condition_given_with_its_option_fail_if_holds(
     answered: Answer, met: tuple[str, ...], flags: list[str], status: int
 ) -> None:
     answered.met = met

@@ -39,7 +39,9 @@ def places(tmp_path: Path) -> Places:
         ("unknown.py", 1, ""),
     ],
 )
-def test_lines_count_from_one_without_their_ending(places: Places, path: str, number: int, text: str) -> None:
+def test_lines_are_numbered_from_one_and_have_no_line_ending(
+    places: Places, path: str, number: int, text: str
+) -> None:
     assert places.line(path, number) == text
 
 

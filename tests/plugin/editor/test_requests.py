@@ -299,7 +299,7 @@ def answering(session: Session) -> Session:
     return session
 
 
-def test_a_request_for_lenses_returns_those_of_its_file(answering: Session) -> None:
+def test_a_request_for_code_lenses_returns_the_lenses_of_its_file(answering: Session) -> None:
     def titles(name: str) -> list[str]:
         asked = types.CodeLensParams(types.TextDocumentIdentifier(answering.uri(name)))
         return [one.command.title for one in answering.asked("textDocument/codeLens", asked)]
@@ -388,7 +388,7 @@ def titles(session: Session, first: int, last: int, name: str = "pilot.py") -> l
     ("first", "last", "touches"),
     [(3, 3, True), (0, 3, True), (3, 9, True), (0, 9, True), (0, 2, False), (4, 9, False)],
 )
-def test_actions_are_those_of_the_diagnostics_on_the_chosen_lines(
+def test_code_actions_belong_to_the_diagnostics_on_the_chosen_lines(
     answering: Session, first: int, last: int, touches: bool
 ) -> None:
     quick = ["Ignore TARL101 on this line", "Accept this TARL101 into the baseline"] if touches else []

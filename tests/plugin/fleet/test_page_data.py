@@ -96,7 +96,7 @@ def test_a_robot_that_is_named_twice_counts_once() -> None:
     assert shown["headline"] == "2 of 3 robots named."
 
 
-def test_a_cluster_has_links_to_thirty_robots_and_the_number_of_the_others() -> None:
+def test_a_cluster_has_links_to_thirty_robots_and_states_the_number_of_further_robots() -> None:
     names = tuple(f"r{n:02}" for n in range(32))
     found = Clusters((Cluster(names, PLACE, (-0.5, -1.0)), Cluster(names[:30], (), ())))
     first, second = variables(answer(clusters=found))["clusters"]

@@ -79,7 +79,7 @@ def found(folder: Path) -> Answer:
     return answer(Question(str(folder / "data")))
 
 
-def test_the_drifted_robot_is_found_with_its_onset_and_no_other(found: Answer) -> None:
+def test_only_the_drifted_robot_is_found_and_its_onset_is_stated(found: Answer) -> None:
     assert [one.name for one in found.robots.below] == [DRIFTED]
     (one,) = found.robots.below
     assert one.status is not None
@@ -97,7 +97,7 @@ def test_the_drifted_robot_is_found_with_its_onset_and_no_other(found: Answer) -
     }
 
 
-def test_counts_and_bounds_are_those_of_the_missions(found: Answer) -> None:
+def test_counts_and_bounds_are_computed_from_the_missions_of_the_data_set(found: Answer) -> None:
     assert found.missions == ROBOTS * EACH
     for one, robot in zip(found.groups, (0, 2, 1, 3), strict=True):
         own = walks(robot)

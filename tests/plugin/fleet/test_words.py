@@ -74,7 +74,7 @@ def test_without_columns_to_group_by_no_group_is_tested_for_changes() -> None:
         ("no difference", "no difference (p 0.03)"),
     ],
 )
-def test_a_degraded_group_states_its_loss_and_any_other_group_the_p_value_of_its_drift(
+def test_a_degraded_group_states_its_loss_and_other_groups_state_the_p_value_of_their_drift(
     result: str | None, expected: str
 ) -> None:
     assert words.verdict(group("north", result=result)) == expected

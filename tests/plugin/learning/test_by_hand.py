@@ -421,7 +421,7 @@ def effect(size: float, code: str = "x") -> OperandEffect:
     return OperandEffect(code, 1.0, 2.0, size)
 
 
-def test_repaired_culprits_come_first_and_others_are_ranked_by_their_gain_in_simulation() -> None:
+def test_repaired_culprits_come_first_and_other_culprits_are_ranked_by_their_gain_in_simulation() -> None:
     ranked = [(A, 1.0), (B, 0.5), (C, 0.25), (D, 0.0)]
     effects = {"A": [effect(1.0), effect(3.0, "y")], "B": [effect(9.0)], "C": []}
     found = culprits(ranked, effects, ["A"], 6.0)

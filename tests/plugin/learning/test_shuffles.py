@@ -118,7 +118,7 @@ def test_intervals_of_shifts_enumerate_the_groups_of_small_samples(rows: int, ch
 
 
 @pytest.mark.parametrize("kind", ["normal", "binary", "skewed", "rounded"])
-def test_p_values_of_shifted_values_are_those_of_their_t_statistics(kind: str) -> None:
+def test_the_p_value_of_shifted_values_is_the_p_value_of_their_t_statistic(kind: str) -> None:
     rng = generator(3, kind)
     draw = {
         "normal": lambda size: rng.normal(5.0, 1.0, size),

@@ -72,7 +72,7 @@ def test_new_cells_are_reported(root: Path, capsys: pytest.CaptureFixture[str]) 
     assert "new     x 3-4, wet 5: no recorded episode visited it" in capsys.readouterr().out
 
 
-def test_logs_of_other_worlds_are_reported_and_the_rest_is_counted(
+def test_logs_of_other_worlds_are_reported_and_the_other_logs_are_counted(
     root: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     log(root / "m.log", walks(5, 2))

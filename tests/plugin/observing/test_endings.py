@@ -99,7 +99,7 @@ def test_the_start_of_the_node_begins_no_mission_if_a_topic_begins_missions(
     assert ended(tmp_path, monkeypatch, None, **more)[0] == []
 
 
-def test_begin_and_end_words_delimit_missions_and_others_are_ignored(tmp_path: Path) -> None:
+def test_the_words_begin_and_end_delimit_missions_and_other_words_are_ignored(tmp_path: Path) -> None:
     observer = Observer([], tmp_path / "log", ABOUT)
     for word in ("succeeded", "begin", "rest", "begin", "failed", "failed", "begin", "succeeded"):
         observer.order(word)

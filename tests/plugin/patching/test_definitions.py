@@ -149,7 +149,7 @@ def test_a_parameter_is_found_in_each_kind_of_file(path: str, text: str) -> None
         ("Mast.cfg", "add('ki', double_t, 0, 'gain', 0.5)"),
     ],
 )
-def test_other_files_and_other_parameters_stay_as_they_are(path: str, text: str) -> None:
+def test_files_without_the_parameter_and_other_parameters_stay_unchanged(path: str, text: str) -> None:
     assert list(configured("ki", {path: text})) == []
 
 
@@ -329,7 +329,7 @@ def test_a_file_that_changed_since_is_not_edited(text: str, old: str, value: flo
         edits({place(text, value, old): 1.0}, text)
 
 
-def test_other_uses_of_a_constant_are_named_by_their_lines(
+def test_other_uses_of_a_constant_are_named_by_their_line_numbers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -186,7 +186,7 @@ def test_names_are_local_to_the_innermost_function_that_binds_them(source: Docum
     assert isinstance(scope(source, read, "w"), ast.Lambda)
 
 
-def test_used_names_include_those_of_all_scopes_and_the_builtins(source: Document) -> None:
+def test_used_names_include_the_names_of_all_scopes_and_the_builtins(source: Document) -> None:
     found = names(source)
     assert {"math", "places", "argv", "xml", "Node", "outer", "inner", "w", "message", "ready", "x"} <= found
     assert set(dir(builtins)) <= found
@@ -205,7 +205,7 @@ def test_used_names_include_those_of_all_scopes_and_the_builtins(source: Documen
         ("class", set(), "class_reading"),
     ],
 )
-def test_a_free_name_resembles_the_wanted_name_and_is_not_a_keyword(
+def test_an_unused_name_that_resembles_the_requested_name_and_is_not_a_keyword_is_chosen(
     base: str, taken: set[str], found: str
 ) -> None:
     assert free(base, taken) == found

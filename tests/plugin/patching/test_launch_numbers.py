@@ -117,7 +117,7 @@ def test_no_number_is_found_behind_a_name_with_several_values_or_none(text: str)
     "text",
     ['{"again": 4}', '{"gain.x": 4}', "{gain: 4}", "{**gain}", "f(gain=4)", 'Set("gain", 4)', "{4: 4}"],
 )
-def test_other_parameters_are_left_alone(text: str) -> None:
+def test_other_parameters_are_not_changed(text: str) -> None:
     assert found(text) == []
     assert list(computed("gain", ast.parse(text))) == []
 

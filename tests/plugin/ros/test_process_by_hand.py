@@ -287,7 +287,7 @@ def in_node(network: Network, task: Callable[[], None], seconds: float = 100.0) 
     return process
 
 
-def test_nodes_read_the_virtual_clock_and_others_the_real_one(network: Network) -> None:
+def test_nodes_read_the_virtual_clock_and_other_code_reads_the_real_clock(network: Network) -> None:
     network.scheduler.advance(3 * SECOND // 2)
     seen: list[Any] = []
     in_node(

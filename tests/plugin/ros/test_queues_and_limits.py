@@ -255,7 +255,7 @@ def test_rospy_polls_for_a_service_every_three_tenths_of_a_second(
     assert took == pytest.approx(waits)
 
 
-def test_the_world_latches_one_message_per_topic_and_counts_only_those_of_nodes(start: Start) -> None:
+def test_the_world_latches_one_message_per_topic_and_counts_only_messages_of_nodes(start: Start) -> None:
     ros = start("pass")
     for text in ("old", "new"):
         ros.bus.publish("x", STRING(text), latch=True)

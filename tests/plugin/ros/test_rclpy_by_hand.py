@@ -134,7 +134,7 @@ def test_a_read_only_parameter_cannot_be_set_undeclared_or_given_a_new_descripto
     assert values(node) == {"a": 1}
 
 
-def test_an_atomic_change_sets_all_or_nothing_and_others_one_by_one() -> None:
+def test_an_atomic_change_sets_all_parameters_or_none_and_other_changes_set_them_one_by_one() -> None:
     changes = [Parameter("a", value=2), Parameter("b", value="text")]
     node = declared(("a", 1), ("b", 1))
     assert not node.set_parameters_atomically(changes).successful

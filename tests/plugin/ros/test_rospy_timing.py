@@ -111,7 +111,7 @@ except ValueError as error:
     assert log == [f"a timer needs a period above zero, not {period} s"]
 
 
-def test_sleeps_accept_seconds_or_durations_and_negative_ones_return_at_once(start: Start) -> None:
+def test_sleeps_accept_seconds_or_durations_and_negative_sleeps_return_immediately(start: Start) -> None:
     log = run(start, """
 for span in (0.5, rospy.Duration(0.25), 0, -1.0, rospy.Duration(-1), 2):
     rospy.sleep(span)

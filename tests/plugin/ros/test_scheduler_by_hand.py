@@ -107,7 +107,7 @@ def test_a_task_that_starts_another_runs_on_until_it_waits(clock: Scheduler, pro
     assert trail == ["outer", "inner"]
 
 
-def test_a_task_yields_to_those_that_are_ready(clock: Scheduler, program: Program) -> None:
+def test_a_task_yields_to_tasks_that_are_ready(clock: Scheduler, program: Program) -> None:
     trail: list[str] = []
 
     def one() -> None:
@@ -218,7 +218,7 @@ def test_the_exception_of_a_task_is_passed_to_its_program(clock: Scheduler, prog
     assert program.tasks == []
 
 
-def test_a_killed_task_ends_where_it_waits_and_one_that_never_ran_does_not_begin(
+def test_a_killed_task_ends_where_it_waits_and_a_task_that_never_ran_does_not_begin(
     clock: Scheduler, program: Program
 ) -> None:
     trail: list[str] = []

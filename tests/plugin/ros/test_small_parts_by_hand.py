@@ -148,7 +148,7 @@ def test_a_traceback_omits_the_first_frames_if_they_are_in_the_package() -> None
 # groups
 
 
-def test_an_exclusive_group_runs_one_callback_and_a_reentrant_one_any_number() -> None:
+def test_an_exclusive_group_runs_one_callback_at_a_time_and_a_reentrant_group_runs_any_number() -> None:
     exclusive, free = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()
     assert (exclusive.can_execute("a"), exclusive.beginning_execution("a")) == (True, True)
     assert (exclusive.can_execute("b"), exclusive.beginning_execution("b")) == (False, False)

@@ -146,7 +146,7 @@ def test_a_second_pose_at_an_instant_replaces_the_first() -> None:
 
 
 @pytest.mark.parametrize("static", [False, True])
-def test_a_frame_that_gets_another_parent_leaves_its_old_one(static: bool) -> None:
+def test_a_frame_that_gets_another_parent_leaves_its_former_parent(static: bool) -> None:
     tree = TransformTree()
     put(tree, "map", "base", 1.0, 1.0)
     put(tree, "odom", "base", 2.0, 2.0, static=static)

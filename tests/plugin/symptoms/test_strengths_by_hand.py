@@ -185,7 +185,7 @@ def test_a_switch_crosses_the_middle_of_the_range_in_both_worlds(
     assert shift == pytest.approx(expected)
 
 
-def test_chatter_needs_six_values_and_two_different_ones() -> None:
+def test_chatter_needs_six_values_and_at_least_two_different_values() -> None:
     assert strength("chatter", pair(switching(1), switching(3, size=6))) == 1.0
     assert strength("chatter", pair(switching(1), switching(3, size=5))) == 0.0
     assert strength("chatter", pair(np.ones(101), np.ones(101))) == 0.0
