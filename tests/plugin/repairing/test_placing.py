@@ -275,7 +275,9 @@ def test_a_definition_that_other_code_depends_on_stays_unchanged(worn: pytest.Py
 
 
 @slow
-def test_other_uses_of_a_changed_constant_are_listed_and_their_tests_run(worn: pytest.Pytester) -> None:
+def test_other_uses_of_a_changed_constant_are_listed_and_the_tests_of_these_uses_run(
+    worn: pytest.Pytester,
+) -> None:
     node(worn, before="from settings import GAIN\n", use="GAIN")
     (worn.path / "settings.py").write_text("GAIN = 2.0\n")
     (worn.path / "tool.py").write_text("import settings\n\nprint(settings.GAIN)\n")

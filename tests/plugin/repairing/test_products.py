@@ -48,7 +48,7 @@ if __name__ == "__main__":
         ("0.0 * GAIN + msg.data * 0.0", []),
     ],
 )
-def test_one_factor_of_a_product_is_searched_on_behalf_of_the_others(
+def test_one_factor_of_a_product_is_searched_and_represents_the_other_factors(
     use: str, same: list[str], tmp_path: Path
 ) -> None:
     path = tmp_path / "keeper.py"

@@ -290,7 +290,9 @@ def test_a_candidate_fails_again_if_it_loses_most_of_the_latest_missions(
     assert not Missed().again(scaled(2.0), trials, GOAL)
 
 
-def test_a_candidate_improves_on_a_refused_one_if_it_passes_all_of_its_lost_missions() -> None:
+def test_a_candidate_improves_on_a_refused_candidate_if_it_passes_all_missions_that_the_refused_one_lost() -> (
+    None
+):
     refused = scaled(2.0)
     missed = Missed(few={refused: [(1, 8.0), (2, 7.0)]})
     for totals, expected in (((8.0, 7.0), True), ((7.9, 9.0), False), ((9.0, 6.9), False)):
@@ -317,7 +319,7 @@ def examined(*tried: tuple[Candidate, Reason], furthest: Candidate | None = None
     return SimpleNamespace(tried=entries, refused=Refused(furthest, "not shown"))
 
 
-def test_promising_candidates_are_the_best_refused_one_and_those_that_gained_most() -> None:
+def test_promising_candidates_are_the_best_refused_candidate_and_the_candidates_that_gained_most() -> None:
     best, little, harmful, unseen = scaled(2.0), scaled(3.0), scaled(4.0), scaled(9.0)
     more = scaled(5.0)
     found = watch(
@@ -381,7 +383,7 @@ def of_partial(effects: dict[Candidate, tuple[float, float]]) -> tuple[Any, Any,
     return SimpleNamespace(order=order, foresee=lambda *_: None, run=run), judge, found
 
 
-def test_a_change_that_costs_little_of_its_gain_is_a_partial_repair_if_nothing_harmless_helps() -> None:
+def test_a_change_that_costs_little_of_its_gain_is_a_partial_repair_if_no_harmless_change_helps() -> None:
     costly, ruinous, harmless = scaled(2.0), scaled(3.0), scaled(4.0)
     effects = {costly: (10.0, -1.9), ruinous: (12.0, -9.0)}
     found, spent = partial.best(*of_partial(effects))

@@ -137,7 +137,9 @@ def test_a_wide_line_is_cut_at_the_width_and_never_below_sixteen_characters() ->
     assert words.one_line(code) == code
 
 
-def test_new_situations_are_described_apart_from_known_ones(two_lists: Comparison, varied: Varied) -> None:
+def test_new_situations_are_described_separately_from_known_situations(
+    two_lists: Comparison, varied: Varied
+) -> None:
     assert "; not in the recording: " in words.region_words(two_lists)
     region = two_lists.region
     for changed, said in (

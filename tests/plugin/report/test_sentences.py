@@ -75,7 +75,7 @@ def test_the_line_is_named_once_for_all_edits_of_it() -> None:
     )
 
 
-def test_the_best_rejected_candidate_has_its_reward_if_it_was_run() -> None:
+def test_the_best_rejected_candidate_is_shown_with_its_reward_if_it_was_run() -> None:
     assert repair_words.best_words(Repair(False, "", EDITS)) == f"{WORDS} everywhere"
     run = Repair(False, "", EDITS, mean=2.5, episodes=7)
     assert repair_words.best_words(run) == f"{WORDS} everywhere (2.50 per episode, mean of 7)"

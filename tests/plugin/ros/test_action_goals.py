@@ -251,7 +251,7 @@ def test_a_client_tracks_only_its_own_goal(start: Start) -> None:
     assert (client._state, cancels) == (PREEMPTED, [])
 
 
-def test_a_client_cancels_one_goal_all_goals_or_those_up_to_an_instant(start: Start) -> None:
+def test_a_client_cancels_one_goal_or_all_goals_or_the_goals_up_to_an_instant(start: Start) -> None:
     ros = start("")
     goals, cancels = heard(ros, "/sum/goal"), heard(ros, "/sum/cancel")
     start("""

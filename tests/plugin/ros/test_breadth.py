@@ -339,7 +339,7 @@ def test_parameters_change_within_their_descriptors_and_by_service(start: Start)
 
 
 @pytest.mark.parametrize("exclusive", [True, False])
-def test_reentrant_groups_run_callbacks_concurrently_and_exclusive_ones_do_not(
+def test_reentrant_groups_run_callbacks_concurrently_and_exclusive_groups_do_not(
     start: Start, exclusive: bool
 ) -> None:
     kind = "MutuallyExclusiveCallbackGroup" if exclusive else "ReentrantCallbackGroup"

@@ -120,7 +120,7 @@ def test_a_header_without_a_stamp_gets_the_present_time(bus: Bus, program: Progr
     assert stamps == [(2, 500_000_001), (1, 0)]
 
 
-def test_a_message_of_a_node_reaches_the_world_at_once_and_other_nodes_once_the_node_waits(
+def test_a_message_of_a_node_reaches_the_world_immediately_and_other_nodes_once_the_node_waits(
     bus: Bus, program: Program, clock: Scheduler
 ) -> None:
     one, origin, heard, told = Subscriber(program), Publisher(program), list[str](), list[Any]()

@@ -283,7 +283,7 @@ def test_each_active_fault_has_random_numbers_of_its_own() -> None:
     assert one.calls[0][2] != other.calls[0][2]
 
 
-def test_declared_faults_are_checked_only_in_an_episode_without_active_ones() -> None:
+def test_declared_faults_are_checked_only_in_an_episode_without_active_faults() -> None:
     one: Any = Recorder()
     Faults({"a": one}).check(None)
     Faults({"a": one}, {"a": (one, 1.0)}).check(None)

@@ -86,7 +86,7 @@ def test_the_share_of_lost_and_repeated_messages_is_the_size() -> None:
     assert 480 < len(twice) < 560
 
 
-def test_all_messages_arrive_and_reordered_ones_arrive_after_their_successor() -> None:
+def test_all_messages_arrive_and_reordered_messages_arrive_after_their_successor() -> None:
     sent = [float(i) for i in range(100)]
     found = values(faults.reordering("/in", 1.0), 0.4, sent)
     assert sorted(found) in (sent, sent[:-1])  # the last message may still wait for a successor

@@ -141,7 +141,7 @@ def node() -> Any:
     return made
 
 
-def test_a_timer_is_ready_each_period_and_skips_missed_ones() -> None:
+def test_a_timer_is_ready_each_period_and_skips_missed_periods() -> None:
     owner, calls = node(), list[float]()
     clock = owner.process.scheduler
     timer = Timer(owner, 2 * SECOND, lambda: calls.append(clock.time / SECOND), None)

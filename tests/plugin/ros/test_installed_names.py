@@ -114,7 +114,7 @@ def test_transformers_return_matrices(start: Start) -> None:
     assert ros.namespace["matrix"] == [[1, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 
 
-def test_numbers_of_encodings_are_those_of_opencv() -> None:
+def test_numbers_of_encodings_equal_the_numbers_of_opencv() -> None:
     number = cv_bridge_boost.getCvType("bgr8")
     assert (number, cv_bridge_boost.CV_MAT_CNWrap(number), cv_bridge_boost.CV_MAT_DEPTHWrap(number)) == (
         16,

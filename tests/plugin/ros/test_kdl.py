@@ -93,7 +93,7 @@ def test_values_print_compare_and_fail_as_in_pykdl() -> None:
 
 
 @given(ANGLES, ANGLES, ANGLES)
-def test_rotations_equal_those_of_their_parameters(roll: float, pitch: float, yaw: float) -> None:
+def test_rotations_equal_the_rotations_of_their_parameters(roll: float, pitch: float, yaw: float) -> None:
     turn = Rotation.RPY(roll, pitch, yaw)
     assert kdl.Equal(Rotation.RPY(*turn.GetRPY()), turn, 1e-6)
     assert kdl.Equal(Rotation.EulerZYZ(*turn.GetEulerZYZ()), turn, 1e-5)

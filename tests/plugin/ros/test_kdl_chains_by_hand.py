@@ -164,7 +164,7 @@ def test_a_tree_takes_the_segments_of_a_chain_one_after_another() -> None:
     assert not tree.addChain(chain, "b")
 
 
-def test_the_pose_of_each_segment_is_the_product_of_those_before() -> None:
+def test_the_pose_of_each_segment_is_the_product_of_the_poses_before_it() -> None:
     chain, values, pose = arm(), [0.4, -0.5, 0.2], Frame()
     solver = ChainFkSolverPos_recursive(chain)
     parts = [chain.getSegment(place) for place in range(4)]

@@ -46,7 +46,7 @@ def test_the_pose_of_a_link_is_that_of_the_joints_before_it() -> None:
         ARM.pose("leg", state)
 
 
-def test_the_moving_joints_of_the_robot_exclude_fixed_ones() -> None:
+def test_the_moving_joints_of_the_robot_exclude_fixed_joints() -> None:
     assert ARM.joints == ("shoulder", "elbow")
     assert ARM.root == "base"
 

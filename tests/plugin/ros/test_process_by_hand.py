@@ -215,7 +215,7 @@ def test_sys_exit_in_a_further_task_ends_only_that_task_and_process_exit_ends_th
     assert "exited with status 4" in str(network.scheduler.failure)
 
 
-def test_errors_during_the_shutdown_are_stored_separately_and_expected_ones_are_ignored(
+def test_errors_during_the_shutdown_are_stored_separately_and_expected_errors_are_ignored(
     network: Network,
 ) -> None:
     class ExpectedError(Exception):
