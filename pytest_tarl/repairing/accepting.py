@@ -53,7 +53,8 @@ class Examiner:
         self.placing = Placing(mutants)
         self.ranged: dict[Candidate, Ranged] = {}  # results by part of the range, for drifts with a range
         self.ledger = Ledger()
-        # candidates that pass on known seeds; they wait because `SHARE` others of the same operands have been tested
+        # candidates that pass on known seeds; they wait because `SHARE` other candidates of the same operands have
+        # been tested
         self.waiting: list[Candidate] = []
         self._missed = Missed()
         self.others = Others(mutants, self.ledger, self._missed)
@@ -107,7 +108,7 @@ class Examiner:
                 )  # keep the centred values, so that they are not centred again
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
-                # this guard is as wide as that of the search, and narrower guards cannot gain more
+                # this guard is as wide as the guard of the search, so narrower guards cannot gain more
                 break
         for others in (
             *(self.others.inward(edge, trials) for edge in edges),

@@ -28,7 +28,8 @@ from tarl_lint.model import Operand
 COMMANDED = ("stored", "sent")  # kinds of expressions that go into a published message
 # a statement responds if one of its constants gains at least this share of the wanted gain
 RESPONDS = 0.2
-FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
+# number of expressions tried first: the top-ranked expression, and the expression nearest to a publish call
+FIRST = 2
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
 LEAST = 50

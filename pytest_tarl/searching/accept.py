@@ -175,7 +175,7 @@ def accept(
 def _ended(
     worlds: Sequence[_World], designed: Designed, reason: Reason, tested: bool, seeds: Sequence[int]
 ) -> Acceptance:
-    # A refused candidate reports all its missions, an accepted one only those of the test.
+    # A refused candidate reports all its missions; an accepted candidate reports only the missions of its test.
     seen = [tuple([*world.first, *world.seen] if reason else world.seen) for world in worlds]
     begin = 0 if reason else SCREEN
     used = tuple(seeds[begin : begin + len(seen[0])])

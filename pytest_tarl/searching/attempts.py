@@ -30,7 +30,8 @@ FLIP = -1.0  # factor that flips the sign
 # maximum number of units to try with the opposite sign; only units that gained with a smaller value are tried
 FLIPPED = 3
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
-EASY = 3  # maximum number of easy pairs; changes run on their seeds until one gains
+# maximum number of easy pairs; until a change gains, changes run on the seeds of these pairs
+EASY = 3
 LOST = 0.5  # a pair can be easy if its loss is at least this share of the wanted gain
 
 

@@ -19,7 +19,7 @@ from pytest_tarl.searching.units import NEAR, Unit
 
 MOST = 3  # maximum number of parts in a combined repair
 PROMISING = 0.5  # minimum gain of a combination that is balanced, as a share of the wanted gain
-# number of further units to combine with the first one, because a useful unit may gain little alone
+# number of further units to combine with the first unit, because a useful unit may gain little alone
 LEADERS = 5
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
 CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is multiplied repeatedly

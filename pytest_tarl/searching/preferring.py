@@ -82,7 +82,8 @@ class Preferences:
         self._moderated = False  # whether moderate changes were already tried before an extreme one
         self._reduced = False  # whether smaller changes of other constants were already tried
         self._replaced: set[Unit] = set()  # units that were already compared with milder changes
-        # confirmed changes that are not preferred to the candidate found; they follow if it is refused
+        # confirmed changes that are set aside because another candidate is preferred; they follow if that candidate
+        # is refused
         self._aside: list[tuple[Unit, Candidate]] = []
 
     def before(
