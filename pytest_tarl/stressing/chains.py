@@ -29,11 +29,11 @@ POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a 
 # multiples of the near end of a chain that are tested before the near end, if the chain tests only the failure rate
 # and the same seeds fail under all drifts
 OUTWARD = (1.12, 1.08, 1.04)
-# the same multiples for all other chains
+# multiples that are tested before the near end of all other chains
 BEFORE = (1.03,)
 # multiples that are tested after the near end
 INWARD = tuple(0.96**step for step in range(1, 17))
-FINE = tuple(0.985**step for step in range(16))  # in a chain of small steps, multiples of its first drift
+FINE = tuple(0.985**step for step in range(16))  # multiples of the first drift in a chain of small steps
 # multiples of the drift at the near end of a chain that may become drifts of the chain
 STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
 

@@ -40,7 +40,7 @@ class Together:
 
     risk: float
     curves: Sequence[Curve]
-    # failures without those that hardly differ from a nearer one
+    # failures, except those that hardly differ from a nearer failure
     found: list[Failure] = field(default_factory=list)
     every: list[Failure] = field(default_factory=list)  # all failures
     tried: int = 0  # number of drifts in several directions that the search tried

@@ -26,7 +26,7 @@ class Margin:
     values of a range are numbers. For an option, 0 is the nominal option and 1 is this option.
     """
 
-    name: str  # for an option with its value: camera='down'
+    name: str  # name of a direction; an option is named with its value, as in camera='down'
     nominal: float
     end: float
     holds_to: float | None

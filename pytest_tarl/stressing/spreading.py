@@ -12,7 +12,8 @@ from pytest_tarl.stressing.coordinates import Coordinates, Vector
 
 CLOSEST = 0.4  # minimum length of a vector; the maximum is 1
 PART = 0.8  # share of the vectors in which a given direction changes
-SHORTER = (0.8, 0.98)  # minimum and maximum length of vectors around another one, as shares of its length
+# minimum and maximum length of vectors around another vector, as shares of the other vector's length
+SHORTER = (0.8, 0.98)
 ASIDE = (
     0.25  # standard deviation of the difference in each coordinate, as a share of the other vector's length
 )
