@@ -70,7 +70,7 @@ class EndedEpisode:
                 "tarl.reward(world.monitor())."
             )
         if self.drifted:
-            return None  # not an error, because a drift may silence sensors and nodes
+            return None  # this is not an error, because a drift may silence sensors and nodes
         problem = self.situation.problem() or self._unmet()
         if problem is None and self._silent:
             problem = RecordingError(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-Problem = tuple[str, int]  # what is wrong, and the index of the character
+Problem = tuple[str, int]  # (description of the problem, index of the wrong character)
 
 _LEGAL_ROS1 = re.compile(r"[~/A-Za-z][A-Za-z0-9_/]*")
 _TOPIC_LENGTH = 247  # longest absolute name of a topic or service: DDS allows 255, a prefix takes 8

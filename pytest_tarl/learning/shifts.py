@@ -30,7 +30,7 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
     The inputs have shape (episodes,). The interval is infinite if there are too few permutations to reject anything.
     """
     difference = float(offline.mean() - online.mean())
-    # after a shift by more than this, the two groups do not overlap
+    # after a shift by more than this value, the two groups do not overlap
     unit = float(np.ptp(offline) + np.ptp(online))
     if unit <= ARITHMETIC * float(np.abs(np.concatenate((offline, online))).max()):
         return difference - unit, difference + unit

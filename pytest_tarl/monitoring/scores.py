@@ -22,7 +22,7 @@ from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.monitoring.conformal import BINS, edges
 from pytest_tarl.sensors import Cell
 
-# scores of a whole mission; the scores of its cells follow
+# the scores of a whole mission; the scores of the mission's cells follow them
 WHOLE = ("success", "total", "residual", "unknown", "steps")
 FEWEST = 2  # minimum number of episodes in each half of a recording
 

@@ -9,7 +9,7 @@ from statistics import fmean
 from pytest_tarl.model import Band, Comparison, Sizes
 from pytest_tarl.report import amounts
 
-WORLDS = ("online", "repaired")  # before and after the repair
+WORLDS = ("online", "repaired")  # the drifted world before and after the repair
 WIDTH, HEIGHT = 640, 240  # size of the drawing without its margins (pixels)
 
 

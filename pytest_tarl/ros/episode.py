@@ -211,7 +211,8 @@ class Ros(Network):
                 spun = WATCHDOG.disarm()
         except Spinning:
             spun = True
-            WATCHDOG.disarm()  # has an effect only if the exception interrupted the first call
+            # disarming has an effect only if the exception interrupted the first call
+            WATCHDOG.disarm()
         if spun and scheduler.failure is None:
             scheduler.failure = scheduler.spinning()
         if scheduler.failure is not None:

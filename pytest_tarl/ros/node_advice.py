@@ -76,7 +76,8 @@ def _of_import(error: ImportError) -> str:
         return ""
     if error.name in STANDINS:
         return _of_name(error.name)
-    return "" if error.path else interface_advice(error.name)  # without a path: a folder without Python files
+    # a module without a path is a folder without Python files
+    return "" if error.path else interface_advice(error.name)
 
 
 def _of_name(module: str) -> str:

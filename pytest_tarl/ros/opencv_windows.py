@@ -19,7 +19,7 @@ from pytest_tarl.ros.keyboard import own_terminal
 from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.process import Process, running_process
 
-_NO_KEY = -1  # what waitKey returns without a key
+_NO_KEY = -1  # return value of waitKey without a key
 _LIBRARY = "cv2"
 
 

@@ -76,7 +76,7 @@ class Process:
         self.launched = NOTHING  # parameters from a launch file
         self.unset: dict[
             str, None
-        ] = {}  # parameters without a value that the node asked for, as it names them
+        ] = {}  # parameters without a value that the node asked for, under the node's names for them
         self.label = name  # name shown in messages; the node's own name once the node has one
         self.errors: list[NodeError] = []  # errors during shutdown
         self._parts: dict[Any, Any] = {}

@@ -244,7 +244,8 @@ class Scheduler:
         task.ticket += 1
         if task.worker is None:
             task.done = True
-            task.process.finished(task)  # never started, so there is no stack to unwind
+            # the task was never started, so there is no stack to unwind
+            task.process.finished(task)
         elif not task.done:
             task.worker.parent = getcurrent()
             task.worker.throw(GreenletExit)

@@ -21,7 +21,7 @@ def in_order(
     bits = precedence.numbers.bits(left)
     waiting: dict[
         int, list[int]
-    ] = {}  # key → keys that wait for it; each waits for one of its predecessors at a time
+    ] = {}  # key → keys that wait for it; each key waits for one predecessor at a time
     ready: list[tuple[bool, Span, int]] = []
     for key, span in left.items():
         former = precedence.first_of(key, bits)

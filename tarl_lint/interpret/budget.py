@@ -20,9 +20,10 @@ MAX_FRAMES = 20_000  # maximum number of call contexts of a program
 MAX_STATEMENTS = 25_000
 # number of statements in one run of a root after which the calls of a frequently called function share a context
 SEPARATE_STATEMENTS = 3_000
-SEPARATE_CALLS = 8  # maximum number of calls of a function in separate contexts; further calls share one
-# after this number of statements of a program, only roots that never ran are run; after twice this number,
-# none
+# maximum number of calls of a function in separate contexts; further calls share one context
+SEPARATE_CALLS = 8
+# after this number of statements of a program, only roots that never ran are run; after twice this number, no root is
+# run
 PROGRAM_LIMIT = 80_000
 # maximum number of statements in one run of a root once its program has reached PROGRAM_LIMIT
 LATE_RUN_LIMIT = 400

@@ -19,7 +19,7 @@ Branch = tuple[int, str]  # (number of the statement with the condition, outcome
 
 Raising = Mapping[int, Iterable[str]]
 
-# maximum number of branches stored for a statement; the others are found through the branches of the stored ones
+# maximum number of branches stored for a statement; further branches are found through the stored ones
 NEAR: Final = 100
 NOTHING_RAISES: Raising = {}
 
@@ -49,7 +49,7 @@ class _Graph:
     statements: dict[int, ir.Stmt] = field(default_factory=dict)
     finals: list[tuple[ir.Try, int]] = field(
         default_factory=list
-    )  # (`try`, number of the first statement of its `finally`), inner ones first
+    )  # (`try`, number of the first statement of its `finally`), inner `try` statements first
 
     def link(self, source: int, way: str, target: int) -> None:
         self.edges.setdefault(source, {})[way] = target

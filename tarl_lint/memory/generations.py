@@ -15,7 +15,7 @@ from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import Obj, in_order
 
-# maximum number of objects of one site in a chain; the last one represents all further ones
+# maximum number of objects of one site in a chain; the last object represents all further ones
 MAX_ALIKE: Final = 3
 
 # an object's allocation site and the object, from the oldest maker to the object itself

@@ -52,7 +52,7 @@ class Shared:
     joiners: dict[Key, set[Root]] = field(default_factory=dict)  # key → roots that only joined its value
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
-    # object → roots that have relied on it being one concrete object, in order
+    # object → roots that have relied on the object being a single concrete one, in order
     certain: dict[Obj, dict[Root, None]] = field(default_factory=dict)
     several: set[Obj] = field(default_factory=set)  # objects that now stand for several concrete ones
     dirty: set[Root] = field(default_factory=set)

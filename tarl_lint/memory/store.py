@@ -14,7 +14,7 @@ from tarl_lint.memory.values import ABSENT, Key, Obj, Value, join
 Delta = dict[Key, Value]
 
 CLEARED = frozenset(["lib", "sequence", "mapping"])  # kinds of objects whose allocation clears their fields
-# kinds of objects of which the newest one of an allocation site is kept apart from the older ones
+# kinds of objects for which the newest object of an allocation site is kept apart from older objects
 AGING = frozenset(["lib", "instance", "sequence", "mapping"])
 ADDING = frozenset(["*", "<keys>", "<length>"])  # names of the fields that get only weak updates
 
@@ -61,13 +61,13 @@ class Store:
     contents: dict[Obj, Contents] = field(default_factory=dict)
     elsewhere: dict[Key, Value | None] = field(
         default_factory=dict
-    )  # key → value that other roots may store while this one waits; None if they store none
+    )  # key → value that other roots may store while this root waits; None if they store no value
     hearing: dict[Key, Value] | None = None
     unheard: list[Key] = field(
         default_factory=list
     )  # keys added to the root's `heeds` since `hearing` was computed
     waited: bool = False  # whether this root has waited, so that other roots may have stored since its start
-    reads: Reads = field(default_factory=Reads)  # what the running call has read
+    reads: Reads = field(default_factory=Reads)  # values and facts that the running call has read
     # function applied to each value that is stored to a field with weak updates
     gather: Callable[[Key, Value], Value] = as_it_is
 

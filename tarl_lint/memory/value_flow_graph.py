@@ -96,7 +96,7 @@ class Graph:
     ways_through: dict[tuple[Nodes, Nodes], Arrival] = field(
         default_factory=dict
     )  # cache of `through`, by content and carriers
-    reads: Reads = field(default_factory=Reads)  # what the running call has read
+    reads: Reads = field(default_factory=Reads)  # values and facts that the running call has read
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
         """Return the node with this key; create it at first use."""

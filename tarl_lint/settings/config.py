@@ -262,7 +262,7 @@ def _parse_toml(path: Path, data: bytes) -> dict[str, Any]:
     toml = importlib.import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
     try:
         return cast("dict[str, Any]", toml.loads(data.decode("utf-8-sig")))
-    except ValueError as error:  # also raised for bytes that are not UTF-8
+    except ValueError as error:  # this exception is also raised for bytes that are not UTF-8
         raise ConfigError(f"{shown(path)} is not valid TOML: {error}.") from None
 
 
@@ -287,7 +287,7 @@ def suggestion(word: str, known: Mapping[str, Any] | Sequence[str], cutoff: floa
     """Return ": did you mean 'x'?" if a known word is similar, else a full stop."""
     import difflib  # imported only after a mistake
 
-    # without the prefix "--", which would make all options similar
+    # compare without the prefix "--", which would make all options similar
     bare = {name.lstrip("-"): name for name in known}
     close = difflib.get_close_matches(word.lstrip("-"), list(bare), n=1, cutoff=cutoff)
     return f": did you mean {bare[close[0]]!r}?" if close else "."

@@ -57,7 +57,8 @@ def interface(
     imported = [parsed(one) for one in reached([script], others) if one.path != script.path]
     modules = [replace(first, started=(entry,) if entry else ()),
                *(_as_import(one) for one in imported if isinstance(one, Module))]  # fmt: skip
-    plain = replace(config, remaps=())  # without remappings, so that names stay as they are in the code
+    # analyse without remappings, so that names stay as they are in the code
+    plain = replace(config, remaps=())
     parameters: list[ParameterName] = []
     machine, flows = engine.trace(modules, plain, thorough=False, parameters=parameters, fixed=fixed)
     tracer = Tracer(machine)

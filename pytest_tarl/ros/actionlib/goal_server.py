@@ -107,7 +107,7 @@ class ServerGoalHandle:
             self.ended = get_rostime()
             result = (
                 result or self.get_default_result()
-            )  # as in actionlib, where 0 and '' also mean no result
+            )  # as in actionlib, 0 and '' also mean that there is no result
             self.action_server.publish_result(self.get_goal_status(), result)
 
 

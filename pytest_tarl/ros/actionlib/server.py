@@ -195,7 +195,8 @@ class SimpleActionServer:
         self._set(goal.goal_id, status, text)
         message = self._types.action_result()
         self._address(message, goal.goal_id, text)
-        message.result = result or self._types.result()  # as in actionlib, where 0 and '' also mean no result
+        # as in actionlib, 0 and '' also mean that there is no result
+        message.result = result or self._types.result()
         self._result_pub.publish(message)
 
     def _address(self, message: Any, goal_id: Any, text: str = "") -> None:

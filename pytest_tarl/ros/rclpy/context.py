@@ -59,7 +59,8 @@ class Context:
         """
         if self.process.ending:
             error = RCLError("failed to shutdown: rcl_shutdown already called on the given context")
-            error.tarl_shutdown = True  # not reported, because programs often end with `shutdown`
+            # this exception is not reported, because programs often end with `shutdown`
+            error.tarl_shutdown = True
             raise error
         if not self.initialised:
             raise RuntimeError("Context must be initialized before it can be shutdown")

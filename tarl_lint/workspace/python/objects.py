@@ -26,7 +26,7 @@ class Function:
     scope: Scope
     defaults: dict[str, Any]
     file: Path
-    # function that interprets it, given arguments, keywords and the class that defines it
+    # callable that interprets this function with arguments, keywords and the class that defines the function
     run: Callable[[Function, list[Any], dict[str, Any], Class | None], Any]
     kind: str = ""  # `staticmethod`, `classmethod`, `property`, `cached_property` or `contextmanager`
     setter: Function | None = None  # of a property
