@@ -111,7 +111,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("libraries", nargs="*", help="modules to import beforehand")
     libraries = parser.parse_args().libraries
-    sys.path[0] = ""  # as `python -m pytest` does
+    sys.path[0] = ""  # set the entry as `python -m pytest` does
     for name in libraries:
         with suppress(ImportError):
             import_module(name)

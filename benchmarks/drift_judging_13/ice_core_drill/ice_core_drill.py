@@ -62,7 +62,8 @@ class Mission:
         self.amps = msg.data
 
     def _temperature(self, msg):
-        self.coldest = min(self.coldest, msg.temperature)  # for the log book
+        # the coldest temperature is for the log book
+        self.coldest = min(self.coldest, msg.temperature)
 
     def enter(self, phase):
         rospy.loginfo("%s at %.2f m, coldest ice %.1f C", phase.name, self.depth, self.coldest)
