@@ -204,7 +204,8 @@ def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
             ctx.ops.bind_target(ctx, target, entered, frame, f"with{number}", context)
     goes_on = ctx.ops.block(ctx, s.body, frame)
     frame.statement = s
-    for number, (manager, rest) in reversed([*enumerate(managers)]):  # the managers also exit if a `return` leaves the body
+    # The managers also exit if a `return` leaves the body.
+    for number, (manager, rest) in reversed([*enumerate(managers)]):
         _special_of_manager(ctx, manager, LEAVING, [UNKNOWN] * 3, frame, s)
         rest = join(rest, managers_of_generators.kept_on_stack(ctx, manager))
         managers_of_generators.leave(ctx, rest, frame, s.pos, number)
