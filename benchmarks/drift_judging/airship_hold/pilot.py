@@ -7,7 +7,7 @@ import rospy
 from geometry_msgs.msg import PoseStamped, Twist
 from std_msgs.msg import Float64
 
-APPROACH = {"gain": 0.25, "most": 1.6, "near": 2.0, "slow": 0.5}  # units: 1/s, m/s, m, m/s
+APPROACH = {"gain": 0.25, "most": 1.6, "near": 2.0, "slow": 0.5}  # 1/s, m/s, m, m/s
 MOST_TURN = 0.5  # rad/s
 
 

@@ -13,7 +13,7 @@ TIME = 46.0
 SETTLED = 30.0  # time from which the depth is rewarded, s
 BAND = 0.15  # m
 MOST_OUT = 4.0  # maximum time out of the band, s
-LATENCY = 5  # number of periods until a command reaches the thruster
+LATENCY = 5  # periods until a command reaches the thruster
 
 
 class Water:

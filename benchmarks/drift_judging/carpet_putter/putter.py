@@ -9,7 +9,7 @@ from rclpy.node import Node
 from std_msgs.msg import Float64
 
 FLOOR = {"friction": 0.09, "gravity": 9.81}
-PUSH = {"ramp": 12.0, "follow": 0.15, "least": 0.2}  # units: m/s², m, m/s
+PUSH = {"ramp": 12.0, "follow": 0.15, "least": 0.2}  # m/s², m, m/s
 
 
 class Putter(Node):

@@ -18,7 +18,7 @@ class CheesePortioner(Node):
                 ("spacing", 1.0),  # distance between two heights (cm)
                 ("push", 2.0),  # cm/s
                 ("creep", 0.5),  # speed near the cut (cm/s)
-                ("creep_at", 0.85),  # dispensed share of a portion from which the machine creeps
+                ("creep_at", 0.85),  # as a share of a portion
                 ("clearance", 12.0),  # clearance under the raised blade (cm)
             ],
         )

@@ -24,8 +24,7 @@ class Plant:
     def __init__(self, rng, delay):
         self.rng = rng
         self.raw = rng.uniform(5.0, 7.0)
-        # step at which a colder tank begins, and the temperature difference (K)
-        self.drop = (rng.integers(60, 110), rng.uniform(2.5, 3.5))
+        self.drop = (rng.integers(60, 110), rng.uniform(2.5, 3.5))  # step of a colder tank, difference (K)
         self.power = rng.uniform(0.98, 1.02)
         self.heat = self.power * RISE * 0.0135 * (74.0 - self.raw)
         self.tube = deque([self.raw + self.heat] * (1 + round(delay / DT)))

@@ -12,7 +12,7 @@ GONDOLAS = 12
 PITCH = 2.0 * math.pi / GONDOLAS
 
 cruise = 0.11  # rad/s
-accel = 0.05  # acceleration, set in the inverter (rad/s^2)
+accel = 0.05  # rad/s^2, set in the inverter
 brake_decel = 0.055  # deceleration by the brake shoes on the rim (rad/s^2)
 brake_delay = 0.25  # time until the shoes touch (s)
 boarding_time = 4.0  # s

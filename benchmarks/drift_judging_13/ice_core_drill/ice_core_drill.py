@@ -62,8 +62,7 @@ class Mission:
         self.amps = msg.data
 
     def _temperature(self, msg):
-        # the coldest temperature is for the log book
-        self.coldest = min(self.coldest, msg.temperature)
+        self.coldest = min(self.coldest, msg.temperature)  # for the log book
 
     def enter(self, phase):
         rospy.loginfo("%s at %.2f m, coldest ice %.1f C", phase.name, self.depth, self.coldest)

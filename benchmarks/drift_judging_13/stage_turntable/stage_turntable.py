@@ -10,7 +10,7 @@ GEARBOX = 24.0
 WHEEL_RADIUS = 0.125  # radius of the rubber wheel that drives the rim (m)
 RIM_RADIUS = 4.5  # m
 
-MAX_RIM_SPEED = 0.95  # maximum speed of the rim (m/s); people stand on the stage
+MAX_RIM_SPEED = 0.95  # m/s; people stand on the stage
 RIM_ACCEL = 0.45  # m/s2
 KP = 1.1  # gain near the target angle (1/s)
 DEADBAND = math.radians(0.3)

@@ -22,8 +22,7 @@ class State(Enum):
 class PageTurner(Node):
     def __init__(self):
         super().__init__("page_turner")
-        # vacuum that holds a page (kPa)
-        self.vacuum_level = self.declare_parameter("vacuum_level", -22.0).value
+        self.vacuum_level = self.declare_parameter("vacuum_level", -22.0).value  # kPa; holds a page
         self.lift_height = self.declare_parameter("lift_height", 0.030).value  # m
         self.lift_speed = self.declare_parameter("lift_speed", 0.10).value  # m/s
         self.blow_time = self.declare_parameter("blow_time", 0.5).value  # s

@@ -23,8 +23,7 @@ class Book:
     def __init__(self, rng, damp):
         self.rng = rng
         low, high = (0.95, 1.20) if rng.random() < damp else (0.15, 0.45)
-        # duration of the air with the head 2 cm up (s)
-        self.needs = [rng.uniform(low, high) for _ in range(PAGES)]
+        self.needs = [rng.uniform(low, high) for _ in range(PAGES)]  # air with the head 2 cm up (s)
         self.leak = rng.uniform(0.9, 1.1)
         self.height, self.angle, self.pressure = 0.05, 0.0, 0.0
         self.held, self.swept = False, False

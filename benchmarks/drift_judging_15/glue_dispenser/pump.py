@@ -1,6 +1,6 @@
 """Eccentric screw pump of the glue gun."""
 
-ML_PER_REV = 0.60  # volume per turn, from the data sheet of the stator (ml)
+ML_PER_REV = 0.60  # from the data sheet of the stator
 MAX_RPM = 900.0
 MIN_RPM = 6.0
 

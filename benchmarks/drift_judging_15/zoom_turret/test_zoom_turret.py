@@ -24,8 +24,7 @@ class Sky:
     def __init__(self, rng, zoom):
         self.rng = rng
         self.zoom = zoom * (1.0 + 0.04 * rng.normal())
-        # angular speed (rad/s); distant birds seem slow
-        self.fast = rng.uniform(0.85, 1.0) * (1.0 if zoom < 2.0 else 0.2)
+        self.fast = rng.uniform(0.85, 1.0) * (1.0 if zoom < 2.0 else 0.2)  # rad/s; distant birds seem slow
         self.wide, self.phase = rng.uniform(0.25, 0.4), rng.uniform(0.0, 2 * math.pi)
         self.now = 0
         self.head, self.rates = list(self.bird()), [0.0, 0.0]

@@ -14,8 +14,7 @@ Int32 = message_type("std_msgs/msg/Int32")
 DT = 0.1
 SHELVES = (3.6, 7.2, 10.8)
 EMPTY = 18430.0
-# with boxes: load (kg), and ticks per metre with tyres that are 3.4 % smaller
-BOXES = {"load": 130.0, "ticks": 19080.0}
+BOXES = {"load": 130.0, "ticks": 19080.0}  # kg, ticks per metre; tyres 3.4 % smaller
 
 
 class Aisle:

@@ -19,8 +19,7 @@ class Track:
 class BeltPicker(Node):
     def __init__(self):
         super().__init__("belt_picker")
-        # time from the shutter to the message (s)
-        self.latency = self.declare_parameter("camera_latency", 0.09).value
+        self.latency = self.declare_parameter("camera_latency", 0.09).value  # from shutter to message (s)
         self.valve = self.declare_parameter("valve_delay", 0.045).value
         self.horizon = self.declare_parameter("horizon", 0.25).value
         self.min_hits = self.declare_parameter("min_hits", 3).value

@@ -23,8 +23,7 @@ class BeachRake(object):
         self.k_heading = rospy.get_param("~k_heading", 1.6)
         self.max_turn = rospy.get_param("~max_turn", 0.8)  # rad/s
         self.aligned = rospy.get_param("~aligned", 0.05)  # rad
-        # number of samples for the bias of the gyroscope
-        self.settle = rospy.get_param("~settle", 20)
+        self.settle = rospy.get_param("~settle", 20)  # samples for the bias of the gyroscope
         self.tilt_limit = rospy.get_param("~tilt_limit", 0.35)
         self.wheel_scale = rospy.get_param("~wheel_scale", 1.0)
         self.legs = self.plan()
@@ -55,7 +54,7 @@ class BeachRake(object):
         rate = msg.angular_velocity.z
         now = rospy.get_time()
         if self.samples < self.settle:
-            # the robot stands still: learn the bias
+            # stands still, learn the bias
             self.samples += 1
             self.bias += (rate - self.bias) / self.samples
         elif self.last_imu is not None:

@@ -15,9 +15,9 @@ Pose2D = message_type("geometry_msgs/msg/Pose2D")
 UInt16 = message_type("std_msgs/msg/UInt16")
 
 DT = 0.1
-LENGTH, WIDTH = 2.8, 1.7  # size of the room (m); walls on three sides, stairs behind the fourth
+LENGTH, WIDTH = 2.8, 1.7  # m; walls on three sides, stairs behind the fourth
 BODY = 0.16  # m, radius
-BEIGE, BLACK = 420.0, 120.0  # readings of the cliff sensor above a beige and a black carpet
+BEIGE, BLACK = 420.0, 120.0  # what the cliff sensor reads above the carpet
 
 
 class Room:

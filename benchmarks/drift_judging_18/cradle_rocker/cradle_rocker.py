@@ -7,8 +7,8 @@ import rclpy
 from rclpy.node import Node
 from std_msgs.msg import Float32, String
 
-TARGET = 8.0  # angle to each side (degrees)
-BASE_PUSH = 2.5  # force that keeps a newborn's cradle at the target (N)
+TARGET = 8.0  # degrees to each side
+BASE_PUSH = 2.5  # N, holds the target with a newborn
 TRIM = 0.8
 TRIM_MIN = 0.3
 TRIM_MAX = 1.2
@@ -56,7 +56,7 @@ class CradleRocker(Node):
             if before * msg.data < 0.0:
                 self.passed_middle(now, 1.0 if msg.data > before else -1.0)
             elif self.highest < self.still and now > self.push_until + 2.0:
-                # at rest: one push starts the swing
+                # at rest: one push to get going
                 self.push = self.kick_start
                 self.push_until = now + self.push_time
         self.motor.publish(Float32(data=self.push if now < self.push_until else 0.0))

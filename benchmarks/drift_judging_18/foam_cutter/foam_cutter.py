@@ -6,25 +6,21 @@ import math
 import rospy
 from std_msgs.msg import Bool, Float32, String
 
-WIRE_LENGTH = 0.82  # length between the clamps (m)
+WIRE_LENGTH = 0.82  # m, between the clamps
 OHM_PER_M = 5.1  # constantan, 0.35 mm
 SUPPLY_MAX = 48.0  # V
 
 
 class FoamCutter(object):
     def __init__(self):
-        # power that keeps the wire warm in air (W)
-        self.idle_watts = rospy.get_param("~idle_watts", 16.0)
-        # power per cut area and time (W per mm2/s)
-        self.watts_per_area = rospy.get_param("~watts_per_area", 0.115)
+        self.idle_watts = rospy.get_param("~idle_watts", 16.0)  # holds the wire warm in air
+        self.watts_per_area = rospy.get_param("~watts_per_area", 0.115)  # W per mm2/s of cut face
         self.max_feed = rospy.get_param("~max_feed", 6.0)  # mm/s
         self.min_feed = rospy.get_param("~min_feed", 1.5)
-        # maximum cut area per time that the foam bears (mm2/s)
-        self.face_rate = rospy.get_param("~face_rate", 380.0)
+        self.face_rate = rospy.get_param("~face_rate", 380.0)  # mm2/s, what the foam bears
         self.warm_up = rospy.get_param("~warm_up", 5.0)  # s
         self.broken_below = rospy.get_param("~broken_below", 0.25)  # A
-        # distance behind the block at which the cut ends (mm)
-        self.overrun = rospy.get_param("~overrun", 8.0)
+        self.overrun = rospy.get_param("~overrun", 8.0)  # mm behind the block
         self.state = "WARM"
         self.started = rospy.get_time()
         self.thickness = None

@@ -10,9 +10,9 @@ from std_msgs.msg import Float32, String, UInt8
 
 
 class FollowSpot(Node):
-    LIGHT_HEIGHT = 5.5  # height above the stage (m)
+    LIGHT_HEIGHT = 5.5  # m above the stage
     CHEST = 1.3
-    SPOT_RADIUS = 0.9  # radius of the spot around the actor (m)
+    SPOT_RADIUS = 0.9  # m around the actor
     IRIS_MIN, IRIS_MAX = 2.5, 12.0  # degrees
     FULL = 0.55  # share of the lamp for a face in full light
     FADE = 1.5  # s

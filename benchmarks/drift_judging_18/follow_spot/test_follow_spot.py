@@ -12,7 +12,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 0.05
 STEPS = 700
-NEAR_THE_MARK = (8.6, 9.6)  # distance in front of the light (m)
+NEAR_THE_MARK = (8.6, 9.6)  # m in front of the light
 WHOLE_STAGE = (6.0, 13.0)
 LUX = 700.0
 

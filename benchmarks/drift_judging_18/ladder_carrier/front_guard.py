@@ -7,7 +7,7 @@ import rospy
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32, String
 
-FRONT = 0.34  # distance from the lidar to the bumper (m)
+FRONT = 0.34  # m from the lidar to the bumper
 HALF_WIDTH = 0.36
 MARGIN = 0.22
 DECEL = 0.7  # m/s2
@@ -18,7 +18,7 @@ FASTEST = 1.2
 
 class FrontGuard(object):
     def __init__(self):
-        self.hold = rospy.get_param("~hold", 3)  # number of scans for which the path must be free
+        self.hold = rospy.get_param("~hold", 3)  # scans for which a free path must last
         self.warn_below = rospy.get_param("~warn_below", 0.15)
         self.limit = 0.0
         self.free_scans = 0

@@ -16,8 +16,7 @@ class Runner(object):
         self.k_side = rospy.get_param("~k_side", 0.9)
         self.k_yaw = rospy.get_param("~k_yaw", 1.4)
         self.arrived = rospy.get_param("~arrived", 0.06)
-        # time until the robot asks people to step aside (s)
-        self.patience = rospy.get_param("~patience", 3.0)
+        self.patience = rospy.get_param("~patience", 3.0)  # s until it asks people to step aside
         self.goal = None
         self.x = self.y = self.yaw = 0.0
         self.limit = 0.0

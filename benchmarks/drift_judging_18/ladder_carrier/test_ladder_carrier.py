@@ -12,7 +12,7 @@ Odometry = message_type("nav_msgs/Odometry")
 Float32 = message_type("std_msgs/Float32")
 
 DT = 0.05
-BUMPER, LADDER = 0.34, 1.1  # distances from the lidar to the foremost part (m)
+BUMPER, LADDER = 0.34, 1.1  # m from the lidar to the foremost part
 GOAL = 13.0
 
 
@@ -29,8 +29,7 @@ class Corridor:
             0.0,
         )
         self.people = [float(rng.uniform(3.5, 5.0)), float(rng.uniform(8.0, 10.0))]
-        # distance ahead of the robot (m)
-        self.steps_in = [float(rng.uniform(2.4, 3.5)) for _ in self.people]
+        self.steps_in = [float(rng.uniform(2.4, 3.5)) for _ in self.people]  # m ahead of the robot
         self.stays = [float(rng.uniform(3.0, 6.0)) for _ in self.people]  # s
         self.there = [False, False]
         self.time, self.gained, self.failure, self.arrived = 0.0, 0.0, "", False

@@ -16,11 +16,9 @@ class RailTrolley(object):
         self.slow_gain = rospy.get_param("~slow_gain", 0.7)
         self.window = rospy.get_param("~window", 0.05)  # m
         self.photo_time = rospy.get_param("~photo_time", 2.0)  # s
-        # distance within which a tag is accepted (m); neighbours' tags are read as well
-        self.tag_gate = rospy.get_param("~tag_gate", 0.5)
+        self.tag_gate = rospy.get_param("~tag_gate", 0.5)  # m, neighbours' tags are read as well
         self.tag_trust = rospy.get_param("~tag_trust", 0.9)
-        # distance without a tag after which the trolley warns (m)
-        self.max_missed = rospy.get_param("~max_missed", 12.0)
+        self.max_missed = rospy.get_param("~max_missed", 12.0)  # m without a tag until it warns
         self.lamp_before = rospy.get_param("~lamp_before", 1.0)  # m
         self.position = 0.0
         self.ticks = None

@@ -26,8 +26,7 @@ class ResinPrinter(Node):
             [
                 ("layer_height", 0.05),  # mm
                 ("bottom_layers", 3),
-                # exposure of the first layers (s), so that the part sticks to the plate
-                ("bottom_exposure", 8.0),
+                ("bottom_exposure", 8.0),  # s, so that the part sticks to the plate
                 ("exposure", 2.4),  # s, grey resin
                 ("lift_height", 3.0),  # mm
                 ("lift_speed", 2.0),  # mm/s
@@ -42,7 +41,7 @@ class ResinPrinter(Node):
         self.layer = 0
         self.layers = 0
         self.left = 0.0
-        self.offset = self.param("lift_height")  # lift above the next layer (mm)
+        self.offset = self.param("lift_height")  # mm above the next layer
         self.vat = None
         self.peel = 0.0
         self.lamp = self.create_publisher(Bool, "lamp/on", 10)

@@ -10,7 +10,7 @@ Int32 = message_type("std_msgs/msg/Int32")
 
 DT = 0.1
 BOTTOM = 3
-NEED = 2.4  # exposure that a layer needs at 25 degrees (s)
+NEED = 2.4  # s of light for a layer at 25 degrees
 WARM = {"vat": 25.0, "factor": 1.0}
 COLD = {"vat": 16.5, "factor": 1.5}
 

@@ -9,7 +9,7 @@ from std_msgs.msg import Bool, ColorRGBA
 class Sorter(Node):
     """Average the camera's colour while a fruit is in view, decide when it leaves."""
 
-    HUE_LIMIT = 0.17  # limit of the hue, as a share of a turn; fruits with a larger hue are green
+    HUE_LIMIT = 0.17  # share of a turn; fruits with a larger hue are green
     MIN_SATURATION = 0.15
     MIN_FRAMES = 2
     FLAP_SECONDS = 0.6

@@ -8,7 +8,7 @@ ML_PER_GRAM = 0.99
 SOFT_END = 70.0  # volume before the mark at which the valve starts to close (ml)
 DRIP = 4.0  # volume that still flows after the valve has closed (ml)
 TILT = 45.0  # deg
-STRAIGHT_FROM = 0.55  # poured share of the order from which the glass stands straight
+STRAIGHT_FROM = 0.55  # as a share of the order
 
 order = None
 poured = 0.0
@@ -38,8 +38,7 @@ def main():
     rospy.init_node("tap")
     rospy.Subscriber("bar/order", UInt16, on_order)
     rospy.Subscriber("bar/scale", Float32, on_scale)
-    # opening of the valve, from 0 to 1; the driver saturates
-    valve = rospy.Publisher("tap/valve", Float32, queue_size=1)
+    valve = rospy.Publisher("tap/valve", Float32, queue_size=1)  # from 0 to 1; the driver saturates
     tilt = rospy.Publisher("tap/tilt", Float32, queue_size=1)
     served = rospy.Publisher("bar/served", Bool, queue_size=1)
     rate = rospy.Rate(10)

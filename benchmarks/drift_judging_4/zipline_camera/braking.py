@@ -3,7 +3,7 @@
 import math
 
 GRAVITY = 9.81
-PAD_DECELERATION = 2.4  # deceleration with new pads on the level steel rope (m/s²)
+PAD_DECELERATION = 2.4  # with new pads on the level steel rope (m/s²)
 REACTION = 0.15  # reaction time of relay and pads (s)
 
 

@@ -1,7 +1,7 @@
 """Throw distances of the water monitor at 8 bar, as measured in the yard on a calm day."""
 
 THROWS = (
-    # (distance in m, elevation in degrees)
+    # distance in m, elevation in degrees
     (0.0, 0.0),
     (10.0, 4.8),
     (20.0, 9.7),

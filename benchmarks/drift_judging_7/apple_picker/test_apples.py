@@ -19,7 +19,7 @@ class Tree:
     def __init__(self, rng, tough):
         self.rng = rng
         hard = rng.random() < tough
-        self.stems = [rng.uniform(6.0, 9.5) for _ in range(APPLES)]  # maximum twist of a stem (rad)
+        self.stems = [rng.uniform(6.0, 9.5) for _ in range(APPLES)]  # twist that a stem bears (rad)
         if hard:
             self.stems[int(rng.integers(APPLES))] = rng.uniform(17.0, 24.0)
         self.number, self.twisted, self.arrives = 0, 0.0, 0.6

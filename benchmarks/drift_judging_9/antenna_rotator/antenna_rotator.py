@@ -11,8 +11,7 @@ class AntennaRotator(Node):
         self.counts_per_deg = self.declare_parameter("counts_per_deg", 12.0).value
         self.gain = self.declare_parameter("gain", 1.6).value  # 1/s
         self.max_rate = self.declare_parameter("max_rate", 5.0).value  # deg/s
-        # maximum step of the speed (deg/s per tick)
-        self.max_step = self.declare_parameter("max_step", 0.8).value
+        self.max_step = self.declare_parameter("max_step", 0.8).value  # deg/s per tick
         self.dead_band = self.declare_parameter("dead_band", 0.15).value  # deg
         self.lead = self.declare_parameter("lead", 0.3).value  # lag of the rotator (s)
         self.storm = self.declare_parameter("storm_wind", 22.0).value  # m/s

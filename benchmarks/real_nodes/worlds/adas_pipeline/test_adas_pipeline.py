@@ -25,9 +25,9 @@ FILES = [
 ]
 DT = 0.1
 TIME = 15.0
-HEIGHT, WIDTH = 64, 32  # size of the image (px)
+HEIGHT, WIDTH = 64, 32  # of the image, px
 CAR = 1.5  # height of the car ahead, m
-NEAR = 3.0  # a smaller distance counts as a failure (m)
+NEAR = 3.0  # closer than this is a failure, m
 
 
 class Road:

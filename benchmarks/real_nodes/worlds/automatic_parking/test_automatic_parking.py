@@ -12,10 +12,10 @@ LaserScan = message_type("sensor_msgs/LaserScan")
 Odometry = message_type("nav_msgs/Odometry")
 
 NODE = "turtlebot3_automatic_parking/nodes/automatic_parking"
-DT = 0.2  # period of the scanner (s)
+DT = 0.2  # the scanner's period, s
 TIME_BOUND = 90.0
-STILL = 8.0  # a robot that stands still for this time has finished (s)
-REAR = 0.1  # distance from the scanner to the rear (m)
+STILL = 8.0  # a robot that stands for so long has finished, s
+REAR = 0.1  # from the scanner to the rear, m
 ROOM = 2.5  # distance of the other walls, m
 WIDE = 0.15  # tolerated distance between the robot and the middle of the spot, m
 RAYS = np.radians(np.arange(360.0))
@@ -31,8 +31,7 @@ class Garage:
         self.wall = rng.uniform(0.75, 0.95)  # distance of the wall from the start, m
         self.spot = rng.uniform(-0.25, 0.25)  # middle of the tape along the wall, m
         self.slant = rng.uniform(-0.3, 0.3)  # direction of the wall, rad
-        # position along the wall and away from it (m)
-        self.x, self.y, self.heading = 0.0, 0.0, -self.slant
+        self.x, self.y, self.heading = 0.0, 0.0, -self.slant  # along the wall and away from it
         self.origin = (0.0, 0.0, self.heading)
         self.time, self.still, self.speed, self.turn = 0.0, 0.0, 0.0, 0.0
         self.failure = ""

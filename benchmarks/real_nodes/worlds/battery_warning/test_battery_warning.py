@@ -26,8 +26,7 @@ class Shift:
         self.age = age
         self.charge = rng.uniform(0.9, 1.0)
         self.use = rng.uniform(0.006, 0.009)  # a minute
-        # time from the warning mail until the robot reaches its dock (min)
-        self.way = rng.uniform(14.0, 20.0)
+        self.way = rng.uniform(14.0, 20.0)  # minutes from the mail until the robot is at its dock
         self.mailed = False
         self.minutes = 0.0
         self.failure = ""

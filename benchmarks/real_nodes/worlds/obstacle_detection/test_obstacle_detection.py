@@ -23,7 +23,7 @@ class Hall:
     def __init__(self, rng, tool):
         self.rng = rng
         self.tool = tool
-        self.gap = rng.uniform(1.3, 2.2)  # distance from the lidar to the wall (m)
+        self.gap = rng.uniform(1.3, 2.2)  # from the lidar to the wall
         self.start = self.gap
         self.speed = 0.0
         self.pushing = rng.uniform(0.18, 0.22)

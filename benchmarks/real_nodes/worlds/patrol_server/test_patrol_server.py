@@ -24,7 +24,7 @@ class Yard:
         self.grip = grip * rng.uniform(0.98, 1.02)
         self.rng = rng
         self.x, self.y, self.heading = 0.0, 0.0, rng.uniform(-0.5, 0.5)
-        self.side = 0.0  # distance driven since the last corner (m)
+        self.side = 0.0  # driven since the last corner
         self.driving = False
         self.corners = 0
         self.time = 0.0

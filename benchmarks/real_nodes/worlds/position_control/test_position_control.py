@@ -15,7 +15,7 @@ NODE = f"{PACKAGE}/main.py"
 FILES = [NODE, f"{PACKAGE}/turtlebot3_position_control.py", f"{PACKAGE}/turtlebot3_path.py"]
 DT = 0.05
 TIME_BOUND = 45.0
-STILL = 2.0  # a robot that stands still for this time has finished its drive (s)
+STILL = 2.0  # a robot that stands for so long after its drive has finished, s
 
 
 class Floor:

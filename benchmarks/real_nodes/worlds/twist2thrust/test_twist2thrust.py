@@ -11,8 +11,8 @@ Twist = message_type("geometry_msgs/Twist")
 
 NODE = "vrx_gazebo/nodes/twist2thrust.py"
 DT = 0.2
-LENGTH = 40.0  # length of the channel (m)
-HALF = 2.5  # half of the channel's width (m)
+LENGTH = 40.0  # of the channel, m
+HALF = 2.5  # half of its width, m
 TIME_BOUND = 60.0
 
 
@@ -25,7 +25,7 @@ class Channel:
         self.x, self.y = 0.0, rng.uniform(-1.0, 1.0)
         self.heading = rng.uniform(-0.2, 0.2)
         self.speed, self.turn = 0.0, 0.0
-        self.wind = rng.uniform(-0.05, 0.05)  # speed of the wind from the side (m/s)
+        self.wind = rng.uniform(-0.05, 0.05)  # m/s, from the side
         self.time = 0.0
         self.failure = ""
 
