@@ -73,7 +73,7 @@ def culprits(
 
     `effects` maps site ids to effects in reward per episode. An effect equal to `loss` has the score 1. The sites of
     the confirmed repair get the highest score, those with the largest effect of their own first; sites that were not
-    tried in simulation get 0.
+    tried in simulation get 0. Sites whose constants changed no reward at all come last.
     """
     found = [_simulated(site, effects[site.id], loss, method) for site, _ in ranked if effects.get(site.id)]
     guessed = [Culprit(site, 0.0, "slices") for site, _ in ranked if not effects.get(site.id)]
@@ -83,7 +83,10 @@ def culprits(
     highest = max(one.score for one in found)
     found = [replace(one, score=highest) if one.site.id in repaired else one for one in found]
     found.sort(key=lambda one: (-one.score, one.site.id not in repaired, -_own(one)))
-    return (*found, *guessed)
+    idle = [
+        one for one in found if one.site.id not in repaired and not any(each.effect for each in one.operands)
+    ]
+    return (*(one for one in found if one not in idle), *guessed, *idle)
 
 
 def _own(culprit: Culprit) -> float:

@@ -67,14 +67,14 @@ def _formed(
     analysis: Analysis, mutations: Sequence[Mutation]
 ) -> Iterator[tuple[Document, ast.expr, Form, dict[str, float], SiteId]]:
     """Yield each form (template at an expression) once, with the parameters from all its mutations."""
-    found: dict[tuple[Span, Template], tuple[Mutation, dict[str, float]]] = {}
+    found: dict[tuple[Span, Template, str], tuple[Mutation, dict[str, float]]] = {}
     for mutation in mutations:
         if mutation.form is not None:
-            key = (mutation.operand.span, mutation.form.template)
+            key = (mutation.operand.span, mutation.form.template, mutation.form.field)
             _, values = found.setdefault(key, (mutation, dict(mutation.form.defaults)))
             moved = form_values(mutation)
             values |= {name: moved[name] for name in moved if name == mutation.form.parameter}
-    for (span, _), (mutation, values) in found.items():
+    for (span, _, _), (mutation, values) in found.items():
         if mutation.form is not None:
             source = analysed_document(analysis, span.path)
             yield source, source.find(span), mutation.form, values, mutation.operand.site

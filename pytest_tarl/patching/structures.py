@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.document import Document, Edit, Function, Loop
 from pytest_tarl.patching.expressions import choice, fitted, number
-from pytest_tarl.patching.templates import Template, filled, plainly
+from pytest_tarl.patching.templates import FIELD, Template, filled, plainly
 from pytest_tarl.patching.vocabulary import class_attributes, free, names
 from pytest_tarl.sensors import Sensor
 from tarl_lint.model import Span
@@ -27,6 +27,11 @@ class Form:
     defaults: tuple[tuple[str, float], ...] = ()
     partner: Span | None = None  # the other expression of a pair to swap
     sensor: Sensor | None = None
+    field: str = ""  # for a published message: the field to change, such as `linear.x`
+
+    def target(self, code: str) -> str:
+        """Return the code of what the form changes at an expression: the expression, or a field of it."""
+        return f"{code}.{self.field}" if self.field else code
 
 
 @dataclass(frozen=True)
@@ -99,6 +104,8 @@ class _Place:
 def _written(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
     source, node, made = place.source, place.node, place.form.template
     code = source.source(node)
+    if made.on == FIELD:
+        return _ahead_of_publishing(place, fill)
     if made.on == "pair":
         return _swapped(source, node, place.form, place.condition)
     if made.on == "comparison":
@@ -149,6 +156,19 @@ def _ahead(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
         Edit(start, start, before),
         Edit(source.start(node), source.end(node), fitted(source, node, text)),
     ]
+
+
+def _ahead_of_publishing(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
+    """Change a field of a message before the statement that publishes it, in place if possible: `x *= 2.0`."""
+    source, statement, node = place.source, place.statement, place.node
+    if not _can_stand_before(source, statement):
+        raise RepairError(f"{source.path}:{node.lineno}: no line can be inserted before this one.")
+    target = place.form.target(source.source(node))
+    lines, text = place.named(target, fill)
+    start, indent = source.start(statement), source.indentation(statement)
+    factor = text.removeprefix(f"{target} * ")
+    last = f"{target} *= {factor}" if factor != text and not place.condition else f"{target} = {text}"
+    return [Edit(start, start, "".join(f"{line}\n{indent}" for line in (*lines, last)))]
 
 
 def _always_evaluated(source: Document, statement: ast.stmt, node: ast.expr) -> bool:

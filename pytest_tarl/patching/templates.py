@@ -21,9 +21,9 @@ else:  # pragma: no cover
 
 SHIPPED = Path(__file__).parent.parent / "templates"
 OWN = "tarl_templates"  # folder below pytest's rootdir with the project's own templates
-KINDS = ("value", "input", "number", "comparison", "pair", "sent", "sensor", "sent by sensor")
-# kinds of templates that are tried with each numeric sensor
-OF_SENSORS = ("sensor", "sent by sensor")
+KINDS = ("value", "input", "number", "comparison", "pair", "sent", "field", "sensor", "sent by sensor")
+FIELD = "field"  # a field of a published message that several statements build
+OF_SENSORS = ("sensor", "sent by sensor")  # kinds that are tried with each numeric sensor
 SCALES = (  # units of a parameter's default
     "",  # the default is used unscaled
     "typical",  # the usual size of the value in the designed world

@@ -1,4 +1,4 @@
-"""Add the gain of the accepted repair to the effects that the searches measured."""
+"""Add the gains of structural changes and of the accepted repair to the effects that the searches measured."""
 
 from __future__ import annotations
 
@@ -12,6 +12,18 @@ from pytest_tarl.searching.search import Candidate, operand_effect
 SAME = 0.01  # relative difference of values that count as the same, because a definition has a rounded value
 
 Effects = Mapping[str, Sequence[OperandEffect]]
+
+
+def gaining(effects: Effects, structural: Effects) -> Effects:
+    """Return effects with those structural changes that gained reward, so that their statements rank by this gain.
+
+    Both arguments map site ids to effects.
+    """
+    found = {site: tuple(each) for site, each in effects.items()}
+    for site, each in structural.items():
+        known = found.get(site, ())
+        found[site] = (*known, *(one for one in each if one.effect > 0.0 and one not in known))
+    return {site: each for site, each in found.items() if each}
 
 
 def with_confirmed(

@@ -7,7 +7,6 @@ further constants.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from types import MappingProxyType
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
@@ -22,6 +21,8 @@ from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
+SOON = 15  # number of episodes before the changes with the clearest symptoms are tried
+FEW = 15  # number of episodes for these changes; half as many more if one of them gains much
 FROM = 60  # number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
 # replaces FROM if a constant gains at least `PARTLY`, because it may only need another value or a second constant
 LATER = 100
@@ -47,6 +48,7 @@ class Early:
         self._recorded: tuple[Recorded, ...] | None = None
         self._signs: Signs | None = None
         self._structures: Structures | None = None
+        self._surest: Structures | None = None  # the changes with the clearest symptoms, once they were tried
         self._corrected = False  # whether the readings were corrected
 
     def candidates(self, best: float = 0.0) -> Iterator[Candidate]:
@@ -57,14 +59,23 @@ class Early:
         if self._recorded and best < HALF * self.order.goal.wanted:
             yield from self.corrected()
         partly = best >= PARTLY * self.order.goal.wanted
+        if not partly and self._recorded and not self._surest and self.trials.spent >= SOON:
+            self._surest = Structures(self.order, self.guards, self.trials, signs=self.signs(self.trials))
+            yield from self._counted(self._surest.surest(FEW))
         begin = LATER if partly else FROM
         if self._structures is not None or self.trials.spent < begin:
             return
-        begun, before = self.trials.spent, self.spent
+        begun = self.trials.spent
         found = self.signs(self.trials)
+        self.spent += self.trials.spent - begun
         self._structures = Structures(self.order, self.guards, self.trials, signs=found)
+        yield from self._counted(self._structures.early(MOST, once=not partly))
+
+    def _counted(self, changes: Iterator[Candidate]) -> Iterator[Candidate]:
+        """Yield structural changes and count their episodes."""
+        begun, before = self.trials.spent, self.spent
         try:
-            for candidate in self._structures.early(MOST, once=not partly):
+            for candidate in changes:
                 self.spent = before + self.trials.spent - begun
                 self.waiting = True
                 yield candidate
@@ -109,4 +120,8 @@ class Early:
 
     def effects(self) -> Mapping[str, Sequence[OperandEffect]]:
         """Return the gains of the best values of each template, for each site."""
-        return MappingProxyType({}) if self._structures is None else self._structures.effects()
+        found: dict[str, list[OperandEffect]] = {}
+        for structures in (self._surest, self._structures):
+            for site, effects in structures.effects().items() if structures is not None else ():
+                found.setdefault(site, []).extend(effects)
+        return found

@@ -19,13 +19,13 @@ CHANGES = 8  # maximum number of changes, each a template at an expression
 
 
 def evident(
-    order: Order, known: Sequence[Template], among: Sequence[Spot], signs: Signs
+    order: Order, known: Sequence[Template], among: Sequence[Spot], signs: Signs, least: float = STRONG
 ) -> Iterator[tuple[Operand, Form]]:
     """Yield the operands of the `CHANGES` with the strongest symptoms, the strongest first.
 
     Equal strengths are ordered by the cost of the template. Each template has `PLACES`. If the value is wrong where it
     is received, the places next to the subscription come first, otherwise those next to the publish call, and the
-    arguments of the call itself last, since a named value reads better.
+    arguments of the call itself last, since a named value reads better. Symptoms weaker than `least` are left out.
     """
     before = _before_sending(order)
     found: list[tuple[float, int, list[tuple[Operand, Form]]]] = []
@@ -33,7 +33,9 @@ def evident(
         if not template.symptoms or template.on in OF_SENSORS:
             continue
         told = {spot: _strength(spot, template, signs, before) for spot in among}
-        strong = [spot for spot in among if told[spot] >= STRONG]
+        strong = [spot for spot in among if told[spot] >= least]
+        if not strong:
+            continue
         received = any(one in RECEIVED for one in template.symptoms)
         strong.sort(
             key=lambda spot: (str(spot.site) not in signs.strengths, -spot.away if received else spot.away)

@@ -12,20 +12,28 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
+import numpy as np
+
 from pytest_tarl.errors import RepairError
 from pytest_tarl.instrumentation.sites import plan
+from pytest_tarl.instrumentation.trace import Floats
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.repairing.mission_pairs import Recorded, series
 from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.separating import separating
 from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.plainness import Oddness, writing
 from pytest_tarl.symptoms.series import Pair
 from tarl_lint.model import Operand
 
 MOST = 6  # maximum number of hints
+SEPARATED = (
+    3  # maximum number of hints for thresholds that separate other values than in the designed missions
+)
 LEAST = 0.05  # minimum change of a value, as a logarithm or as a share of its designed size
 AGREE = 0.25  # maximum difference between mission pairs, as a share of the change
 ALIKE = 0.05  # maximum difference between the logarithms of two factors that count as equal
+SIZES = ("abs", "math.fabs", "fabs", "np.abs", "numpy.abs")  # functions that return the size of a value
 LARGEST = 20.0  # hints have a factor of at most this, and at least its inverse
 
 
@@ -45,6 +53,8 @@ def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand
     difference. A constant that multiplies or divides a value changes by the factor of the result, in either direction.
     """
     changes = _changes(order, recorded)
+    values = _values(order, recorded)
+    separated: list[Hint] = []
     beside: list[tuple[Operand, float]] = []
     shifted: list[Hint] = []
     scaled: list[Hint] = []
@@ -53,13 +63,20 @@ def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand
         if found is None or not operand.value or isinstance(operand.value, bool):
             continue
         value = float(operand.value)
+        separated += [((operand, by),) for by in _separating(order, values, operand, *found)]
         for change in _beside(order, changes, operand, *found):
             beside += [(operand, change.ratio)] if change.ratio else []
             shifted += [((operand, 1.0 + change.difference / value),)] if change.difference else []
         own = changes.get(str(operand.site))
         if own is not None and own.ratio is not None and _multiplies(*found):
             scaled += [((operand, 1.0 / own.ratio),), ((operand, own.ratio),)]
-    every = [*_together(beside), *(((operand, by),) for operand, by in beside), *shifted, *scaled]
+    every = [
+        *separated[:SEPARATED],
+        *_together(beside),
+        *(((operand, by),) for operand, by in beside),
+        *shifted,
+        *scaled,
+    ]
     fitting = [hint for hint in every if all(_sensible(by) for _, by in hint)]
     return list(dict.fromkeys(tuple((one, float(f"{by:.3g}")) for one, by in hint) for hint in fitting))[
         :MOST
@@ -99,6 +116,45 @@ def _changes(order: Order, recorded: Sequence[Recorded]) -> dict[str, Change]:
         if pairs and all(one.designed.values.size and one.drifted.values.size for one in pairs):
             found[place.id] = _change(pairs)
     return found
+
+
+def _values(order: Order, recorded: Sequence[Recorded]) -> dict[str, tuple[Floats, Floats]]:
+    """Return, by site id, the values of each statement in the designed and in the drifted missions."""
+    found: dict[str, tuple[Floats, Floats]] = {}
+    for number, place in enumerate(plan(order.analysis).places):
+        pairs = [Pair(series(one, number), series(other, number)) for one, other in recorded]
+        if pairs:
+            found[place.id] = (
+                np.concatenate([pair.designed.values for pair in pairs]),
+                np.concatenate([pair.drifted.values for pair in pairs]),
+            )
+    return found
+
+
+def _separating(
+    order: Order,
+    values: Mapping[str, tuple[Floats, Floats]],
+    operand: Operand,
+    source: Document,
+    node: ast.expr,
+) -> Iterator[float]:
+    """Yield the factors of a threshold with which it separates the drifted values as it did in the designed missions.
+
+    For example, a node ignores positions that differ by more than its gate. After a slip of a wheel it ignores all of
+    them, until the gate lies between the slip and the errors that it is meant for.
+    """
+    around = source.parents.get(node)
+    if not isinstance(around, ast.Compare) or len(around.ops) != 1 or not operand.value:
+        return
+    other = around.left if node is not around.left else around.comparators[0]
+    size = isinstance(other, ast.Call) and ast.unparse(other.func) in SIZES and len(other.args) == 1
+    inner = other.args[0] if size and isinstance(other, ast.Call) else other
+    for site in _made_at(order, operand, source, inner):
+        if site in values:
+            designed, drifted = (np.abs(one) if size else one for one in values[site])
+            by = separating(float(operand.value), designed, drifted)
+            if by is not None:
+                yield by
 
 
 def _change(pairs: Sequence[Pair]) -> Change:

@@ -12,7 +12,7 @@ from pytest_tarl.model import Comparison, FormulaRow, Guarantee, Guard, OperandE
 from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.accepting import Accepted, Examiner
 from pytest_tarl.repairing.budget import Purse
-from pytest_tarl.repairing.confirmed_effects import with_confirmed
+from pytest_tarl.repairing.confirmed_effects import gaining, with_confirmed
 from pytest_tarl.repairing.delivering import attempts, delivered, partial, withheld
 from pytest_tarl.repairing.early import Early
 from pytest_tarl.repairing.enriching import enriched
@@ -64,6 +64,7 @@ class _Findings:
     late: bool = False  # whether the search reached its time limit
     episodes: int = 0
     ranking: Ranking | None = None  # None unless all sites were ranked
+    structural: Mapping[str, Sequence[OperandEffect]] | None = None  # gains of structural changes
     structure: int = 0  # number of episodes spent on structural changes; included in `episodes`
     early: Early | None = None  # the structural changes tried within the last search
     constants: Attempts | None = None  # the changes of constants that the last sweep tried
@@ -148,6 +149,7 @@ def _search(
     elif not found.effects:
         found.effects, found.method = strategy.effects(), method
     found.early = early
+    found.structural = gaining(found.structural or {}, early.effects())
     found.curves += (SearchTrace(method, tuple(trials.totals), tuple(trials.labels)),)
     purse.settle(trials)
 
@@ -177,6 +179,7 @@ def _restructure(
         found.interrupted = True
     if found.accepted is not None and _structural(found.accepted):
         found.effects, found.method = structures.effects(), "structure"
+    found.structural = gaining(found.structural or {}, structures.effects())
     found.curves += (SearchTrace("structure", tuple(trials.totals), tuple(trials.labels)),)
     purse.settle(trials)
     if found.accepted is None or _structural(found.accepted):
@@ -220,7 +223,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
     refused = watch.best_so_far(_ended(examiner, found))
     history = attempts(order, [*watch.unconfirmed(examiner.tried), *examiner.tried])
     chosen = accepted.candidate if accepted else examiner.refused.candidate
-    totals, effects = dict(order.comparison.totals), found.effects or {}
+    totals, effects = dict(order.comparison.totals), gaining(found.effects or {}, found.structural or {})
     sizes = order.comparison.sizes
     bounds: Mapping[str, Guarantee] = {}
     spent = 0

@@ -13,8 +13,8 @@ from types import MappingProxyType
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.structures import Form
-from pytest_tarl.patching.templates import OF_SENSORS, Template, templates
-from pytest_tarl.repairing.evident import evident
+from pytest_tarl.patching.templates import FIELD, OF_SENSORS, Template, templates
+from pytest_tarl.repairing.evident import STRONG, evident
 from pytest_tarl.repairing.mission_pairs import NO_SIGNS, Signs
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.telling_sensors import OVERLAP, telling, varies
@@ -25,17 +25,18 @@ from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.sensors import Sensor
 from tarl_lint.model import Operand
 
-COMMANDED = ("stored", "sent")  # kinds of expressions that go into a published message
+COMMANDED = ("stored", "sent", FIELD)  # kinds of expressions that go into a published message
 # a statement responds if one of its constants gains at least this share of the wanted gain
 RESPONDS = 0.2
-# number of expressions tried first: the top-ranked expression, and the expression nearest to a publish call
-FIRST = 2
+SURE = 0.85  # minimum strength of a symptom whose templates are tried within the first steps of constants
+FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
 LEAST = 50
 # if the candidates of a group need more than the group's own episodes, they leave this share of the remaining
 # episodes to later groups
 KEPT = 0.6
+WHOLE = ("number", FIELD)  # kinds of templates that change a whole command
 COMMANDS = 3  # maximum number of commands that are scaled or shifted before all other changes
 # minimum number of episodes for each of these changes, but never more than a third of the episodes left
 LEAST_EACH = 4
@@ -102,13 +103,27 @@ class Structures:
         known, places = templates(order.root), list(spots(order))
         varying = [one for one in self._telling() if order.goal.ranged or varies(order, one)]
         found = [self._evident(known, places), self._told(known, places, varying)]
-        bare = [self._once(known, places)] if once else []
+        bare = [self._once(known, places), self._gains_of_commands(known, places)] if once else []
         groups = [*bare, *(_Group(operands, lambda share, _: share // 2) for operands in found)]
         trials = self.trials
         budget, reserve, worth, spent = trials.budget, trials.reserve, trials.worth, trials.spent
         trials.budget = min(spent + 2 * most, budget)
         try:
             yield from self._searched([group for group in groups if group.operands], brief=True)
+        except BudgetSpentError:
+            pass
+        finally:
+            trials.budget, trials.reserve, trials.worth = budget, reserve, worth
+
+    def surest(self, most: int) -> Iterator[Candidate]:
+        """Yield confirmed candidates of the changes with the clearest symptoms; spend at most about `most` episodes."""
+        known, places = templates(self.order.root), list(spots(self.order))
+        group = _Group(self._evident(known, places, SURE))
+        trials = self.trials
+        budget, reserve, worth = trials.budget, trials.reserve, trials.worth
+        trials.budget = min(trials.spent + most, budget)
+        try:
+            yield from self._searched([group] if group.operands else [], brief=True)
         except BudgetSpentError:
             pass
         finally:
@@ -201,9 +216,11 @@ class Structures:
             if other.span == operand.span and replace(its, parameter="") == bare and fixed(its)
         ]
 
-    def _evident(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
-        """Return the operands of the changes that a symptom indicates."""
-        found = dict(evident(self.order, known, among, self.signs))
+    def _evident(
+        self, known: Sequence[Template], among: Sequence[Spot], least: float = STRONG
+    ) -> list[Operand]:
+        """Return the operands of the changes that a symptom of at least some strength indicates."""
+        found = dict(evident(self.order, known, among, self.signs, least))
         self._found |= found
         return [operand for operand, form in found.items() if not fixed(form)]
 
@@ -233,10 +250,18 @@ class Structures:
         found = [operand for one in bare for operand in self._at(one, among, first=True)]
         return _Group(found, lambda share, left: min(max(share, len(found)), left))
 
+    def _gains_of_commands(self, known: Sequence[Template], among: Sequence[Spot]) -> _Group:
+        """Return the operands of a gain at the values that are published, for actuators that have become weaker."""
+        nearest = _commands(among)
+        fitting = [one for one in known if one.on in WHOLE and one.without != "term"]
+        found = [operand for one in fitting for operand in self._at(one, nearest[:COMMANDS], first=None)]
+        return _Group(found, lambda share, left: min(max(share, LEAST_EACH * len(found)), left // 3))
+
     def _at_commands(self, known: Sequence[Template], among: Sequence[Spot]) -> _Group:
         """Return the operands of the templates for any number at the values that are published."""
-        nearest = sorted((spot for spot in among if spot.kind in COMMANDED), key=lambda spot: spot.away)
-        fitting = [one for one in known if one.on == "number"]
+        nearest = _commands(among)
+        # an offset, which also acts where the command should be 0, comes after the factors
+        fitting = sorted((one for one in known if one.on in WHOLE), key=lambda one: one.without == "term")
         found = [operand for one in fitting for operand in self._at(one, nearest[:COMMANDS], first=None)]
         return _Group(found, lambda share, left: min(max(share, LEAST_EACH * len(found)), left // 3))
 
@@ -263,6 +288,12 @@ class Structures:
                         self._found[operand] = form
                         if not fixed(form):
                             yield operand
+
+
+def _commands(among: Sequence[Spot]) -> list[Spot]:
+    """Return the values that are published, those nearest to the publish call first, fields before other values."""
+    sent = [spot for spot in among if spot.kind in COMMANDED]
+    return sorted(sent, key=lambda spot: (spot.away, spot.kind != FIELD))
 
 
 def _responding(effects: Mapping[str, Sequence[OperandEffect]], wanted: float) -> tuple[str, ...]:

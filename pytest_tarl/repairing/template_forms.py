@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.mutate import Mutation, form_values
 from pytest_tarl.patching.structures import Form, described
-from pytest_tarl.patching.templates import FIXED, OF_SENSORS, Template
+from pytest_tarl.patching.templates import FIELD, FIXED, OF_SENSORS, Template
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.telling_sensors import continuous, usual
 from pytest_tarl.repairing.template_places import Spot, pairs
@@ -22,6 +23,7 @@ MOST = {
     "comparison": 5,
     "pair": 4,
     "sent": 3,
+    "field": 4,
     "sensor": 3,
     "sent by sensor": 2,
 }  # maximum number of expressions at which to try a template, by the template's kind
@@ -34,7 +36,7 @@ def form_words(order: Order, mutation: Mutation) -> str:
     form = mutation.form
     assert form is not None  # noqa: S101
     source = document(mutation.operand.span.path, order.analysis.sources[mutation.operand.span.path])
-    x = _folded(source, source.find(mutation.operand.span))
+    x = form.target(_folded(source, source.find(mutation.operand.span)))
     y = _folded(source, source.find(form.partner)) if form.partner is not None else ""
     return described(form, x, y, form_values(mutation), form.sensor.name if form.sensor else "")
 
@@ -51,7 +53,7 @@ def forms(order: Order, template: Template, among: Sequence[Spot]) -> Iterator[l
     for spot in fitting(template, among)[: MOST[template.on]]:
         if template.on not in OF_SENSORS:
             scales = {"typical": spot.typical, "larger": spot.larger}
-            yield list(_operands(template, spot, Form(template), scales))
+            yield list(_operands(template, spot, Form(template, field=spot.field), scales))
             continue
         by_sensor: list[tuple[Operand, Form]] = []
         for sensor in order.comparison.sensors:
@@ -62,6 +64,8 @@ def forms(order: Order, template: Template, among: Sequence[Spot]) -> Iterator[l
 
 def fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
     """Return the expressions that a template fits, in the order to try them."""
+    if template.on == FIELD:
+        return [spot for spot in among if spot.kind == FIELD]
     if template.on.startswith("sent"):
         return [spot for spot in among if spot.kind == "sent" or (spot.kind == "value" and not spot.away)]
     if template.on == "number":
@@ -108,9 +112,9 @@ def _operands(
     defaults = tuple(
         (one.name, float(f"{one.default * scales.get(one.of, 1.0):.4g}")) for one in template.parameters
     )
-    code = _folded(spot.source, spot.node)
+    code = bare.target(_folded(spot.source, spot.node))
     for name, value in defaults or (("", None),):
-        form = Form(template, name, defaults, bare.partner, bare.sensor)
+        form = replace(bare, parameter=name, defaults=defaults)
         by = f" by {bare.sensor.name}" if bare.sensor else ""
         text = f"{template.name.replace('_', ' ')}{by} of {code}{f', {name}' if name else ''}"
         yield Operand(spot.site, _span(spot.source, spot.node), text, value if name else False), form

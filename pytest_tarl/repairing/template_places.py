@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from itertools import combinations
 
 from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.built_fields import built_fields
 from pytest_tarl.patching.document import Document, document
+from pytest_tarl.patching.templates import FIELD
 from pytest_tarl.repairing.labels import is_member
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.typical_sizes import TypicalSizes, called, threshold
@@ -43,6 +45,7 @@ class Spot:
     hears: bool
     constants: frozenset[str] = frozenset()
     numeric: bool = True
+    field: str = ""  # for the kind "field": the field of the published message
 
 
 def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
@@ -52,7 +55,7 @@ def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
     """
     sizes = TypicalSizes(order)
     drifted = TypicalSizes(order, order.online.recorded.sample)
-    seen: set[tuple[str, int]] = set()
+    seen: set[tuple[str, int, str]] = set()
     away = _away(order)
     hearing = {flow.source.span.path for flow in order.analysis.flows}
     for step in _steps(order, away, responding):
@@ -60,8 +63,16 @@ def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
             source = document(step.span.path, order.analysis.sources[step.span.path])
         except (RepairError, KeyError):
             continue
-        for node, kind in _expressions(source, step.span, str(step.site) in sizes.by_site, sizes.returned):
-            key = (source.path, source.start(node))
+        for node, kind, field in (
+            *(
+                (each, what, "")
+                for each, what in _expressions(
+                    source, step.span, str(step.site) in sizes.by_site, sizes.returned
+                )
+            ),
+            *_fields(source, step.span),
+        ):
+            key = (source.path, source.start(node), field)
             if key not in seen and not is_member(source, node, order.analysis.sources.values()):
                 seen.add(key)
                 usual, larger = threshold(node), threshold(node)
@@ -72,7 +83,9 @@ def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
                 numeric = kind != "sent" or sizes.known(step.site, node) is not None
                 codes = {one.code for one in order.analysis.operands(step.site)}
                 own = frozenset(constants(source, node, codes))
-                yield Spot(step.site, source, node, kind, usual, larger, away[step.site], hears, own, numeric)
+                yield Spot(
+                    step.site, source, node, kind, usual, larger, away[step.site], hears, own, numeric, field
+                )
 
 
 def _steps(order: Order, away: Mapping[SiteId, int], responding: Sequence[str]) -> list[Step]:
@@ -127,6 +140,13 @@ def _expressions(
             numbers = list(_passed(statement.value, returned))
             yield from ((each, "value") for each in numbers)
             yield from ((each, "sent") for each in _sent(statement.value) if each not in numbers)
+
+
+def _fields(source: Document, span: Span) -> Iterator[tuple[ast.expr, str, str]]:
+    """Yield (message, kind, field) for the fields that several statements build before the call that publishes them."""
+    for node in ast.walk(source.tree):
+        if isinstance(node, ast.Expr) and node.lineno == span.line:
+            yield from ((message, FIELD, built.field) for message, built in built_fields(source, node))
 
 
 def _passed(call: ast.Call, returned: Collection[str]) -> Iterator[ast.expr]:

@@ -12,7 +12,7 @@ from pytest_tarl.searching.exact import exactest
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.plainness import Oddness, kind, writing
-from pytest_tarl.searching.refining import ALMOST, PROMISING, between, bracket
+from pytest_tarl.searching.refining import ALMOST, PROMISING, amid, between, bracket
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
@@ -24,6 +24,7 @@ REFINED = 8  # maximum number of runs that refine one operand
 IDLE = 2
 # a named constant with a sharp peak is refined nevertheless if the factors on both sides of it have at least this ratio
 WIDE = 1.4
+AMID = 6  # maximum number of constants that are tried at once between two steps
 MORE = 0.05  # minimum increase of the gain, as a share of the wanted gain
 
 
@@ -38,6 +39,10 @@ class Search(Protocol):
     slack: float
     refused: set[tuple[Unit, Guard]]
     given: Callable[[Operand], Sequence[Operand]]
+
+    @property
+    def pair(self) -> int:
+        """Return the index of the pair on whose seed the changes of the present turn run."""
 
     def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
         """Try a factor; yield the candidates that are confirmed."""
@@ -100,6 +105,20 @@ class Adjusting:
         """Return whether a named constant has a sharp peak between factors far enough apart to try one between them."""
         named = kind(key[0]) is Oddness.NAMED and not self.search.proposed
         return named and bracket(self.search.gains.of(*key)) >= WIDE
+
+    def amid(self, guard: Guard) -> Iterator[Candidate]:
+        """Try the value between two steps of a constant, of which the smaller is too little and the larger too much.
+
+        A step is too little if it earns about as much as the old value, and too much if it clearly loses.
+        """
+        search = self.search
+        found = [
+            (kind(unit) is not Oddness.NAMED, -max(gains.values()), unit, step)
+            for unit, gains in (() if search.proposed else search.gains.under(guard).items())
+            for step in amid(gains, search.slack)
+        ]
+        for _, _, unit, step in sorted(found, key=lambda one: one[:2])[:AMID]:
+            yield from search.attempt(unit, guard, step, search.pair)
 
     def exactly(self, guard: Guard) -> Iterator[Candidate]:
         """Move the best unit under a guard once to where its missions follow the designed ones most closely.

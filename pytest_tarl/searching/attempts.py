@@ -19,6 +19,7 @@ from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.preferring import Preferences
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
+from pytest_tarl.searching.twins import twin_of
 from pytest_tarl.searching.units import Scope, Unit, everywhere
 from pytest_tarl.searching.uses import Uses
 from tarl_lint.model import Operand
@@ -30,8 +31,9 @@ FLIP = -1.0  # factor that flips the sign
 # maximum number of units to try with the opposite sign; only units that gained with a smaller value are tried
 FLIPPED = 3
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
-# maximum number of easy pairs; until a change gains, changes run on the seeds of these pairs
-EASY = 3
+EASY = 3  # maximum number of easy pairs; changes run on their seeds until one gains
+# a gain below this share of the wanted gain does not count if it comes from missions that fail sooner
+PARTLY = 0.3
 LOST = 0.5  # a pair can be easy if its loss is at least this share of the wanted gain
 
 
@@ -83,6 +85,9 @@ class Attempts:
         self.preferences = Preferences(self)
         self.combining = Combining(self)
         self.adjusting = Adjusting(self)
+        self.twins: tuple[
+            Unit, ...
+        ] = ()  # groups of constants that are tried together once one of them gains
         self._easy = easy(goal)
         self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # change → pair of its first run
         self._tried: set[Candidate] = set()
@@ -109,6 +114,7 @@ class Attempts:
         pair = self.pair
         self.turn += 1
         yield from self.each(factor, guard, among, pair)
+        yield from self._as_twins(factor, guard, among)
         if 0.0 < factor < 1.0:
             for unit in self.leading(factor, guard, self.slack)[:FLIPPED]:
                 yield from self.attempt(unit, guard, FLIP, pair)
@@ -120,6 +126,15 @@ class Attempts:
         for at, unit in enumerate(among):
             self.expect([(each, guard, factor) for each in among[at:]], pair)
             yield from self.attempt(unit, guard, factor, pair)
+
+    def _as_twins(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Try a factor on all twins of the constants that just gained with it, best gain first."""
+        gained = {unit: self.gains.of(unit, guard).get(factor, 0.0) for unit in among}
+        for unit in sorted(gained, key=lambda one: -gained[one]):
+            twin = twin_of(unit, self.twins) if gained[unit] > self.slack else None
+            if twin is not None:
+                self.units = self.units if twin in self.units else (*self.units, twin)
+                yield from self.attempt(twin, guard, factor, self.ran_on(unit, guard, factor))
 
     def leading(self, before: float, guard: Guard, least: float) -> list[Unit]:
         """Return the units whose gain with the factor `before` is at least `least`, best first."""
@@ -154,6 +169,8 @@ class Attempts:
     def _learn(self, unit: Unit, candidate: Candidate, factor: float) -> None:
         pairs = self.goal.pairs
         gain, moved = self.trials.gain(candidate, pairs), self.trials.moved(candidate, pairs)
+        if 0.0 < gain < PARTLY * self.goal.wanted and self.trials.fails_sooner(candidate, self.goal):
+            gain = 0.0
         self.gains.enter((unit, candidate.guard), factor, gain, moved)
         self._acting.ran(unit, candidate)
 

@@ -7,7 +7,7 @@ designed. Both repairs earn the same total, but at different times.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from pytest_tarl.model import Guard
 from pytest_tarl.searching.gains import Gains, Part
@@ -19,14 +19,18 @@ CLOSER = 0.6  # a rival is preferred if its deviation is at most this share of t
 COMPARED = 3  # number of missions on which two candidates that pass are compared
 # exponents of the factor found: the first factor that passes is often larger than needed
 POWERS = (1.0, 0.7)
+GAINED = 0.03  # minimum gain of a constant of another function, as a share of the gain of the constant found
+ASIDE = 2  # maximum number of constants of other functions
 RIVALS = 8  # maximum number of episodes for rival constants
 
 
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
     """Yield the other named constants of the function that contains `found`, each with 1/factor and with factor.
 
-    Weaker factors follow. The reciprocal suits constants that are divisors. Constants that never changed a mission are
-    left out. So are constants on another scale than `found`, for which the factor has no meaning.
+    Weaker factors follow for those that gained. The reciprocal suits constants that are divisors. Constants that never
+    changed a mission are left out. So are constants on another scale than `found`, for which the factor has no meaning.
+    Constants of other functions in the file come first if they gained reward, in the direction that gained, since they
+    may be the cause as well.
     """
     at = found.operands[0].site
     tried = gains.under(guard)
@@ -36,5 +40,29 @@ def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guar
         beside = (site.module, site.qualname) == (at.module, at.qualname) and unit.chart == found.chart
         if unit != found and beside and (unit not in tried or gains.matters(unit)):
             others.append(unit)
-    for power in POWERS:
+    aside = [
+        unit
+        for unit in (named(units) if factor > 0 else ())
+        if unit != found
+        and unit not in others
+        and unit.operands[0].span.path == found.operands[0].span.path
+        and unit.chart == found.chart
+        and max(tried.get(unit, {1.0: 0.0}).values()) > GAINED * max(gains.most((found, guard)), 0.0)
+    ]
+    aside = sorted(aside, key=lambda unit: -max(tried[unit].values()))[:ASIDE]
+    yield from ((unit, round(factor if _towards(tried[unit], factor) else 1.0 / factor, 3)) for unit in aside)
+    for number, power in enumerate(POWERS):
+        if number and others:
+            first = {round(factor**to, 3) for to in (-POWERS[0], POWERS[0])}
+            tried = gains.under(guard)
+            others = [
+                unit
+                for unit in others
+                if any(tried.get(unit, {}).get(one, 0.0) > gains.slack for one in first)
+            ]
         yield from ((unit, round(factor**to, 3)) for unit in others for to in (-power, power))
+
+
+def _towards(gains: Mapping[float, float], factor: float) -> bool:
+    """Return whether the factor that gained most changes the constant in the same direction as `factor`."""
+    return (max(gains, key=gains.__getitem__) > 1.0) == (factor > 1.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 
 from pytest_tarl.model import Guard
@@ -13,6 +14,7 @@ from pytest_tarl.searching.forward_selection import Joint
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.refining import FURTHER
 from pytest_tarl.searching.search import Candidate
+from pytest_tarl.searching.twins import assigned_alone
 from pytest_tarl.searching.units import NEAR, Unit
 from tarl_lint.model import Operand
 
@@ -26,6 +28,14 @@ FINER = (1.22, 0.82)
 SENSITIVE = ((1.1, 0.91), (1.05, 0.95), (1.025, 0.975))
 # if a change gains at least this share of the wanted gain, other constants get no `FINER` steps
 HALF = 0.5
+
+
+_DECIDING = re.compile(r"[<>]|[!=]=|\b(?:if|while|min|max|clip|clamp|int|round)\b")
+
+
+def deciding(text: str) -> bool:
+    """Return whether a statement may compare, limit, round or store a value: it may then matter in one direction."""
+    return _DECIDING.search(text) is not None or bool(assigned_alone(text))
 
 
 class FirstSteps:
@@ -47,6 +57,19 @@ class FirstSteps:
         self.responding = responding
         self._measured: Callable[[], Sequence[Hint]] | None = measured
 
+    def everywhere(self, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Increase, then decrease the named constants without a condition, before they are tried under the best one.
+
+        Most drifts last for whole missions. The acceptance test then finds out whether the repair needs a condition.
+        """
+        tries = self.attempts
+        for factor in NEAR:
+            moving = tries.gains.moving(named(among))
+            yield from tries.sweep(factor, ALWAYS, moving) if moving else ()
+            if tries.gains.anything(HALF * tries.goal.wanted):
+                return
+            yield from self._as_measured(ALWAYS)
+
     def near(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
         """Increase and decrease each unit, then try smaller steps if both lose, and combine the best units.
 
@@ -61,8 +84,12 @@ class FirstSteps:
             yield from tries.sweep(FLIP, guard, moving)
         else:
             yield from self._named_first(guard, named(moving))
+        if gains.idle_guard(guard) and ALWAYS in tries.guards:
+            return  # without the condition, changes may have effects
         for factor in NEAR:
-            yield from tries.sweep(factor, guard, moving)
+            yield from tries.sweep(
+                factor, guard, [one for one in moving if not self._inert(one, guard, factor)]
+            )
         yield from self.crossing.across(guard, plateau.STEPS[:2])
         yield from self._narrow(guard, moving)
         for factor, before in () if gains.anything() else FURTHER:
@@ -75,16 +102,24 @@ class FirstSteps:
         yield from tries.combining.unmasked(guard)
         yield from self._uses_apart(guard, block)
 
+    def _inert(self, unit: Unit, guard: Guard, factor: float) -> bool:
+        """Return whether a literal that decides nothing had no effect with the first factor, so that none follows."""
+        tried = self.attempts.gains.of(unit, guard)
+        literal = unit.operands[0].literal and not self.attempts.proposed
+        dull = factor == NEAR[1] and NEAR[0] in tried and not self.attempts.gains.moves(unit)
+        return literal and dull and not deciding(unit.operands[0].site.text)
+
     def _named_first(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Increase named constants; if none gains, try moderate steps on them before other constants are tried."""
         tries = self.attempts
         yield from tries.each(NEAR[0], guard, among, tries.pair)
-        if among and not tries.gains.anything():
+        idle = tries.gains.idle_guard(guard) and ALWAYS in tries.guards
+        if among and not tries.gains.anything(HALF * tries.goal.wanted):
+            yield from self._as_measured(ALWAYS if ALWAYS in tries.guards else guard)
+        if among and not idle and not tries.gains.anything():
             tries.turn += 1
             yield from tries.sweep(NEAR[1], guard, among)
             yield from self.crossing.across(guard, plateau.STEPS[:2])
-        if among and not tries.gains.anything(HALF * tries.goal.wanted):
-            yield from self._as_measured(ALWAYS if ALWAYS in tries.guards else guard)
 
     def _as_measured(self, guard: Guard) -> Iterator[Candidate]:
         """Try the changes that recorded missions suggest, once, then refine the best constant.
@@ -155,7 +190,7 @@ class FirstSteps:
         lost = gains.lost_both_ways(guard, among, NEAR)
         for factor in BETWEEN if lost else ():
             yield from tries.sweep(factor, guard, lost)
-        promising = gains.anything(HALF * tries.goal.wanted)
+        promising = tries.proposed or gains.anything(HALF * tries.goal.wanted)
         still = [] if promising else gains.lost_both_ways(guard, lost, BETWEEN)
         for factor in FINER if still else ():
             yield from tries.sweep(factor, guard, still)

@@ -9,6 +9,9 @@ from pytest_tarl.searching.plainness import Oddness, kind
 from pytest_tarl.searching.units import NEAR, Unit
 from tarl_lint.model import SiteId
 
+SEEN = 6  # minimum number of units that must have been tried under a guard to call it idle
+IDLE = 0.25  # a guard is idle if at most this share of the units tried under it changed an episode
+
 Key = tuple[Unit, Guard]
 Part = tuple[Unit, float]  # a unit with a factor
 
@@ -28,12 +31,14 @@ class Gains:
         self.proposed = proposed
         self._by_key: dict[Key, dict[float, float]] = {}
         self._moved: set[tuple[Unit, float]] = set()
+        self._moved_under: set[Key] = set()
 
     def enter(self, key: Key, factor: float, gain: float, moved: bool | None = None) -> None:
         """Store the gain of a factor, and whether it changed an episode (by default: whether the gain is not 0)."""
         self._by_key.setdefault(key, {} if self.proposed else {1.0: 0.0})[factor] = gain
         if gain if moved is None else moved:
             self._moved.add((key[0], factor))
+            self._moved_under.add(key)
 
     def of(self, unit: Unit, guard: Guard) -> Mapping[float, float]:
         """Return the gains of a unit under a guard, by factor."""
@@ -69,6 +74,12 @@ class Gains:
         """Return whether a unit changed any episode."""
         return any(moved == unit for moved, _ in self._moved)
 
+    def idle_guard(self, guard: Guard) -> bool:
+        """Return whether changes under a guard hardly have effects: it holds where the robot does little."""
+        tried = self.under(guard)
+        moved = sum((unit, guard) in self._moved_under for unit in tried)
+        return bool(guard.conjuncts) and len(tried) >= SEEN and moved <= IDLE * len(tried)
+
     def matters(self, unit: Unit) -> bool:
         """Return whether a unit changed any episode, or at least what the nodes publish."""
         return self.moves(unit) or self._acts(unit)
@@ -80,9 +91,13 @@ class Gains:
         """Return the units, except those for which neither an increase nor a decrease had any effect.
 
         While no unit gains, a changed command counts as an effect, because all missions that fail may earn the same.
+        Tries under an idle guard do not count.
         """
         tries: dict[Unit, int] = {}
-        for (unit, _), by_factor in self._by_key.items():
+        idle = {guard for guard in {guard for _, guard in self._by_key} if self.idle_guard(guard)}
+        for (unit, guard), by_factor in self._by_key.items():
+            if guard in idle:
+                continue
             tries[unit] = tries.get(unit, 0) + sum(factor != 1.0 for factor in by_factor)
         moved, flat = {unit for unit, _ in self._moved}, not self.anything()
         return [

@@ -7,11 +7,13 @@ them takes only a few episodes.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import log
 from statistics import fmean
 from typing import Protocol
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
+from pytest_tarl.searching.bisecting import bisected
 from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, rivals
@@ -27,6 +29,7 @@ from pytest_tarl.searching.smaller import (
     BESIDE,
     EARLY,
     EPISODES,
+    LEAST,
     LOST,
     WORSE,
     inside,
@@ -35,7 +38,7 @@ from pytest_tarl.searching.smaller import (
     outside,
     smaller,
 )
-from pytest_tarl.searching.units import NEAR, Unit
+from pytest_tarl.searching.units import NEAR, Unit, change_size
 
 PLAINER_ROUNDS = 2  # number of refinements of each constant whose change a maintainer would prefer
 FUNCTIONS = 2  # maximum number of functions whose constants are compared by the course of their missions
@@ -90,6 +93,9 @@ class Preferences:
         self, found: Candidate, unit: Unit, factor: float, pair: int, holds: bool, near: bool
     ) -> Iterator[Candidate]:
         """Yield the changes preferred to a candidate; `near` says whether it reached the goal on its first seed."""
+        nearer = self._bisected(unit, factor, found.guard, pair) if holds else None
+        if nearer is not None:
+            unit, factor, found = nearer
         if holds:
             yield from self._moderate(found, unit, factor, pair)
             yield from self._plainer(found, unit, pair)
@@ -104,6 +110,16 @@ class Preferences:
                 yield from self._smaller(found, unit, factor, hardest)
             else:
                 yield milder
+        if nearer is not None:
+            yield found
+            self.search.refused.add((unit, found.guard))
+
+    def _bisected(
+        self, unit: Unit, factor: float, guard: Guard, pair: int
+    ) -> tuple[Unit, float, Candidate] | None:
+        if self.search.proposed:
+            return None
+        return bisected(self.search, unit, factor, guard, self._hardest(pair))
 
     def _moderate(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
         """If a change is extreme, first try corrections of readings and small steps of other constants, once."""
@@ -208,7 +224,7 @@ class Preferences:
         for other, step in rivals(unit, factor, self.search.units, self.search.gains, found.guard):
             if self.search.trials.spent - begun >= RIVALS:
                 return
-            if other in compared or not self.search.reaches(other, step, found.guard, pair):
+            if other in compared or not self._promises(other, step, found.guard, pair):
                 continue
             compared.add(other)
             candidate = self._closer_rival(found, other, step, pair)
@@ -219,6 +235,13 @@ class Preferences:
                 self.search.refused.add((other, found.guard))
                 return
             self._aside.append((other, candidate))
+
+    def _promises(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
+        """Return whether a new factor reaches the goal on the seed of a pair, or gains so much that another one may."""
+        if self.search.reaches(unit, factor, guard, pair):
+            return True
+        gain = self.search.gains.of(unit, guard).get(factor, 0.0)
+        return gain >= PROMISING * self.search.goal.wanted
 
     def _closer_rival(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Candidate | None:
         """Return a confirmed change of a rival constant that reached the goal, or None.
@@ -238,6 +261,7 @@ class Preferences:
         if (
             self._reduced
             or self.search.proposed
+            or change_size(unit, factor) < log(LEAST)
             or self.search.trials.spent > EARLY * self.search.trials.budget
         ):
             return

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 from math import sqrt
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (larger step, smaller step that must not have reduced the reward)
 # ratio of the next factor to the outermost one (or the reverse), if the outermost factor is the best
 OUTWARD = 2.3
+APART = 2.0  # minimum ratio of two factors between which another is tried although neither gains
 FINEST = 1.1  # ratio of two factors below which no factor between them is tried
 # minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
 ALMOST = 0.9
@@ -28,6 +30,23 @@ def bracket(by_factor: Mapping[float, float]) -> float:
     below, above = ordered[place - 1], ordered[place + 1]
     sharp = max(by_factor[below], by_factor[above]) <= SHARP * by_factor[factor]
     return above / below if sharp else 1.0
+
+
+def amid(by_factor: Mapping[float, float], slack: float) -> list[float]:
+    """Return the factors between neighbouring ones of which the inner gains nothing and the outer loses.
+
+    The old value and factors whose ratio is less than `APART` are left out: first steps lie between them already.
+    """
+    found = []
+    for outward in (
+        sorted(one for one in by_factor if one > 1.0),
+        sorted((f for f in by_factor if 0 < f < 1.0), reverse=True),
+    ):
+        for inner, outer in pairwise(outward):
+            apart = max(inner, outer) >= APART * min(inner, outer)
+            if apart and abs(by_factor[inner]) <= slack and by_factor[outer] < -slack:
+                found.append(round(sqrt(inner * outer), 3))
+    return found
 
 
 def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:

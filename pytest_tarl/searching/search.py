@@ -219,6 +219,18 @@ class Trials:
             for outcome, pair in known
         )
 
+    def fails_sooner(self, candidate: Candidate, goal: Goal) -> bool:
+        """Return whether all missions of a candidate failed, and sooner than without it.
+
+        A mission that ends early saves the costs of its remaining steps, which shows no progress.
+        """
+        known = [(self._known.get((candidate, pair.seed)), pair.steps) for pair in goal.pairs]
+        ran = [(one, steps) for one, steps in known if one is not None]
+        return bool(ran) and all(
+            goal.lost(one) and one.steps is not None and steps is not None and one.steps < steps
+            for one, steps in ran
+        )
+
     def steps(self, candidate: Candidate, pairs: Iterable[Pair]) -> list[int]:
         """Return the lengths of the missions that a candidate ran, where known."""
         known = (self._known.get((candidate, pair.seed)) for pair in pairs)

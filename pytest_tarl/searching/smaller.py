@@ -18,6 +18,7 @@ from pytest_tarl.searching.units import Unit, change_size
 
 STEPS = (0.82, 1.22)  # factors that are tried on each constant
 BESIDE = (1.06, 0.94)  # factors by which a step that earns nearly enough is multiplied
+LEAST = 1.9  # minimum factor of a change for which a smaller one is sought
 LESS = 0.5  # maximum size of a small change (see `change_size`), as a share of the size of the change found
 ONWARD = (
     (0.74, 1.33),

@@ -15,13 +15,15 @@ from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.charts import Chart
 from pytest_tarl.searching import plateau
 from pytest_tarl.searching.attempts import FLIP, Attempts
+from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.crossing import Crossing
 from pytest_tarl.searching.families import families
-from pytest_tarl.searching.first_steps import BETWEEN, FINER, FirstSteps, Hint
+from pytest_tarl.searching.first_steps import BETWEEN, FINER, HALF, FirstSteps, Hint
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.refining import FURTHER
 from pytest_tarl.searching.screening import BLOCK, blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
+from pytest_tarl.searching.twins import twins
 from pytest_tarl.searching.units import (
     NEAR,
     Scope,
@@ -120,6 +122,7 @@ class Sweep:
             order = yield from screened(tries.joining({}, self._unswept()), tries.guards[0], tries.generator)
             tries.units = (*(unit for unit in tries.units if unit in self._swept), *order)
         self._families = () if tries.proposed else families(tries.units)
+        tries.twins = () if tries.proposed else twins(tries.units)
         tries.units = (*tries.units, *self._families)
         yield from self._in_large_steps(chief)
         gained = gains.anything()
@@ -173,6 +176,11 @@ class Sweep:
     def _in_large_steps(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
         """Try every unit in steps that are large enough to show whether it matters."""
         tries, gains = self.attempts, self.attempts.gains
+        conditional = not tries.proposed and len(chief) > 1 and ALWAYS in tries.guards
+        if conditional:
+            yield from self.first_steps.everywhere(self._unswept())
+            if gains.anything(HALF * tries.goal.wanted):
+                chief = (ALWAYS, *(guard for guard in chief if guard != ALWAYS))
         for block in blocks(self._unswept()):
             for guard in chief:
                 yield from self.first_steps.near(block, guard)
@@ -183,6 +191,7 @@ class Sweep:
                 leading = tries.leading(before, guard, -tries.slack)
                 still = [unit for unit in self._families if unit not in leading]
                 yield from tries.sweep(factor, guard, [*leading, *still])
+                yield from tries.adjusting.amid(guard)
                 yield from self.crossing.inward(guard)
                 yield from tries.adjusting.exactly(guard)
                 yield from tries.combining.leaders(guard)

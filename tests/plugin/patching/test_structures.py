@@ -28,7 +28,7 @@ def test_a_template_writes_its_example(path: Path) -> None:
     example = contents(path)["example"]
     before = example["before"].lstrip("\n")
     partner = span(before, example["pair"]) if "pair" in example else None
-    form = Form(template(path), partner=partner)
+    form = Form(template(path), partner=partner, field=example.get("field", ""))
     source = document("node.py", before)
     node = source.find(span(before, example["at"]))
     edits = form_edits(source, node, form, example.get("values", {}), "", example.get("sensor", ""))
@@ -45,7 +45,7 @@ def test_the_original_value_is_used_if_the_condition_does_not_hold(path: Path) -
     edits = form_edits(
         source,
         node,
-        Form(template(path), partner=partner),
+        Form(template(path), partner=partner, field=example.get("field", "")),
         example.get("values", {}),
         "wet",
         example.get("sensor", ""),

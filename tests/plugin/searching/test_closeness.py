@@ -53,14 +53,21 @@ def test_rival_constants_have_the_same_scale_as_the_repaired_one() -> None:
     assert calls_of(getter, [getter, Unit((call,)), Unit((call,), SHARE)]) == [Unit((call,))]
 
 
-def test_rivals_are_those_named_constants_of_the_same_function_that_affect_missions() -> None:
+def test_rivals_are_named_constants_of_the_same_function_that_affect_missions_or_gain_elsewhere() -> None:
     gains = Gains(0.1)
     for at, gain in ((LEAK, 9.0), (POWER, 0.3), (ROOM, 0.0), (ELSEWHERE, 1.0)):
         for factor in (2.2, 0.4):
             gains.enter((Unit((at,)), ALWAYS), factor, gain)
     units = [Unit((one,)) for one in (LEAK, POWER, ROOM, ELSEWHERE)]
     found = list(rivals(units[0], 1.25, units, gains, ALWAYS))
-    assert found == [(units[1], factor) for factor in (0.8, 1.25, 0.855, 1.169)]
+    assert found == [
+        (units[3], 1.25),
+        (units[1], 0.8),
+        (units[1], 1.25),
+    ]  # first the one that gained elsewhere
+    gains.enter((units[1], ALWAYS), 0.8, 0.3)
+    found = list(rivals(units[0], 1.25, units, gains, ALWAYS))
+    assert found[3:] == [(units[1], 0.855), (units[1], 1.169)]  # it gained, so a weaker factor may suffice
     assert list(rivals(units[0], -1.0, units, gains, ALWAYS)) == []
 
 

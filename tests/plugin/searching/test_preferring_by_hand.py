@@ -444,7 +444,7 @@ def test_small_steps_end_after_their_episodes_and_skip_refused_constants() -> No
 
     search = Scripted([A, *many], run)
     search.refused.add((many[0], ALWAYS))
-    search.gains.enter((A, ALWAYS), 1.5, 0.0)
+    search.gains.enter((A, ALWAYS), 3.0, 0.0)
     before(search, A, 7.0)
     assert not any(code == "N20" for code, _ in search.tries)
     assert search.trials.spent - 1 == EPISODES
@@ -520,14 +520,13 @@ def test_a_rival_comes_first_if_its_missions_deviate_at_most_six_tenths_as_much(
         assert search.refused == ({(B, ALWAYS)} if rival else set())
 
 
-def test_each_rival_is_tried_with_the_reciprocal_then_with_the_factor_then_with_weaker_ones() -> None:
+def test_each_rival_is_tried_with_the_reciprocal_then_with_the_factor() -> None:
     search, made = rivalling({"A": 0.5, "B": 1.0, "C": 1.0}, [], totals={"B": 0.0, "C": 0.0})
     list(made.before(change(A, 2.0), A, 2.0, 0, True, True))
     assert search.of("reaches") == [
         *(("B", 0.5), ("B", 2.0), ("C", 0.5), ("C", 2.0)),
-        *(("B", 0.616), ("B", 1.625), ("C", 0.616), ("C", 1.625)),
     ]
-    assert len(search.of("reaches")) == RIVALS
+    assert len(search.of("reaches")) < RIVALS
 
 
 def test_a_rival_that_reached_the_goal_is_not_tried_with_another_factor() -> None:
@@ -540,7 +539,7 @@ def test_constants_of_a_function_are_compared_once_and_of_two_functions_at_most(
     search, made = rivalling({"A": 0.5, "B": 1.0, "C": 1.0}, [], totals={"B": 0.0, "C": 0.0})
     for _ in range(2):
         list(made.before(change(A, 2.0), A, 2.0, 0, True, True))
-    assert len(search.of("reaches")) == RIVALS
+    assert len(search.of("reaches")) == 4
     functions = []
     for number in range(3):
         other = replace(A.operands[0], site=replace(A.operands[0].site, qualname=f"f{number}"))

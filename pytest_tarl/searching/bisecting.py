@@ -1,0 +1,77 @@
+"""Bisect between a value that is too little and one that restores the reward, if they are far apart.
+
+For example, a robot keeps free the 0.3 m from its lidar to its bumper; with a ladder, it needs 1.1 m. A step of 2.2 is
+too little, and with the next one, 6.7 m, the robot stops for anything in the corridor. Values in between earn more, and
+they are less likely to do harm in a world that the test does not contain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import sqrt
+from typing import Protocol
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.search import Candidate
+from pytest_tarl.searching.smaller import inside
+from pytest_tarl.searching.units import Unit
+
+JUMP = 2.7  # minimum ratio of two tried values between which others are tried
+STEPS = 4  # maximum number of values that are tried, each in one episode
+
+
+class Search(Protocol):
+    """The parts of the search that `bisected` uses."""
+
+    gains: Gains
+
+    def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
+        """Try a factor; return the candidate if it is new and confirmed."""
+
+    def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
+        """Return whether a new factor reaches the goal on the seed of a pair."""
+
+
+def bisected(
+    search: Search, unit: Unit, factor: float, guard: Guard, pair: int
+) -> tuple[Unit, float, Candidate] | None:
+    """Return a confirmed value nearer to the old one, with its unit and factor, or None.
+
+    `factor` is a confirmed step of the unit. Values are compared by their ratio, also if the step is one on a chart.
+    """
+    plain, by = on_values(unit, factor)
+    if by is None:
+        return None
+    low, high = nearest(by, search.gains.of(plain, guard)), by
+    for _ in range(STEPS):
+        if max(high / low, low / high) < JUMP:
+            break
+        middle = round(sqrt(low * high), 3)
+        if search.reaches(plain, middle, guard, pair):
+            high = middle
+        elif middle in search.gains.of(plain, guard):
+            low = middle
+        else:
+            break  # the value cannot be written, or it was tried before
+    if high == by or not search.reaches(plain, inside(high), guard, pair):
+        return None
+    candidate = search.holding(plain, high, guard, pair)
+    return None if candidate is None else (plain, high, candidate)
+
+
+def on_values(unit: Unit, factor: float) -> tuple[Unit, float | None]:
+    """Return the unit without its chart and the factor on its value, or None for a boolean, a zero or a sign."""
+    value = unit.operands[0].value
+    if isinstance(value, bool) or value == 0:
+        return unit, None
+    by: float | None = factor
+    if unit.chart is not None:
+        by = unit.chart.factor(float(value), factor) if value is not None else None
+    return Unit(unit.operands), by if by is not None and by > 0.0 else None
+
+
+def nearest(factor: float, gains: Mapping[float, float]) -> float:
+    """Return the tried factor that is nearest to a factor on the side of the old value, which counts as tried."""
+    inner = [one for one in gains if min(1.0, factor) < one < max(1.0, factor)]
+    return (max if factor > 1.0 else min)(inner, default=1.0)
