@@ -65,13 +65,23 @@ def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, e
             for _ in range(MOVES):
                 other = moved(best, ratio, mutate) if fmean(totals) < enough else None
                 earned = _better(other, trials, goal, totals) if other is not None else None
-                if other is None or earned is None:
+                if other is None or earned is None or _at_the_edge(moved(other, ratio, mutate), trials, goal):
                     break
                 best, totals = other, earned
         near = (moved(candidate, ratio, mutate) for ratio in (step, 1 / step))
         if all(one is not None and trials.same_as(one, candidate) for one in near):
             return candidate  # smaller steps have no effect either
     return best
+
+
+def _at_the_edge(further: Candidate | None, trials: Trials, goal: Goal) -> bool:
+    """Return whether a mission fails one step further: rewards that grow up to a cliff would lead to its edge."""
+    if further is None or not goal.passing:
+        return False
+    try:
+        return goal.lost(trials(further, goal.pairs[0].seed))
+    except RepairError:
+        return True
 
 
 def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | None:
