@@ -22,7 +22,7 @@ from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
 SOON = 15  # number of episodes before the changes with the clearest symptoms are tried
-FEW = 15  # number of episodes for these changes; half as many more if one of them gains much
+FEW = 10  # number of episodes for these changes; half as many more if one of them gains much
 FROM = 60  # number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
 # replaces FROM if a constant gains at least `PARTLY`, because it may only need another value or a second constant
 LATER = 100
@@ -59,9 +59,9 @@ class Early:
         if self._recorded and best < HALF * self.order.goal.wanted:
             yield from self.corrected()
         partly = best >= PARTLY * self.order.goal.wanted
-        if not partly and self._recorded and not self._surest and self.trials.spent >= SOON:
+        if self._recorded and not self._surest and self.trials.spent >= SOON:
             self._surest = Structures(self.order, self.guards, self.trials, signs=self.signs(self.trials))
-            yield from self._counted(self._surest.surest(FEW))
+            yield from self._counted(self._surest.surest(FEW, symptoms=not partly))
         begin = LATER if partly else FROM
         if self._structures is not None or self.trials.spent < begin:
             return

@@ -70,13 +70,8 @@ def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand
         own = changes.get(str(operand.site))
         if own is not None and own.ratio is not None and _multiplies(*found):
             scaled += [((operand, 1.0 / own.ratio),), ((operand, own.ratio),)]
-    every = [
-        *separated[:SEPARATED],
-        *_together(beside),
-        *(((operand, by),) for operand, by in beside),
-        *shifted,
-        *scaled,
-    ]
+    alone = [((operand, by),) for operand, by in beside]
+    every = [*_together(beside), *alone, *separated[:SEPARATED], *shifted, *scaled]
     fitting = [hint for hint in every if all(_sensible(by) for _, by in hint)]
     return list(dict.fromkeys(tuple((one, float(f"{by:.3g}")) for one, by in hint) for hint in fitting))[
         :MOST
@@ -118,22 +113,18 @@ def _changes(order: Order, recorded: Sequence[Recorded]) -> dict[str, Change]:
     return found
 
 
-def _values(order: Order, recorded: Sequence[Recorded]) -> dict[str, tuple[Floats, Floats]]:
-    """Return, by site id, the values of each statement in the designed and in the drifted missions."""
-    found: dict[str, tuple[Floats, Floats]] = {}
+def _values(order: Order, recorded: Sequence[Recorded]) -> dict[str, list[tuple[Floats, Floats]]]:
+    """Return, by site id, the values of each statement in the designed and the drifted mission of each pair."""
+    found: dict[str, list[tuple[Floats, Floats]]] = {}
     for number, place in enumerate(plan(order.analysis).places):
         pairs = [Pair(series(one, number), series(other, number)) for one, other in recorded]
-        if pairs:
-            found[place.id] = (
-                np.concatenate([pair.designed.values for pair in pairs]),
-                np.concatenate([pair.drifted.values for pair in pairs]),
-            )
+        found[place.id] = [(one.designed.values, one.drifted.values) for one in pairs]
     return found
 
 
 def _separating(
     order: Order,
-    values: Mapping[str, tuple[Floats, Floats]],
+    values: Mapping[str, Sequence[tuple[Floats, Floats]]],
     operand: Operand,
     source: Document,
     node: ast.expr,
@@ -150,11 +141,12 @@ def _separating(
     size = isinstance(other, ast.Call) and ast.unparse(other.func) in SIZES and len(other.args) == 1
     inner = other.args[0] if size and isinstance(other, ast.Call) else other
     for site in _made_at(order, operand, source, inner):
-        if site in values:
-            designed, drifted = (np.abs(one) if size else one for one in values[site])
-            by = separating(float(operand.value), designed, drifted)
-            if by is not None:
-                yield by
+        pairs = [
+            (np.abs(one), np.abs(other)) if size else (one, other) for one, other in values.get(site, ())
+        ]
+        by = separating(float(operand.value), pairs)
+        if by is not None:
+            yield by
 
 
 def _change(pairs: Sequence[Pair]) -> Change:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import sqrt
 
 import numpy as np
@@ -13,23 +14,29 @@ DIFFER = 0.1  # minimum difference between the shares of values above the thresh
 MARGIN = 1.25  # factor from the outermost value to a threshold beyond it
 
 
-def separating(threshold: float, designed: Floats, drifted: Floats) -> float | None:
+def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
     """Return the factor of a threshold that leaves the designed share of values above it, or None if it does already.
 
+    `pairs` are the values of designed and drifted missions. In each pair, the share must differ in the same direction.
     The new threshold lies halfway between two drifted values, on a log scale, or beyond all of them. Values whose sign
     differs from that of the threshold say nothing about its size.
     """
-    sign = 1.0 if threshold > 0.0 else -1.0
-    before, after = (np.sort(sign * one) for one in (designed, drifted))
+    sign, size = (1.0 if threshold > 0.0 else -1.0), abs(threshold)
+    if not pairs or not all(one.size and other.size for one, other in pairs):
+        return None
+    changes = [_above(other, sign, size) - _above(one, sign, size) for one, other in pairs]
+    if not (min(changes) >= DIFFER or max(changes) <= -DIFFER):
+        return None
+    before, after = (np.sort(sign * np.concatenate(each)) for each in zip(*pairs, strict=True))
     if before.size < FEWEST or after.size < FEWEST:
         return None
-    size = abs(threshold)
-    share, now = float(np.mean(before > size)), float(np.mean(after > size))
-    if abs(share - now) < DIFFER:
-        return None
-    above = round(share * after.size)
+    above = round(float(np.mean(before > size)) * after.size)
     low = float(after[after.size - above - 1]) if above < after.size else float(after[0]) / MARGIN**2
     high = float(after[after.size - above]) if above else float(after[-1]) * MARGIN**2
     if low <= 0.0 or high <= low:
         return None
     return sqrt(low * high) / size
+
+
+def _above(values: Floats, sign: float, size: float) -> float:
+    return float(np.mean(sign * values > size))

@@ -28,7 +28,7 @@ from tarl_lint.model import Operand
 COMMANDED = ("stored", "sent", FIELD)  # kinds of expressions that go into a published message
 # a statement responds if one of its constants gains at least this share of the wanted gain
 RESPONDS = 0.2
-SURE = 0.85  # minimum strength of a symptom whose templates are tried within the first steps of constants
+SURE = 0.95  # minimum strength of a symptom whose templates are tried within the first steps of constants
 FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
@@ -115,15 +115,20 @@ class Structures:
         finally:
             trials.budget, trials.reserve, trials.worth = budget, reserve, worth
 
-    def surest(self, most: int) -> Iterator[Candidate]:
-        """Yield confirmed candidates of the changes with the clearest symptoms; spend at most about `most` episodes."""
+    def surest(self, most: int, symptoms: bool = True) -> Iterator[Candidate]:
+        """Yield confirmed candidates of factors on built fields, and of the changes with the clearest symptoms.
+
+        Spend at most about `most` episodes.
+        """
         known, places = templates(self.order.root), list(spots(self.order))
-        group = _Group(self._evident(known, places, SURE))
+        built = [spot for spot in places if spot.kind == FIELD]
+        fields = [operand for one in known if one.on == FIELD for operand in self._at(one, built, first=None)]
+        groups = [_Group(fields), _Group(self._evident(known, places, SURE) if symptoms else [])]
         trials = self.trials
         budget, reserve, worth = trials.budget, trials.reserve, trials.worth
         trials.budget = min(trials.spent + most, budget)
         try:
-            yield from self._searched([group] if group.operands else [], brief=True)
+            yield from self._searched([group for group in groups if group.operands], brief=True)
         except BudgetSpentError:
             pass
         finally:

@@ -32,7 +32,7 @@ FLIP = -1.0  # factor that flips the sign
 FLIPPED = 3
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
 EASY = 3  # maximum number of easy pairs; changes run on their seeds until one gains
-# a gain below this share of the wanted gain does not count if it comes from missions that fail sooner
+# a gain below this share of the wanted gain is hollow if it comes from missions that fail sooner
 PARTLY = 0.3
 LOST = 0.5  # a pair can be easy if its loss is at least this share of the wanted gain
 
@@ -169,9 +169,8 @@ class Attempts:
     def _learn(self, unit: Unit, candidate: Candidate, factor: float) -> None:
         pairs = self.goal.pairs
         gain, moved = self.trials.gain(candidate, pairs), self.trials.moved(candidate, pairs)
-        if 0.0 < gain < PARTLY * self.goal.wanted and self.trials.fails_sooner(candidate, self.goal):
-            gain = 0.0
-        self.gains.enter((unit, candidate.guard), factor, gain, moved)
+        hollow = gain < PARTLY * self.goal.wanted and self.trials.fails_sooner(candidate, self.goal)
+        self.gains.enter((unit, candidate.guard), factor, gain, moved, hollow=hollow)
         self._acting.ran(unit, candidate)
 
     def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:

@@ -49,7 +49,7 @@ def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guar
         and unit.chart == found.chart
         and max(tried.get(unit, {1.0: 0.0}).values()) > GAINED * max(gains.most((found, guard)), 0.0)
     ]
-    aside = sorted(aside, key=lambda unit: -max(tried[unit].values()))[:ASIDE]
+    aside = sorted(aside, key=lambda unit: (-max(tried[unit].values()), _is_local(unit)))[:ASIDE]
     yield from ((unit, round(factor if _towards(tried[unit], factor) else 1.0 / factor, 3)) for unit in aside)
     for number, power in enumerate(POWERS):
         if number and others:
@@ -66,3 +66,8 @@ def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guar
 def _towards(gains: Mapping[float, float], factor: float) -> bool:
     """Return whether the factor that gained most changes the constant in the same direction as `factor`."""
     return (max(gains, key=gains.__getitem__) > 1.0) == (factor > 1.0)
+
+
+def _is_local(unit: Unit) -> bool:
+    """Return whether a unit has the name of a local variable, which is made from other constants."""
+    return unit.operands[0].code.islower() and unit.operands[0].code.isidentifier()

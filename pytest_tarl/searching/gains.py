@@ -32,9 +32,16 @@ class Gains:
         self._by_key: dict[Key, dict[float, float]] = {}
         self._moved: set[tuple[Unit, float]] = set()
         self._moved_under: set[Key] = set()
+        self._hollow: set[tuple[Key, float]] = set()
 
-    def enter(self, key: Key, factor: float, gain: float, moved: bool | None = None) -> None:
-        """Store the gain of a factor, and whether it changed an episode (by default: whether the gain is not 0)."""
+    def enter(
+        self, key: Key, factor: float, gain: float, moved: bool | None = None, hollow: bool = False
+    ) -> None:
+        """Store the gain of a factor, and whether it changed an episode (by default: whether the gain is not 0).
+
+        A `hollow` gain comes from missions that only fail sooner. It may be refined, but it is no progress.
+        """
+        (self._hollow.add if hollow else self._hollow.discard)((key, factor))
         self._by_key.setdefault(key, {} if self.proposed else {1.0: 0.0})[factor] = gain
         if gain if moved is None else moved:
             self._moved.add((key[0], factor))
@@ -57,8 +64,14 @@ class Gains:
         return {unit: gains for (unit, held), gains in self._by_key.items() if held == guard}
 
     def best(self) -> float:
-        """Return the largest gain, at least 0."""
-        return max((max(gains.values()) for gains in self._by_key.values()), default=0.0)
+        """Return the largest gain that is not hollow, at least 0."""
+        real = (
+            gain
+            for key, gains in self._by_key.items()
+            for factor, gain in gains.items()
+            if (key, factor) not in self._hollow
+        )
+        return max(real, default=0.0)
 
     def anything(self, least: float | None = None) -> bool:
         """Return whether any gain exceeds `least`, by default `slack`."""

@@ -27,7 +27,7 @@ ONWARD = (
 )  # larger steps in the direction in which a small one gained something
 LEADING = 3  # maximum number of constants that are tried with the steps ONWARD
 TRACE = 0.005  # minimum gain of a small step that is followed by steps ONWARD, as a share of the wanted gain
-OTHERS = 6  # maximum number of constants that are tried in small steps
+OTHERS = 4  # maximum number of constants that are tried in small steps
 EPISODES = 20  # number of episodes after which no further constant is tried
 EARLY = 0.5  # share of the budget after which a repair is no longer compared
 LOST = 0.01  # maximum reward that a milder value of the same constant may lose, as a share of the wanted gain
