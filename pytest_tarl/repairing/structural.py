@@ -29,6 +29,7 @@ COMMANDED = ("stored", "sent", FIELD)  # kinds of expressions that go into a pub
 # a statement responds if one of its constants gains at least this share of the wanted gain
 RESPONDS = 0.2
 SURE = 0.95  # minimum strength of a symptom whose templates are tried within the first steps of constants
+SUREST = 3  # maximum number of parameters of these templates
 FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
@@ -123,7 +124,7 @@ class Structures:
         known, places = templates(self.order.root), list(spots(self.order))
         built = [spot for spot in places if spot.kind == FIELD]
         fields = [operand for one in known if one.on == FIELD for operand in self._at(one, built, first=None)]
-        groups = [_Group(fields), _Group(self._evident(known, places, SURE) if symptoms else [])]
+        groups = [_Group(fields), _Group(self._evident(known, places, SURE)[:SUREST] if symptoms else [])]
         trials = self.trials
         budget, reserve, worth = trials.budget, trials.reserve, trials.worth
         trials.budget = min(trials.spent + most, budget)
