@@ -440,6 +440,12 @@ def test_repaired_culprits_come_first_and_other_culprits_are_ranked_by_their_gai
     assert [one.site for one in culprits(ranked, {}, [], 6.0)] == [A, B, C]
 
 
+def test_sites_whose_constants_changed_nothing_come_last() -> None:
+    ranked = [(A, 1.0), (B, 0.5), (C, 0.25), (D, 0.0)]
+    effects = {"A": [effect(0.0)], "B": [effect(-2.0), effect(0.0, "y")], "D": [effect(0.0)]}
+    assert [one.site for one in culprits(ranked, effects, ["D"], 6.0)] == [D, B, C, A]
+
+
 def test_the_footprint_of_episodes_is_estimated_from_the_first_three(monkeypatch: pytest.MonkeyPatch) -> None:
     one = episodes([(0,)] * 10)
     size = footprint.nbytes(one)

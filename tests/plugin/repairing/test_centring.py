@@ -131,3 +131,18 @@ def test_the_exponent_of_a_template_stays_on_its_grid_while_its_typical_value_is
     alone = Candidate(powered(2.0, 1.0).mutations[:1], ALWAYS)
     assert moved(alone, 1.3, mutations) is None
     assert stronger(alone, 1.5, mutations) is None
+
+
+def test_a_value_stays_one_step_from_those_that_fail() -> None:
+    """The reward grows towards the old value, up to a cliff at a factor of 2.8."""
+
+    def run(candidate: Candidate, _: int) -> Outcome:
+        found = factor(candidate.mutations[0]) or 1.0
+        return Outcome(10.0 - 0.07 * found, True) if found >= 2.8 else Outcome(0.0, False)
+
+    mutation = mutations(NAMED, 4.2)
+    assert mutation is not None
+    found = centred(Candidate((mutation,), ALWAYS), Trials(run, 100), mutations, GOAL, REFERENCE)
+    value = factor(found.mutations[0])
+    assert value is not None
+    assert 2.8 * 1.03 < value < 4.2

@@ -6,7 +6,7 @@ import pytest
 
 from pytest_tarl.model import OperandEffect
 from pytest_tarl.patching.mutate import mutations
-from pytest_tarl.repairing.confirmed_effects import with_confirmed
+from pytest_tarl.repairing.confirmed_effects import gaining, with_confirmed
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import Unit
@@ -42,3 +42,14 @@ def test_the_gain_of_the_repair_is_shown_if_the_search_did_not_measure_that_chan
 def test_a_change_of_several_constants_is_not_shown_as_the_effect_of_one_line() -> None:
     several = Candidate(Unit((KP, operand(5, "2.0", 2.0))).mutations(mutations, 5.0), ALWAYS)
     assert with_confirmed({}, several, [6.0], [1.0]) == {}
+
+
+def test_structural_changes_that_gain_rank_their_statement() -> None:
+    plain, better, worse = (
+        effect("0.8", 1.0, 0.0),
+        effect("gain of x", 2.0, 3.0),
+        effect("sign of x", 1.0, -1.0),
+    )
+    found = gaining({SITE: [plain]}, {SITE: [better, worse], "other": [better], "none": [worse]})
+    assert found == {SITE: (plain, better), "other": (better,)}
+    assert gaining(found, {SITE: [better]}) == found  # a change is listed once

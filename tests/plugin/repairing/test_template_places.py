@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.patching.document import document
-from pytest_tarl.repairing.template_places import Spot, _away, _expressions, _steps, pairs
+from pytest_tarl.repairing.template_places import Spot, _away, _expressions, _fields, _steps, pairs
 from pytest_tarl.repairing.template_places import constants as constants_of
 from tarl_lint.model import SiteId, Span
 
@@ -215,3 +215,11 @@ def test_the_number_of_pairs_is_limited() -> None:
     assert len(pairs(spots, 9)) == 2
     assert pairs(spots, 1) == [(spots[0], spots[1])]
     assert pairs(spots, 0) == []
+
+
+def test_a_field_that_several_statements_build_is_a_place_at_its_publish_call() -> None:
+    text = "def f(self, x):\n    self.m.data = x\n    self.m.data += 0.5\n    self.pub.publish(self.m)\n"
+    source = document("a.py", text)
+    here = list(_fields(source, Span("a.py", 4, 5, 4, 29)))
+    assert [(ast.unparse(node), kind, field) for node, kind, field in here] == [("self.m", "field", "data")]
+    assert list(_fields(source, Span("a.py", 3, 5, 3, 23))) == []

@@ -422,3 +422,42 @@ def test_a_unit_clearly_loses_if_each_factor_lost_more_than_the_slack() -> None:
     assert found.clearly_lost(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
     assert found.clearly_lost(ALWAYS, [A, B, C], (0.4,)) == [A, B]
     assert found.clearly_lost(ALWAYS, [B], (2.2, 5.0)) == []  # not tried
+
+
+def many(moved: int) -> Gains:
+    """Return gains of eight units under WET, of which some changed an episode."""
+    found = Gains(0.5)
+    for line in range(8):
+        found.enter((Unit((constant(10 + line, f"C{line}"),)), WET), 2.2, 0.0, line < moved)
+    return found
+
+
+def test_a_guard_is_idle_if_hardly_any_change_under_it_has_an_effect() -> None:
+    assert many(2).idle_guard(WET)
+    assert not many(3).idle_guard(WET)
+    assert not gains().idle_guard(WET)  # too few units
+    without = Gains(0.5)
+    for line in range(8):
+        without.enter((Unit((constant(10 + line, f"C{line}"),)), ALWAYS), 2.2, 0.0, False)
+    assert not without.idle_guard(ALWAYS)  # it has no condition
+
+
+def test_tries_under_an_idle_guard_do_not_show_that_a_unit_has_no_effect() -> None:
+    found = many(0)
+    units = [unit for (unit, _), _ in found.items()]
+    for unit in units:
+        found.enter((unit, WET), 0.4, 0.0, False)
+    assert found.moving(units) == units
+    for factor in (2.2, 0.4):
+        found.enter((units[0], ALWAYS), factor, 0.0, False)
+    assert found.moving(units) == units[1:]
+
+
+def test_a_hollow_gain_may_be_refined_but_is_no_progress() -> None:
+    found = Gains(0.5)
+    found.enter((A, ALWAYS), 0.4, 2.0, True, hollow=True)
+    assert found.most((A, ALWAYS)) == 2.0
+    assert found.best() == 0.0
+    assert not found.anything()
+    found.enter((A, ALWAYS), 0.4, 2.0, True)  # a further seed showed progress
+    assert found.best() == 2.0

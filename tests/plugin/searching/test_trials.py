@@ -259,3 +259,19 @@ def test_the_reference_tolerates_five_points_more_failures_and_clips_losses() ->
     assert replace(one, lowest=-1.0).least == -7.0
     assert replace(one, lowest=-1.0, highest=8.0).least == -9.0
     assert replace(one, lowest=-99.0).least == -20.0
+
+
+@pytest.mark.parametrize(
+    ("steps", "passed", "sooner"),
+    [((5, 6), False, True), ((5, 12), False, False), ((5, 6), True, False), ((5, None), False, False)],
+    ids=["sooner", "one later", "passed", "unknown"],
+)
+def test_missions_fail_sooner_only_if_each_of_them_does(
+    steps: tuple[int, int | None], passed: bool, sooner: bool
+) -> None:
+    goal = Goal((Pair(0, 0.0, 10), Pair(1, 0.0, 11)), near=8.0, enough=9.0, online=0.0, passing=True)
+    made = Trials(lambda _, seed: Outcome(1.0, passed, steps=steps[seed]), 9)
+    assert not made.fails_sooner(ONE, goal)  # nothing ran
+    for seed in (0, 1):
+        made(ONE, seed)
+    assert made.fails_sooner(ONE, goal) is sooner

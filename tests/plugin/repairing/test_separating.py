@@ -1,0 +1,62 @@
+"""Thresholds that separate the values of drifted missions as they separated the designed ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl.repairing.separating import MARGIN, separating
+
+DESIGNED = np.array([0.02, 0.05, 0.08, 0.03, 6.0])  # errors of a position, and a tag of the next track
+SLIPPED = np.array([0.02, 1.1, 1.15, 1.1, 4.9])
+
+
+def test_a_gate_moves_between_the_slip_and_the_outliers() -> None:
+    by = separating(0.5, [(DESIGNED, SLIPPED)])
+    assert by is not None
+    assert 0.5 * by == pytest.approx(np.sqrt(1.15 * 4.9))
+
+
+def test_a_threshold_that_nothing_exceeded_moves_beyond_all_values() -> None:
+    by = separating(1.0, [(np.full(5, 0.5), np.linspace(1.5, 2.0, 5))])
+    assert by == pytest.approx(2.0 * MARGIN)
+    by = separating(1.0, [(np.full(5, 2.0), np.linspace(0.4, 0.8, 5))])
+    assert by == pytest.approx(0.4 / MARGIN)
+
+
+def test_a_negative_threshold_moves_on_its_own_side() -> None:
+    assert separating(-0.5, [(-DESIGNED, -SLIPPED)]) == separating(0.5, [(DESIGNED, SLIPPED)])
+    assert separating(-0.5, [(DESIGNED, SLIPPED)]) is None
+
+
+@pytest.mark.parametrize(
+    "pairs",
+    [
+        [],
+        [(DESIGNED, DESIGNED)],
+        [(DESIGNED, np.array([]))],
+        [(DESIGNED, SLIPPED), (SLIPPED, DESIGNED)],
+        [(DESIGNED, SLIPPED), (DESIGNED, DESIGNED)],
+        [(DESIGNED[:3], SLIPPED[:3])],
+    ],
+    ids=["no mission", "as designed", "no value", "opposite", "one mission only", "few values"],
+)
+def test_missions_that_say_nothing_move_no_threshold(pairs: list[tuple[np.ndarray, np.ndarray]]) -> None:
+    assert separating(0.5, pairs) is None
+
+
+@given(
+    st.lists(st.floats(0.01, 100.0), min_size=4, max_size=30, unique=True),
+    st.lists(st.floats(0.01, 100.0), min_size=4, max_size=30, unique=True),
+    st.floats(0.02, 50.0),
+)
+def test_the_new_threshold_leaves_the_designed_share_of_values_above_it(
+    designed: list[float], drifted: list[float], threshold: float
+) -> None:
+    before, after = np.array(designed), np.array(drifted)
+    by = separating(threshold, [(before, after)])
+    if by is not None:
+        share, left = np.mean(before > threshold), np.mean(after > threshold * by)
+        assert abs(left - share) <= 0.5 / after.size + 1e-9
