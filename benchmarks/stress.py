@@ -32,9 +32,9 @@ from pytest_tarl.drifts import Drift  # noqa: E402
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending  # noqa: E402
 from pytest_tarl.seeds import episode_seeds  # noqa: E402
 from pytest_tarl.spaces import Space, Span  # noqa: E402
-from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, outcome  # noqa: E402
+from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator  # noqa: E402
 from pytest_tarl.stressing.findings import Curve  # noqa: E402
-from pytest_tarl.stressing.guarantee import Guarantee, Outcome, guaranteed  # noqa: E402
+from pytest_tarl.stressing.guarantee import Guarantee, Outcome, guaranteed, outcome  # noqa: E402
 from pytest_tarl.stressing.rays import rays  # noqa: E402
 from pytest_tarl.stressing.search import along_rays, near_ends  # noqa: E402
 

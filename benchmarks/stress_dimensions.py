@@ -63,9 +63,9 @@ from pytest_tarl.rollout import EpisodePlan, Rollout  # noqa: E402
 from pytest_tarl.seeds import episode_seeds, generator  # noqa: E402
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal  # noqa: E402
 from pytest_tarl.stressing.combinations import Together  # noqa: E402
-from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, outcome  # noqa: E402
+from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator  # noqa: E402
 from pytest_tarl.stressing.findings import Curve, confirmed, farther  # noqa: E402
-from pytest_tarl.stressing.guarantee import Guarantee, guaranteed  # noqa: E402
+from pytest_tarl.stressing.guarantee import Guarantee, guaranteed, outcome  # noqa: E402
 from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
 from pytest_tarl.stressing.search import divided, explore  # noqa: E402
 

@@ -26,9 +26,8 @@ from pytest_tarl.report.repair_words import refusal, repair_words
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Pending, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.spaces import Point, Space
-from pytest_tarl.stressing.evaluating import outcome
 from pytest_tarl.stressing.findings import Attempt, Draws, Failure, Moved, Stress
-from pytest_tarl.stressing.guarantee import Outcome
+from pytest_tarl.stressing.guarantee import Outcome, outcome
 from pytest_tarl.stressing.margin_changes import Row, compared
 from pytest_tarl.stressing.margins import Margin, margins
 from pytest_tarl.stressing.regions import Region, outwards, regions

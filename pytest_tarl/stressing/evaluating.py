@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import chain
 from time import monotonic
 from typing import NamedTuple
 
-from pytest_tarl.errors import RecordingError
-from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
+from pytest_tarl.rollout import EpisodePlan, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.spaces import Point, Space
 from pytest_tarl.stressing.guarantee import (
@@ -21,6 +21,7 @@ from pytest_tarl.stressing.guarantee import (
     examined,
     hopeless,
     margin_of,
+    outcome,
     refuted,
 )
 
@@ -229,10 +230,16 @@ class Evaluator:
 
     def _pairs(self, pool: str, point: Point) -> tuple[Sequence[Outcome], Sequence[Outcome]]:
         """Return a pool's outcomes at a point and the nominal outcomes with the same seeds; skip other seeds."""
-        outcomes = self._known.get((pool, *point.values()), [])
-        nominal = self._known.get((pool, *self.space.nominal.values()), [])
+        outcomes = self._known.get((pool, *point.values()))
+        if not outcomes:
+            return (), ()
+        nominal = self._known.get((pool, *self._usual), [])
         rows = [row for row in self._rows(pool, point, len(outcomes)) if row < len(nominal)]
         return outcomes[: len(rows)], [nominal[row] for row in rows]
+
+    @cached_property
+    def _usual(self) -> tuple[float, ...]:
+        return tuple(self.space.nominal.values())
 
     def _rows(self, pool: str, point: Point, count: int) -> Sequence[int]:
         """Return the numbers of the first `count` seeds of a pool at a point, in the order in which they run."""
@@ -304,7 +311,7 @@ class Evaluator:
         """
         known = self._known.get((pool, *point.values()), [])
         rows = self._rows(pool, point, len(known))
-        usual = self._known.get((pool, *self.space.nominal.values()), [])
+        usual = self._known.get((pool, *self._usual), [])
         seeds = self._seeds(pool, point, len(known))
         return [
             (
@@ -337,16 +344,3 @@ class Evaluator:
             self.spent += 1
             self.progress(self.spent, self.budget, f"{self.drift} stress")
         return outcomes
-
-
-def outcome(run: EpisodeRun) -> Outcome:
-    """Return the outcome of an episode; an episode with a node that never yields has failed.
-
-    Raise RecordingError if the test itself is broken.
-    """
-    if run.broken and not run.stuck:
-        where = ", ".join(f"{name}={number:g}" for name, number in (run.plan.point or {}).items())
-        raise RecordingError(
-            f"An episode at {where} (seed {run.plan.seed}) failed outside the mission:\n{run.broken}"
-        )
-    return Outcome(run.passed and not run.stuck, float(run.trace.reward.sum()))

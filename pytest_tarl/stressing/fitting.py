@@ -20,12 +20,17 @@ from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
 
 
 def fitted(
-    evaluator: Evaluator, coordinates: Coordinates, known: Sequence[Point], shown: Callable[[float], Shown]
+    evaluator: Evaluator,
+    coordinates: Coordinates,
+    known: Sequence[Point],
+    shown: Callable[[float], Shown],
+    before: Prediction | None = None,
 ) -> Prediction:
     """Return a model of the drifts that `coordinates` cover, fitted to the known ones among them.
 
     `shown` returns what fresh episodes can show, given the standard deviation of a loss at the boundary. If the drifts
-    have options that are not nominal, the model takes the loss under these options alone as given.
+    have options that are not nominal, the model takes the loss under these options alone as given. `before` is the
+    previous model of the same search, if any.
     """
     unique = {tuple(point.values()): point for point in known if coordinates.covers(point)}
     points = list(unique.values())
@@ -51,4 +56,6 @@ def fitted(
         if coordinates.covers(point)
     ]
     origin = next((one.loss for one in samples if not one.vector.any()), 0.0) if coordinates.options else 0.0
-    return Prediction(coordinates, evaluator.guarantee, samples, able, typical, paired, counts, origin)
+    return Prediction(
+        coordinates, evaluator.guarantee, samples, able, typical, paired, counts, origin, before
+    )

@@ -14,10 +14,12 @@ from statistics import fmean, stdev
 from typing import Literal
 
 from pytest_tarl.designation import Designation
+from pytest_tarl.errors import RecordingError
 from pytest_tarl.learning.bounds import Range, loss_between, mean_of, rate
 from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
+from pytest_tarl.rollout import EpisodeRun
 
 LOWEST = -1.5  # lower limit of margins, because still lower ones say little about where the boundary is
 LEAST = 8  # minimum number of episodes for the result "holds"; if 1 in 12 fails, 8 episodes all pass half of the time
@@ -104,6 +106,19 @@ def guaranteed(outcomes: Sequence[Outcome], tolerance: float, designation: Desig
         share=passed / episodes,
         declared=Range(*designation.total_range) if designation.total_range else None,
     )
+
+
+def outcome(run: EpisodeRun) -> Outcome:
+    """Return the outcome of an episode; an episode with a node that never yields has failed.
+
+    Raise RecordingError if the test itself is broken.
+    """
+    if run.broken and not run.stuck:
+        where = ", ".join(f"{name}={number:g}" for name, number in (run.plan.point or {}).items())
+        raise RecordingError(
+            f"An episode at {where} (seed {run.plan.seed}) failed outside the mission:\n{run.broken}"
+        )
+    return Outcome(run.passed and not run.stuck, float(run.trace.reward.sum()))
 
 
 def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome]) -> Evidence:

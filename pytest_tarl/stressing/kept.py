@@ -18,9 +18,8 @@ from pytest_tarl.finite_numbers import finite_number
 from pytest_tarl.rollout import EpisodePlan, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.spaces import Choice, Point, Space
-from pytest_tarl.stressing.evaluating import outcome
 from pytest_tarl.stressing.findings import Failure
-from pytest_tarl.stressing.guarantee import Guarantee, Outcome
+from pytest_tarl.stressing.guarantee import Guarantee, Outcome, outcome
 from pytest_tarl.stressing.rays import distance
 
 if TYPE_CHECKING:

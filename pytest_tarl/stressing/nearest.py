@@ -201,7 +201,8 @@ class Nearest:
         """Return the model of the drifts with the options of the base, fitted to all drifts known so far."""
         if self._fitted is None or self._fitted[0] != self.evaluator.spent:
             evaluator = self.evaluator
-            model = fitted(evaluator, self.coordinates, self._known(), self._shown)
+            before = None if self._fitted is None else self._fitted[1]
+            model = fitted(evaluator, self.coordinates, self._known(), self._shown, before)
             self._fitted = evaluator.spent, model
         return self._fitted[1]
 

@@ -30,7 +30,7 @@ def typical_variance(every: Sequence[Vector]) -> float:
     The losses are cut off. If all losses of a drift are cut off, it lies far beyond the boundary and does not count.
     The cap depends on the drifts whose losses differ: the rewards of a mission may be the same at all others.
     """
-    found = [float(np.var(one, ddof=1)) for one in every if len(one) > 1 and one.min() < HIGHEST]
+    found = [_squares(one) / (len(one) - 1) for one in every if _tells(one)]
     differ = [one for one in found if one > 0.0]
     return max(fmean(min(one, 4.0 * median(differ)) for one in found), 1e-6) if differ else 1e-6
 
@@ -52,17 +52,28 @@ def variance_near(loss: float, every: Sequence[Vector], typical: float) -> float
     the nearness of its mean; the typical variance counts as `LIKE` degrees of freedom. The losses are cut off, and
     drifts far beyond the boundary do not count.
     """
-    known = [one for one in every if len(one) > 1 and one.min() < HIGHEST]
+    known = [one for one in every if _tells(one)]
     if not known:
         return typical
-    means = np.array([one.mean() for one in known])
-    weights = np.array([len(one) - 1.0 for one in known]) * np.exp(-(((means - loss) / WIDTH) ** 2) / 2.0)
-    variances = np.array([np.var(one, ddof=1) for one in known])
-    return float((weights @ variances + LIKE * typical) / (weights.sum() + LIKE))
+    means = np.array([fmean(one.tolist()) for one in known])
+    weights = np.exp(-(((means - loss) / WIDTH) ** 2) / 2.0)
+    squares, free = np.array([_squares(one) for one in known]), np.array([len(one) - 1.0 for one in known])
+    return float((weights @ squares + LIKE * typical) / (weights @ free + LIKE))
 
 
 def standard_error(losses: Vector, typical: float) -> float:
     """Return the standard error of the mean of losses; their variance is shrunk towards the typical one."""
     count = len(losses)
-    squares = float(np.var(losses)) * count
-    return sqrt((squares + PRIOR * typical) / (count - 1 + PRIOR) / count)
+    return sqrt((_squares(losses) + PRIOR * typical) / (count - 1 + PRIOR) / count)
+
+
+def _tells(losses: Vector) -> bool:
+    """Return whether losses tell something about the variance: at least two, not all of them at the limit."""
+    return len(losses) > 1 and min(losses.tolist()) < HIGHEST
+
+
+def _squares(losses: Vector) -> float:
+    """Return the sum of squared differences from the mean; for a few numbers, this is faster than numpy."""
+    values = losses.tolist()
+    mean = sum(values) / len(values)
+    return float(sum((one - mean) ** 2 for one in values))

@@ -13,33 +13,22 @@ from functools import cached_property
 from itertools import chain
 from math import log, sqrt
 from statistics import fmean
-from typing import TypeVar
 
 import numpy as np
 
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
+from pytest_tarl.stressing.fields import Counts, Fit, loss_fit, rate_fit
 from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
 from pytest_tarl.stressing.one_thread import one_thread
-from pytest_tarl.stressing.surrogates import (
-    LossField,
-    Matrix,
-    RateField,
-    covariance,
-    scaled_covariances,
-    variance,
-)
+from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covariance, variance
 
 DRAWN = 400  # number of random drifts that the model compares
 PART = 0.75  # probability that a direction changes in a random drift
 # number of refinements around the best drift; initial standard deviation, which each refinement halves
 ROUNDS, SPREAD = 5, 0.15
 STRETCHED = (0.9, 1.0, 1.1)  # tried drifts are also compared at these multiples of their vectors
+NEAR = 64  # maximum number of these drifts
 RAREST = 0.007  # minimum failure rate that the model assumes at nominal
-# possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
-SCALES = (9.0, 36.0, 144.0)
-# possible variances, besides 0, of the effect that a seed has on the logit under all drifts
-LUCK = (1.0, 4.0)
-IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
 LEAST_LOSS = 0.25  # minimum predicted loss of a drift that is used to estimate the factors of seeds
 LOGIT = 4.0  # difference of logits that is equivalent to the whole tolerated loss
 
@@ -76,9 +65,6 @@ class Shown:
         return log(self.share / (1.0 - self.share))
 
 
-Field = TypeVar("Field", LossField, RateField)
-
-
 class Prediction:
     """A model of the margin of all drifts with the same options."""
 
@@ -93,11 +79,13 @@ class Prediction:
         paired: float,
         counted: Sequence[tuple[Vector, float, int]] = (),
         origin: float = 0.0,
+        before: Prediction | None = None,
     ) -> None:
         """Fit the model; `typical` is the variance of a loss, `paired` the part of it that the nominal episode adds.
 
         `counted` are further drifts with fresh seeds of their own: vector, number of failures, number of episodes.
         `origin` is the loss at the zero vector, which is not 0 if the drifts have options that are not nominal.
+        `before` is a model of fewer drifts; fitting is faster with it.
         """
         self.coordinates, self.given, self.shown = coordinates, given, shown
         self._samples, self._typical = samples, typical
@@ -119,34 +107,35 @@ class Prediction:
         own = np.maximum(
             np.array([one.spread**2 for one in samples]) - paired / counts, typical / 8.0 / counts
         )
-        self._units = [np.ones(len(coordinates.spans))] * 2
-        self._losses, self._units[0] = _relevant(
-            lambda prior: LossField(prior, losses, common + np.diag(own)), self._vectors
+        self._loss_fit: Fit[LossField] = loss_fit(
+            self._vectors, losses, common + np.diag(own), None if before is None else before._loss_fit
         )
         failed = np.array([*(float(one.failed) for one in samples), *(one for _, one, _ in counted)])
         episodes = np.array([*counts, *(float(one) for _, _, one in counted)])
         self._counted = np.array([*self._vectors, *(one for one, _, _ in counted)])
-        usual = max(1.0 - given.share, RAREST)
-        self._rates = None
-        self.luck = 0.0  # variance of the effect of a seed on the logit under all drifts
+        self._rate_fit: Fit[RateField] | None = None
         if failed.any():
-            logit = log(usual / (1.0 - usual))
-            luck = np.diag(1.0 / episodes)
-            luck[: len(used), : len(used)] = used @ used.T
-            whole = covariance(self._counted, self._counted)
-            rates = max(
-                (RateField(whole, scale, failed, episodes, logit) for scale in SCALES),
-                key=lambda one: one.evidence,
+            usual = max(1.0 - given.share, RAREST)
+            shared = np.diag(1.0 / episodes)
+            shared[: len(used), : len(used)] = used @ used.T
+            self._rate_fit = rate_fit(
+                Counts(self._counted, failed, episodes, log(usual / (1.0 - usual)), shared),
+                None if before is None else before._rate_fit,
+                {} if before is None else before._logits,
             )
-            best = rates
-            for size in LUCK:
-                other = RateField(whole, rates.scale, failed, episodes, logit, rates, size * luck)
-                if other.evidence > best.evidence:
-                    best, self.luck = other, size
-            self._rates, self._units[1] = _relevant(
-                lambda prior: RateField(prior, best.scale, failed, episodes, logit, best, best.luck),
-                self._counted,
-            )
+
+    @property
+    def luck(self) -> float:
+        """Return the variance of the effect of a seed on the logit of the failure rate under all drifts."""
+        return 0.0 if self._rate_fit is None else self._rate_fit.luck
+
+    @property
+    def _logits(self) -> dict[tuple[float, ...], float]:
+        """Return the logit of the failure rate at each vector that the model was fitted to."""
+        if self._rate_fit is None:
+            return {}
+        logits = self._rate_fit.field.logits.tolist()
+        return dict(zip(map(tuple, self._counted.tolist()), logits, strict=True))
 
     def deeper(self, times: float) -> Prediction:
         """Return a copy that requires `times` as large an excess over the guarantee as fresh episodes can detect."""
@@ -195,11 +184,11 @@ class Prediction:
     @one_thread
     def shown_by(self, vectors: Vector) -> tuple[Vector, Vector]:
         """Return the probabilities that fresh episodes show too large a loss, and too many failures, at vectors."""
-        mean, deviation = self._loss(vectors)
+        (mean, deviation), rates = self._moments(vectors)
         by_loss = _normal((mean - 1.0 - self.shown.depth) / deviation)
-        if self._rates is None:
+        if rates is None:
             return by_loss, np.zeros_like(by_loss)
-        logits, spreads = self._rates.moments(*self._prior(vectors, 1))
+        logits, spreads = rates
         return by_loss, _normal((logits - self.shown.logit) / spreads)
 
     @one_thread
@@ -209,20 +198,23 @@ class Prediction:
         Of the two excesses, the larger one counts; it is in units of the tolerated loss. The prediction is first
         lowered by `errors` standard deviations. The result has the shape (drifts,).
         """
-        mean, deviation = self._loss(vectors)
-        found: Vector = mean - errors * deviation - 1.0 - self.shown.depth
-        if self._rates is not None:
-            logits, spreads = self._rates.moments(*self._prior(vectors, 1))
-            found = np.maximum(found, (logits - errors * spreads - self.shown.logit) / LOGIT)
-        return found
+        if errors == 0.0:
+            return self._excess(*self._means(vectors))
+        (mean, deviation), rates = self._moments(vectors)
+        logits = None if rates is None else rates[0] - errors * rates[1]
+        return self._excess(mean - errors * deviation, logits)
+
+    def _excess(self, losses: Vector, logits: Vector | None) -> Vector:
+        found: Vector = losses - 1.0 - self.shown.depth
+        return found if logits is None else np.maximum(found, (logits - self.shown.logit) / LOGIT)
 
     @one_thread
     def moments(self, vectors: Vector) -> tuple[Vector, Vector]:
         """Return the means and the standard deviations of the margins at vectors, as two arrays of shape (drifts,)."""
-        mean, deviation = self._loss(vectors)
+        (mean, deviation), rates = self._moments(vectors)
         margins: Vector = np.maximum(1.0 - mean, LOWEST)
-        if self._rates is not None:
-            logits, spreads = self._rates.moments(*self._prior(vectors, 1))
+        if rates is not None:
+            logits, spreads = rates
             middle, high = (self._rate_margins(logits + change) for change in (0.0, spreads))
             lower = middle < margins
             margins = np.where(lower, middle, margins)
@@ -233,31 +225,60 @@ class Prediction:
         """Return the predicted margins at vectors of shape (drifts, ranges)."""
         return self.moments(vectors)[0]
 
-    def _loss(self, vectors: Vector) -> tuple[Vector, Vector]:
-        """Return the predicted means and standard deviations of the losses at vectors."""
-        mean, deviation = self._losses.moments(*self._prior(vectors, 0))
+    def _means(self, vectors: Vector) -> tuple[Vector, Vector | None]:
+        """Return the predicted losses at vectors, and the predicted logits of the failure rate, or None."""
+        for_losses, for_rates = self._priors(vectors)
+        mean: Vector = self._loss_fit.field.means(for_losses) + self._origin
+        if self._rate_fit is None or for_rates is None:
+            return mean, None
+        return mean, self._rate_fit.field.means(for_rates)
+
+    def _moments(self, vectors: Vector) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector] | None]:
+        """Return the means and standard deviations of the losses at vectors, and those of the logits, or None."""
+        for_losses, for_rates = self._priors(vectors)
+        mean, deviation = self._loss_fit.field.moments(for_losses, variance(vectors * self._loss_fit.units))
         mean = mean + self._origin
-        return mean, np.hypot(deviation, self._shared * np.maximum(mean, 0.0))
+        losses = mean, np.hypot(deviation, self._shared * np.maximum(mean, 0.0))
+        if self._rate_fit is None or for_rates is None:
+            return losses, None
+        return losses, self._rate_fit.field.moments(for_rates, variance(vectors * self._rate_fit.units))
 
     @cached_property
     def _shared(self) -> float:
         """Return the error of all predicted losses that the common seeds cause, as a share of the loss."""
         if not self._samples:
             return 0.0
-        means = self._losses.moments(*self._prior(self._vectors, 0))[0] + self._origin
-        return shared_error(self._samples, means, self._typical)
+        return shared_error(self._samples, self._at_known[0], self._typical)
 
-    def _prior(self, vectors: Vector, field: int) -> tuple[Matrix, Vector]:
-        """Return prior covariances with the tried drifts, and prior variances.
+    @cached_property
+    def _at_known(self) -> tuple[Vector, Vector | None]:
+        """Return the predictions of `_means` at the tried drifts."""
+        return self._means(self._vectors)
 
-        `field` is 0 for the loss and 1 for the failure rate.
-        """
-        units, known = self._units[field], (self._vectors, self._counted)[field]
-        return covariance(vectors * units, known * units), variance(vectors * units)
+    def _priors(self, vectors: Vector) -> tuple[Matrix, Matrix | None]:
+        """Return prior covariances of the losses and of the logits, or None, with the drifts of the fits."""
+        units, rates = self._loss_fit.units, self._rate_fit
+        if rates is None:
+            return covariance(vectors * units, self._vectors * units), None
+        logits = covariance(vectors * rates.units, self._counted * rates.units)
+        if (units == rates.units).all():
+            return logits[:, : len(self._vectors)], logits
+        return covariance(vectors * units, self._vectors * units), logits
 
     def _rate_margins(self, logits: Vector) -> Vector:
         shares = 1.0 / (1.0 + np.exp(-np.clip(logits, -30.0, 30.0)))
         found: Vector = np.array([max(self.given.margin(1.0 - one, 0.0), LOWEST) for one in shares])
+        return found
+
+    def _promising_known(self, room: float) -> Vector:
+        """Return the shortest tried vectors that fail according to the model, and those that come closest to it.
+
+        They are at most NEAR vectors of length `room` or less; shape (drifts, ranges).
+        """
+        excess, lengths = self._excess(*self._at_known), np.linalg.norm(self._vectors, axis=1)
+        scores = np.where(excess >= 0.0, 10.0 - lengths, np.maximum(excess, -5.0))
+        scores[lengths * min(STRETCHED) > room] = -10.0
+        found: Vector = self._vectors[np.argsort(-scores, kind="stable")[:NEAR]]
         return found
 
     def _largest(
@@ -267,7 +288,8 @@ class Prediction:
         low, high = self.coordinates.low, self.coordinates.high
         shape = (DRAWN, len(low))
         drawn = np.where(draws.random(shape) < PART, low + (high - low) * draws.random(shape), 0.0)
-        near = np.concatenate([np.clip(share * self._vectors, low, high) for share in STRETCHED])
+        known = self._promising_known(room)
+        near = np.concatenate([np.clip(share * known, low, high) for share in STRETCHED])
         vectors = _within(np.concatenate([drawn, near]), room, draws)
         scores = score(vectors)
         place = int(np.argmax(scores))
@@ -318,20 +340,3 @@ def _normal(values: Vector) -> Vector:
     """Return the standard normal distribution function, approximated by a logistic function."""
     found: Vector = 1.0 / (1.0 + np.exp(-np.clip(1.702 * values, -50.0, 50.0)))
     return found
-
-
-def _relevant(field: Callable[[Matrix], Field], vectors: Vector) -> tuple[Field, Vector]:
-    """Return the fitted field and a scale factor for each direction.
-
-    The factor is IRRELEVANT instead of 1 where that increases the evidence.
-    """
-    units = np.ones(vectors.shape[1])
-    prior = scaled_covariances(vectors)
-    best = field(prior(units))
-    for place in range(len(units)):
-        fewer = units.copy()
-        fewer[place] = IRRELEVANT
-        other = field(prior(fewer))
-        if other.evidence > best.evidence:
-            best, units = other, fewer
-    return best, units

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,18 +18,20 @@ from pytest_tarl.stressing.coordinates import Vector
 Matrix = NDArray[np.float64]
 
 LINEAR, PAIRS = 1.0, 4.0  # prior variances of the slopes, and of the products of two directions
-SINGLE, SINGLE_LENGTH = 0.3, 0.3  # prior variance and length scale of a smooth function of each direction
-LOCAL, LENGTH = 0.15, 0.3  # prior variance and length scale of local deviations
+SINGLE = 0.3  # prior variance of a smooth function of each direction
+LOCAL = 0.15  # prior variance of local deviations
+LENGTH = 0.3  # length scale of both
 STEPS = 50  # maximum number of Newton steps
 CLOSE = 0.05  # Newton's method stops when no logit changes by more than this
 LEAP = 4.0  # maximum change of a logit in one Newton step
 JITTER = 1e-8
+BLOCK = 48  # size up to which triangular matrices are inverted at once
 
 
 def covariance(one: Vector, other: Vector) -> Matrix:
     """Return the prior covariances between vectors of shape (drifts, ranges); 0 if one of them is nominal."""
     columns = zip(one.T, other.T, strict=True)
-    return _summed(one, other, [_single(column, against) for column, against in columns])
+    return _summed(one, other, [_smooth(column, against) for column, against in columns])
 
 
 def scaled_covariances(vectors: Vector) -> Callable[[Vector], Matrix]:
@@ -40,7 +43,7 @@ def scaled_covariances(vectors: Vector) -> Callable[[Vector], Matrix]:
     @cache
     def single(place: int, factor: float) -> Matrix:
         column: Vector = vectors[:, place] * factor
-        return _single(column, column)
+        return _smooth(column, column)
 
     def scaled(factors: Vector) -> Matrix:
         moved = vectors * factors
@@ -50,33 +53,55 @@ def scaled_covariances(vectors: Vector) -> Callable[[Vector], Matrix]:
 
 
 def _summed(one: Vector, other: Vector, singles: Sequence[Matrix]) -> Matrix:
+    """Return the whole covariances; `singles` are the squared-exponential ones of each range.
+
+    The squared-exponential covariance of several ranges is the product of those of each range. All of them are
+    conditioned on the value 0 at nominal.
+    """
     plain, sizes = one @ other.T, np.abs(one) @ np.abs(other).T
     found: Matrix = LINEAR * (plain + sizes) + PAIRS * (plain**2 + sizes**2)
-    for part in singles:
-        found += part
-    return found + LOCAL * _smooth(one, other, LENGTH)
-
-
-def _single(column: Vector, against: Vector) -> Matrix:
-    found: Matrix = SINGLE * _smooth(column[:, None], against[:, None], SINGLE_LENGTH)
+    if not len(singles):
+        return found
+    own, others = (np.exp(-(vectors**2) / (2 * LENGTH**2)) for vectors in (one, other))
+    local = singles[0].copy()
+    for part in singles[1:]:
+        local *= part
+    local -= np.outer(own.prod(axis=1), others.prod(axis=1))
+    found += LOCAL * local
+    total = singles[0].copy()
+    for part in singles[1:]:
+        total += part
+    found += SINGLE * (total - own @ others.T)
     return found
 
 
 def variance(vectors: Vector) -> Vector:
     """Return the prior variances at vectors of shape (drifts, ranges)."""
     squares = (vectors**2).sum(axis=1)
-    single = (1.0 - np.exp(-(vectors**2) / SINGLE_LENGTH**2)).sum(axis=1)
+    single = (1.0 - np.exp(-(vectors**2) / LENGTH**2)).sum(axis=1)
     local = 1.0 - np.exp(-squares / LENGTH**2)
     found: Vector = 2 * LINEAR * squares + 2 * PAIRS * squares**2 + SINGLE * single + LOCAL * local
     return found
 
 
-def _smooth(one: Vector, other: Vector, length: float) -> Matrix:
-    """Return squared-exponential covariances, conditioned on the value 0 at nominal."""
-    own, others = (one**2).sum(axis=1), (other**2).sum(axis=1)
-    squares = np.maximum(own[:, None] + others - 2 * one @ other.T, 0.0)
-    found: Matrix = np.exp(-squares / (2 * length**2))
-    found -= np.exp(-own / (2 * length**2))[:, None] * np.exp(-others / (2 * length**2))
+def _smooth(column: Vector, against: Vector) -> Matrix:
+    """Return the squared-exponential covariances of one range, without a condition."""
+    found: Matrix = column[:, None] - against
+    found *= found
+    found /= -2 * LENGTH**2
+    return np.exp(found, out=found)
+
+
+def inverted(lower: NDArray[np.floating[Any]]) -> Matrix:
+    """Return the inverse of a lower triangular matrix, by halves: most of the work are products of matrices."""
+    size = len(lower)
+    if size <= BLOCK:
+        small: Matrix = np.linalg.inv(lower)
+        return small
+    half = size // 2
+    found: Matrix = np.zeros(lower.shape)
+    found[:half, :half], found[half:, half:] = inverted(lower[:half, :half]), inverted(lower[half:, half:])
+    found[half:, :half] = -found[half:, half:] @ (lower[half:, :half] @ found[:half, :half])
     return found
 
 
@@ -94,7 +119,11 @@ class LossField:
 
     @cached_property
     def _inverse(self) -> Matrix:
-        found: Matrix = np.linalg.inv(self._lower)
+        return inverted(self._lower)
+
+    def means(self, cross: Matrix) -> Vector:
+        """Return the means at new vectors; `cross` are their prior covariances with the tried drifts."""
+        found: Vector = cross @ self._weights
         return found
 
     def moments(self, cross: Matrix, prior: Vector) -> tuple[Vector, Vector]:
@@ -104,7 +133,7 @@ class LossField:
         """
         explained = self._inverse @ cross.T
         left = prior - (explained**2).sum(axis=0)
-        return cross @ self._weights, np.sqrt(np.maximum(left, 1e-6))
+        return self.means(cross), np.sqrt(np.maximum(left, 1e-6))
 
 
 class RateField:
@@ -117,10 +146,10 @@ class RateField:
         failed: Vector,
         episodes: Vector,
         usual: float,
-        start: RateField | None = None,
+        start: Vector | None = None,
         luck: Matrix | None = None,
     ) -> None:
-        """Find the most probable logits by Newton's method, starting from those of the similar field `start`.
+        """Find the most probable logits by Newton's method, starting from `start`, those of a similar field.
 
         `luck` are covariances that drifts have only because they ran on the same seeds.
         """
@@ -129,7 +158,7 @@ class RateField:
         if luck is not None:
             matrix = matrix + luck
         weights: Vector = np.zeros(len(failed))
-        logits: Vector = np.full(len(failed), usual) if start is None else start.logits
+        logits: Vector = np.full(len(failed), usual) if start is None else start
         for number in range(STEPS):
             roots, pull = _newton(logits, usual, failed, episodes)
             middle = identity + roots[:, None] * matrix * roots
@@ -154,14 +183,19 @@ class RateField:
     @cached_property
     def _reduce(self) -> Matrix:
         """Return the matrix that maps covariances with the tried drifts to the explained deviations."""
-        found: Matrix = np.linalg.inv(self._lower) * self._roots
+        found: Matrix = inverted(self._lower) * self._roots
+        return found
+
+    def means(self, cross: Matrix) -> Vector:
+        """Return the means of the logits; parameter as in `LossField.means`."""
+        found: Vector = self._usual + self.scale * (cross @ self.weights)
         return found
 
     def moments(self, cross: Matrix, prior: Vector) -> tuple[Vector, Vector]:
         """Return means and standard deviations of the logits; parameters as in `LossField.moments`."""
         explained = self.scale * (self._reduce @ cross.T)
         left = self.scale * prior - (explained**2).sum(axis=0)
-        return self._usual + self.scale * (cross @ self.weights), np.sqrt(np.maximum(left, 1e-4))
+        return self.means(cross), np.sqrt(np.maximum(left, 1e-4))
 
 
 def _newton(logits: Vector, usual: float, failed: Vector, episodes: Vector) -> tuple[Vector, Vector]:

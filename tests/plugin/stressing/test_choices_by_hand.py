@@ -284,7 +284,7 @@ def test_the_allowance_for_errors_lowers_the_excess_of_losses_and_failure_rates(
     ]
     model = Prediction(Coordinates(SQUARE, SQUARE.nominal), GIVEN, failing, Shown(0.1, 0.25), 0.01, 0.0)
     near = np.array([[0.9, 0.0], [0.6, 0.0]])
-    means, deviations = model._loss(near)
+    (means, deviations), _ = model._moments(near)
     assert (model.excess(near) > means - 1.1 + 0.1).all()  # failures exceed what is tolerated, losses do not
     assert (model.excess(near, 1.0) < model.excess(near)).all()
     assert (model.excess(near, -1.0) > model.excess(near)).all()

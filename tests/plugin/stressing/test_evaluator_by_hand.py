@@ -23,10 +23,9 @@ from pytest_tarl.stressing.evaluating import (
     BudgetSpentError,
     Count,
     Evaluator,
-    outcome,
 )
 from pytest_tarl.stressing.findings import Curve
-from pytest_tarl.stressing.guarantee import Guarantee
+from pytest_tarl.stressing.guarantee import Guarantee, outcome
 from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.shrinking import shrunk
 from tests.plugin.stressing.worlds import Simulated, World, space_of

@@ -118,11 +118,14 @@ def test_failures_that_all_drifts_have_on_the_same_seeds_are_explained_by_these_
     used = np.kron(np.ones((4, 1)), np.eye(2))
     prior = covariance(vectors, vectors)
     plain = RateField(prior, 9.0, failed, episodes, -5.0)
-    lucky = RateField(prior, 9.0, failed, episodes, -5.0, plain, 4.0 * used @ used.T)
+    lucky = RateField(prior, 9.0, failed, episodes, -5.0, plain.logits, 4.0 * used @ used.T)
     assert lucky.evidence > plain.evidence
     even = np.array([0.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 2.0])
     steep = RateField(prior, 9.0, even, episodes, -5.0)
-    assert RateField(prior, 9.0, even, episodes, -5.0, steep, 4.0 * used @ used.T).evidence < steep.evidence
+    assert (
+        RateField(prior, 9.0, even, episodes, -5.0, steep.logits, 4.0 * used @ used.T).evidence
+        < steep.evidence
+    )
 
 
 def test_a_failure_that_is_left_out_does_not_hide_farther_ones_after_a_nearer_failure_is_found() -> None:

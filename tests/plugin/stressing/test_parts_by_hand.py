@@ -16,6 +16,7 @@ from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import delivering, page
 from pytest_tarl.stressing.combinations import _apart, pairs
 from pytest_tarl.stressing.coordinates import Coordinates
+from pytest_tarl.stressing.fields import relevant
 from pytest_tarl.stressing.findings import (
     APART,
     Attempt,
@@ -43,7 +44,7 @@ from pytest_tarl.stressing.noise import (
     typical_variance,
     variance_near,
 )
-from pytest_tarl.stressing.prediction import _normal, _relevant, _within
+from pytest_tarl.stressing.prediction import _normal, _within
 from pytest_tarl.stressing.rays import Ray
 from pytest_tarl.stressing.regions import end, regions
 from pytest_tarl.stressing.statements import chosen, only_in_failures, places_in
@@ -207,10 +208,10 @@ def test_a_direction_counts_as_irrelevant_only_if_that_increases_the_evidence() 
     def units_of(size: float) -> float:
         return float(variance(np.array([[size, 0.0]]))[0])
 
-    best, units = _relevant(field, vectors)
+    best, units = relevant(field, vectors)
     assert units.tolist() == [1.0, 0.3]
     assert best.evidence == pytest.approx(-units_of(0.3) + 0.5 * units_of(1.0))
-    _, same = _relevant(lambda prior: SimpleNamespace(evidence=1.0), vectors)
+    _, same = relevant(lambda prior: SimpleNamespace(evidence=1.0), vectors)
     assert same.tolist() == [1.0, 1.0]
 
 

@@ -84,7 +84,7 @@ def test_a_fit_that_starts_from_another_fit_reaches_the_same_maximum(seed: int, 
     other = RateField(0.3 * covariance(vectors, vectors), 36.0, failed, episodes, USUAL)
     prior = covariance(vectors, vectors)
     cold = RateField(prior, scale, failed, episodes, USUAL)
-    warm = RateField(prior, scale, failed, episodes, USUAL, other)
+    warm = RateField(prior, scale, failed, episodes, USUAL, other.logits)
     for field in (cold, warm):
         logits = field.moments(prior, variance(vectors))[0]
         expected = episodes / (1.0 + np.exp(-logits))

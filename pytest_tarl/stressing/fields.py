@@ -1,0 +1,121 @@
+"""Fit the fields of the search's model, and choose their hyperparameters by evidence.
+
+The hyperparameters are the scale factor of each direction, the prior variance of the logit, and the effect of a seed.
+Choosing them takes several fits, so they are kept until there are clearly more drifts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from pytest_tarl.stressing.coordinates import Vector
+from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covariance, scaled_covariances
+
+# possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
+SCALES = (9.0, 36.0, 144.0)
+# possible variances of the effect that a seed has on the logit under all drifts, besides none
+LUCK = (1.0, 4.0)
+IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
+GROWN = 1.2  # hyperparameters are chosen again if the number of drifts grew by this factor
+
+Field = TypeVar("Field", LossField, RateField)
+
+
+@dataclass(frozen=True)
+class Fit(Generic[Field]):
+    """A fitted field.
+
+    `units` are the scale factors of the directions, `luck` is the variance of the effect of a seed, and `chosen` is the
+    number of drifts from which the hyperparameters were chosen.
+    """
+
+    field: Field
+    units: Vector
+    chosen: int
+    luck: float = 0.0
+
+    def lasts(self, drifts: int) -> bool:
+        """Return whether the hyperparameters can be kept for this number of drifts."""
+        return self.chosen <= drifts <= GROWN * self.chosen
+
+
+@dataclass(frozen=True)
+class Counts:
+    """Failed episodes at vectors; arrays of shape (drifts,).
+
+    `usual` is the logit of the failure rate at nominal. `shared` are the covariances that drifts have because they ran
+    on the same seeds, for an effect of a seed with variance 1.
+    """
+
+    vectors: Vector
+    failed: Vector
+    episodes: Vector
+    usual: float
+    shared: Matrix
+
+    def field(self, prior: Matrix, scale: float, start: Vector | None = None, luck: float = 0.0) -> RateField:
+        """Fit a field with these hyperparameters, starting from the logits `start`."""
+        shared = luck * self.shared if luck > 0.0 else None
+        return RateField(prior, scale, self.failed, self.episodes, self.usual, start, shared)
+
+    def logits(self, known: Mapping[tuple[float, ...], float]) -> Vector:
+        """Return the known logits at the vectors, and the usual one at new vectors."""
+        return np.array([known.get(tuple(vector), self.usual) for vector in self.vectors.tolist()])
+
+
+def loss_fit(
+    vectors: Vector, losses: Vector, errors: Matrix, before: Fit[LossField] | None
+) -> Fit[LossField]:
+    """Fit mean losses of shape (drifts,); `errors` are the covariances of their errors.
+
+    `before` is the fit to fewer drifts, if any.
+    """
+    if before is not None and before.lasts(len(vectors)):
+        scaled = vectors * before.units
+        field = LossField(covariance(scaled, scaled), losses, errors)
+        return Fit(field, before.units, before.chosen)
+    field, units = relevant(lambda prior: LossField(prior, losses, errors), vectors)
+    return Fit(field, units, len(vectors))
+
+
+def rate_fit(
+    counts: Counts, before: Fit[RateField] | None, known: Mapping[tuple[float, ...], float]
+) -> Fit[RateField]:
+    """Fit counts of failed episodes; `before` is the fit to fewer drifts, if any, and `known` are its logits."""
+    vectors = counts.vectors
+    if before is not None and before.lasts(len(vectors)):
+        scaled = vectors * before.units
+        field = counts.field(
+            covariance(scaled, scaled), before.field.scale, counts.logits(known), before.luck
+        )
+        return Fit(field, before.units, before.chosen, before.luck)
+    whole = covariance(vectors, vectors)
+    best = max((counts.field(whole, scale) for scale in SCALES), key=lambda one: one.evidence)
+    scale, start, luck = best.scale, best.logits, 0.0
+    for size in LUCK:
+        other = counts.field(whole, scale, start, size)
+        if other.evidence > best.evidence:
+            best, luck = other, size
+    field, units = relevant(lambda prior: counts.field(prior, scale, best.logits, luck), vectors)
+    return Fit(field, units, len(vectors), luck)
+
+
+def relevant(field: Callable[[Matrix], Field], vectors: Vector) -> tuple[Field, Vector]:
+    """Return the fitted field and a scale factor for each direction.
+
+    The factor is IRRELEVANT instead of 1 where that increases the evidence.
+    """
+    units = np.ones(vectors.shape[1])
+    prior = scaled_covariances(vectors)
+    best = field(prior(units))
+    for place in range(len(units)):
+        fewer = units.copy()
+        fewer[place] = IRRELEVANT
+        other = field(prior(fewer))
+        if other.evidence > best.evidence:
+            best, units = other, fewer
+    return best, units
