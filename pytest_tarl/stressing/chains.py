@@ -31,9 +31,9 @@ POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a 
 OUTWARD = (1.12, 1.08, 1.04)
 # multiples that are tested before the near end of all other chains
 BEFORE = (1.03,)
-# multiples that are tested after the near end
-INWARD = tuple(0.96**step for step in range(1, 17))
-FINE = tuple(0.985**step for step in range(16))  # multiples of the first drift in a chain of small steps
+# after it; the steps grow, because several confirmations in a row show that the model expected the boundary too far out
+INWARD = (0.96, 0.92, 0.86, 0.79, 0.72, 0.65, 0.58, 0.5)
+FINE = tuple(0.985**step for step in range(16))  # in a chain of small steps, multiples of its first drift
 # multiples of the drift at the near end of a chain that may become drifts of the chain
 STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
 

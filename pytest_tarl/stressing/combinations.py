@@ -23,7 +23,9 @@ from pytest_tarl.stressing.rays import Ray, distance, joined
 # pairs of directions are tested at this share of the distance to each boundary, where each direction alone holds
 INSIDE = 0.9
 FIRST = 0.44  # share of the budget for the first search for the nearest failing drift
-# share of the budget that the first chains of tests may use, so that enough is left for the single directions
+# share of the budget after which the first chains of tests stop, so that the model learns from them for the next ones
+BEGUN = 0.7
+# share of the budget after which all of these chains stop, so that enough is left for the single directions
 CONFIRMED = 0.85
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 ALONE = 3  # number of rounds of the search with nominal options before other options are searched
@@ -157,7 +159,7 @@ class Combined:
                 for t in curve.ray.places:
                     curve.evidence[t] = self.evaluator.glance(curve.ray.point(t))
             self._approach()
-        with self.evaluator.limited(CONFIRMED):
+        with self.evaluator.limited(BEGUN):
             if not any(self._confirm(chains.FIRST) for _ in range(ATTEMPTS)):
                 self._test(chains.clear(self._leading))
         with self.evaluator.limited(CONFIRMED):
