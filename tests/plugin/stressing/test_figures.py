@@ -28,7 +28,9 @@ def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
 def found() -> Stress:
     names = {"c": 1.0, "a": 1.0, "b<&": 1.0, "b": 1.0}
     return stressed(
-        world, space_of(**{name: Drift.range(0.0, high, nominal=0.0) for name, high in names.items()})
+        world,
+        space_of(**{name: Drift.range(0.0, high, nominal=0.0) for name, high in names.items()}),
+        budget=700,
     )
 
 

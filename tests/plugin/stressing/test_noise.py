@@ -75,7 +75,7 @@ def test_the_nominal_episode_adds_at_most_the_noise_of_the_recording() -> None:
 
 
 def test_the_map_and_the_nearest_failure_are_right_if_losses_are_large_and_noisy() -> None:
-    found = stressed(steep, SPACE, budget=1000)
+    found = stressed(steep, SPACE, budget=600)
     assert found.margin_map is not None
     holding = [
         (column, row)

@@ -87,7 +87,7 @@ def test_options_are_examined_separately() -> None:
 
 
 def test_harmless_directions_are_reported_as_harmless() -> None:
-    found = stressed(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD, slope=SLOPE))
+    found = stressed(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD, slope=SLOPE), budget=300)
     assert found.failures == ()
     told = "\n".join(words.lines(found))
     assert "Not affected by mud: no failure found from 0 to 1 (4 values)." in told
@@ -99,7 +99,7 @@ def test_noise_alone_rarely_gives_a_boundary(spread: float) -> None:
     def world(_: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(draws.random() < 0.96), float(draws.normal(10.0, spread))
 
-    found = [stressed(world, space_of(mud=MUD, slope=SLOPE), seed=seed, budget=400) for seed in range(5)]
+    found = [stressed(world, space_of(mud=MUD, slope=SLOPE), seed=seed, budget=250) for seed in range(3)]
     assert not any(one.failures for one in found)
 
 
@@ -118,7 +118,7 @@ def test_two_directions_that_fail_only_together_are_found() -> None:
         return bool((1.0 - point["mud"]) + abs(point["slope"]) < 1.2), float(draws.normal(1.0, 0.01))
 
     space = space_of(mud=MUD, slope=SLOPE)
-    found = stressed(world, space, budget=4000)
+    found = stressed(world, space, budget=700)
     assert all(curve.confirmed is None for curve in found.curves)
     nearest = found.failures[0]
     assert nearest.names == ("mud", "slope")
@@ -131,7 +131,7 @@ def test_a_combination_is_not_said_to_hold_alone_in_a_direction_that_fails_alone
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool((1.0 - point["mud"]) + abs(point["slope"]) < 0.6), float(draws.normal(1.0, 0.01))
 
-    found = replace(stressed(world, space_of(mud=MUD, slope=SLOPE), budget=800), expected=())
+    found = replace(stressed(world, space_of(mud=MUD, slope=SLOPE), combined=False), expected=())
     both = {"mud": 0.3, "slope": 0.2}  # mud = 0.4 fails already
     told = list(words.together(replace(found, combinations=(failure(found.space, both),))))
     assert told == ["Fails with mud=0.3 and slope=0.2 (distance 0.73)."]
@@ -174,9 +174,9 @@ def test_a_spent_budget_keeps_the_findings_so_far() -> None:
     st.floats(0.2, 0.8),
     st.floats(0.1, 0.4),
     st.integers(0, 99),
-    st.sampled_from([64, 200, 500]),
+    st.sampled_from([64, 200, 300]),
 )
-@settings(max_examples=10)
+@settings(max_examples=5)
 def test_the_same_seed_gives_the_same_bytes_on_any_number_of_workers(
     edge: float, tilt: float, seed: int, budget: int
 ) -> None:

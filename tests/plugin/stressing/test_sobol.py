@@ -61,7 +61,7 @@ def test_a_space_in_which_every_draw_fails_clearly_is_not_said_to_have_no_effect
     found = sobol(evaluator_of(lambda point, _: (point["a"] == point["b"] == 0.0, 1.0), SPACE, budget=400))
     assert found is not None
     assert found.hopeless
-    (told,) = words.sobol_words(replace(stressed(added, SPACE, budget=150), sobol=found))
+    (told,) = words.sobol_words(replace(stressed(added, SPACE, budget=150, combined=False), sobol=found))
     assert told.startswith("All 384 episodes drawn from the whole space fail clearly")
     found = sobol(evaluator_of(lambda *_: (True, 1.0), SPACE, budget=400))
     assert found is not None
@@ -80,7 +80,7 @@ def test_the_sample_is_as_large_as_the_budget_allows() -> None:
 
 def test_all_reports_state_the_variance_shares_unless_the_budget_is_too_small() -> None:
     state = np.random.get_state()[1]
-    found = stressed(added, SPACE, budget=1200, variance=True)
+    found = stressed(added, SPACE, budget=600, variance=True, combined=False)
     assert (np.random.get_state()[1] == state).all()  # nodes may use the global generator
     document = json.loads(json_result.text(replace(found, test="t")))
     jsonschema.validate(document, json_result.schema())
@@ -89,8 +89,8 @@ def test_all_reports_state_the_variance_shares_unless_the_budget_is_too_small() 
     assert told.index("space: a ") < told.index("; b ") < told.index("; c< 0 % alone")
     assert "<h2>Variance</h2>" in page.render(found)
     assert "<td>c&lt;<td>" in page.render(found)
-    assert found == stressed(added, SPACE, budget=1200, variance=True)
-    small = stressed(added, SPACE, budget=150, variance=True)
+    assert found == stressed(added, SPACE, budget=600, variance=True, combined=False)
+    small = stressed(added, SPACE, budget=150, variance=True, combined=False)
     assert small.sobol is None
     assert "variance" not in "".join(words.lines(small))
     assert json_result.document(small)["sobol"] is None
@@ -99,9 +99,9 @@ def test_all_reports_state_the_variance_shares_unless_the_budget_is_too_small() 
 def test_without_salib_the_search_is_the_same_and_the_message_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    whole = stressed(added, SPACE, budget=1200, variance=True)
+    whole = stressed(added, SPACE, budget=600, variance=True, combined=False)
     monkeypatch.setattr(extras, "SOBOL", ("no_such_package",))
-    found = stressed(added, SPACE, budget=1200, variance=True)
+    found = stressed(added, SPACE, budget=600, variance=True, combined=False)
     assert found.sobol is None
     assert found.curves == whole.curves
     (line,) = delivering._without_salib(found)

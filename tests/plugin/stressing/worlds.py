@@ -64,13 +64,19 @@ def evaluator_of(world: World, space: Space, *, seed: int = 0, budget: int = 200
 
 
 def stressed(
-    world: World, space: Space, *, seed: int = 0, budget: int = 2000, variance: bool = False
+    world: World,
+    space: Space,
+    *,
+    seed: int = 0,
+    budget: int = 2000,
+    variance: bool = False,
+    combined: bool = True,
 ) -> Stress:
-    """Run the stress search on a world."""
+    """Run the stress search on a world, along single directions only unless `combined`."""
     evaluator = evaluator_of(world, space, seed=seed, budget=budget)
     curves = [Curve(ray) for ray in rays(space, {})]
     together = Together(0.01, curves)
-    ended = explore(evaluator, together, together.risk)
+    ended = explore(evaluator, together, together.risk, combined=combined)
     indices, ended = variances(evaluator, ended) if variance else (None, ended)
     return Stress(
         test="t",
