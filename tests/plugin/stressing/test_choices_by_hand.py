@@ -34,7 +34,7 @@ from pytest_tarl.stressing.guarantee import (
 from pytest_tarl.stressing.kept import _as_bytes, _as_point
 from pytest_tarl.stressing.margins import read
 from pytest_tarl.stressing.nearest import BOLD, GAIN, LARGEST, PREDICTED, SPREAD, TRIES, Nearest
-from pytest_tarl.stressing.prediction import ROUNDS, Prediction, Sample, Shown
+from pytest_tarl.stressing.prediction import NEAR, ROUNDS, Prediction, Sample, Shown
 from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.regions import outwards
 from pytest_tarl.stressing.search import _executed, along
@@ -274,6 +274,21 @@ def test_the_best_of_random_vectors_is_refined_in_smaller_and_smaller_steps() ->
     assert shapes == [400 + 3, *[100] * ROUNDS]
     short, _ = model._largest(score, 0.3, np.random.default_rng(0))
     assert np.linalg.norm(short) <= 0.3 + 1e-9
+
+
+def test_random_drifts_are_compared_with_the_shortest_of_many_failing_drifts() -> None:
+    lengths = np.linspace(0.01, 1.0, 100)
+    samples = [
+        Sample(np.array([one, 0.0]), 2.0 * one, 0.01, 0, [("search", number)])
+        for number, one in enumerate(lengths)
+    ]
+    model = Prediction(Coordinates(SQUARE, SQUARE.nominal), GIVEN, samples, Shown(0.1, 0.25), 0.01, 0.0)
+    near = model._promising_known(0.8)[:, 0]
+    assert len(near) == NEAR
+    assert near[0] == pytest.approx(0.55, abs=0.03)  # the first that loses 1.1
+    assert (np.diff(near[:20]) > 0.0).all()  # the failing ones follow by length
+    assert 0.8 / 0.9 > near.max() > 0.8  # a longer one that fails as well when shortened
+    assert near.min() < 0.5  # then those that almost fail
 
 
 def test_the_allowance_for_errors_lowers_the_excess_of_losses_and_failure_rates() -> None:

@@ -359,14 +359,20 @@ def test_a_search_begins_with_a_quick_look_at_each_place_of_the_rays(
     leading: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plans: list[Any] = []
-    monkeypatch.setattr(Combined, "_confirm", lambda self, plan: plans.append(plan) or False)
+
+    def confirm(self: Combined, plan: Any) -> bool:
+        plans.append((plan, self.evaluator.budget))
+        return False
+
+    monkeypatch.setattr(Combined, "_confirm", confirm)
     monkeypatch.setattr(Combined, "_test", lambda self, chain: plans.append("clear") or False)
     monkeypatch.setattr(combinations.chains, "clear", lambda nearest: [])
     both = made(CUBE)
     both.begin()
     assert [sorted(one.evidence) for one in both.together.curves] == [[0.25, 0.5, 0.75, 1.0]] * 3
     assert both.nearest.calls[0] == ("approach", None)  # type: ignore[attr-defined]
-    assert plans == [FIRST, FIRST, "clear", NEXT]
+    # of 1000 episodes, so that the last chains can use what the first ones show
+    assert plans == [(FIRST, 700), (FIRST, 700), "clear", (NEXT, 850)]
     spent = both.evaluator.spent
     assert both.nearest.calls[1] == ("refine", spent + round(0.08 * 850))  # type: ignore[attr-defined]
     assert both.nearest.risk == pytest.approx(0.1 * 0.3)
