@@ -229,14 +229,24 @@ class Bus:
         """Add a node's subscription. The subscription receives latched messages as soon as the node waits."""
         self.subscribed.add(place.name)
         place.subscriptions.append(subscription)
-        for publication in place.publications:
-            changed = getattr(publication, "peers_changed", None)
-            if changed is not None:
-                self._scheduler.later(partial(changed, subscription, joined=True))
+        self._peers_changed(place, subscription, joined=True)
         if wants_kept:
             for publication, message in place.kept.items():
                 origin = publication if publication in place.publications else None
                 self._scheduler.later(partial(self._hand, place, subscription, message, origin))
+
+    def detach(self, subscription: Subscription, place: Topic) -> None:
+        """Remove a node's subscription."""
+        if subscription in place.subscriptions:
+            place.subscriptions.remove(subscription)
+            self._peers_changed(place, subscription, joined=False)
+
+    def _peers_changed(self, place: Topic, subscription: Subscription, *, joined: bool) -> None:
+        """Notify the publications of a topic of a new or lost subscription, when the running node waits."""
+        for publication in place.publications:
+            changed = getattr(publication, "peers_changed", None)
+            if changed is not None:
+                self._scheduler.later(partial(changed, subscription, joined=joined))
 
     def hand(
         self, place: Topic, subscription: Subscription, message: Any, origin: Publication | None = None
@@ -248,8 +258,9 @@ class Bus:
     def disconnect(self, process: Program) -> None:
         """Remove the publications and subscriptions of a process that has ended."""
         for place in self._topics.values():
-            place.subscriptions = [s for s in place.subscriptions if s.process is not process]
             place.publications = [p for p in place.publications if p.process is not process]
+            for subscription in [s for s in place.subscriptions if s.process is process]:
+                self.detach(subscription, place)
 
     def _deliver(self, place: Topic, message: Any, spare: bool, origin: Publication | None = None) -> None:
         """Deliver copies of a message to all subscriptions. If `spare`, the last one gets the original."""

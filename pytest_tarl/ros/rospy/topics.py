@@ -37,6 +37,7 @@ class Inbox:
         self.topic = topic
         self.message_type = message_type
         self.callbacks: list[Callback] = []
+        self.subscribers = 0  # number of Subscriber objects that are not unregistered
         self.capacity: int | None = None
         self._waiting: deque[Any] = deque()
         self._busy = False
@@ -116,12 +117,22 @@ class Inboxes:
         new = inbox is None
         if inbox is None:
             inbox = self._by_topic[topic] = Inbox(self._process, topic, message_type)
+        inbox.subscribers += 1
         if callback is not None:
             inbox.callbacks.append(callback)
         inbox.capacity = capacity or inbox.capacity
         if new:
             self._process.bus.attach(inbox, self._process.bus.topic(topic))
         return inbox
+
+    def close(self, inbox: Inbox, callback: Callback | None) -> None:
+        """Remove a callback; disconnect the inbox with its last subscriber, so that the next one connects anew."""
+        if callback in inbox.callbacks:
+            inbox.callbacks.remove(callback)
+        inbox.subscribers -= 1
+        if not inbox.subscribers:
+            del self._by_topic[inbox.topic]
+            self._process.bus.detach(inbox, self._process.bus.topic(inbox.topic))
 
 
 class Topic:
@@ -268,9 +279,9 @@ class Subscriber(Topic):
 
     def unregister(self) -> None:
         """Stop calling the callback."""
-        self._closed = True
-        if self._entry in self._inbox.callbacks:
-            self._inbox.callbacks.remove(self._entry)
+        if not self._closed:
+            self._closed = True
+            self._process.part(Inboxes).close(self._inbox, self._entry)
 
     def _peers(self) -> list[Any]:
         return list(self._place.publications)
