@@ -127,6 +127,7 @@ def test_a_worker_that_ended_is_awaited_before_its_last_words_are_read(start: An
         one.ask(b"request")
     assert process.signals == [f"wait {PATIENCE}"]
     assert one._asked is False
+    assert one._log_text() == "first\n\ufffd last\n\n"  # from the beginning, also if it was read before
     one._log.close()
     assert one._log_text() == ""
 
