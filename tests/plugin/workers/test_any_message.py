@@ -72,13 +72,13 @@ runs = st.builds(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(plans)
 def test_any_plan_arrives_as_it_was_sent(plan: EpisodePlan) -> None:
     assert protocol.planned(protocol.plan_message(plan)) == plan
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(runs)
 def test_any_result_arrives_as_it_was_sent(run: EpisodeRun) -> None:
     found = protocol.answered(run.plan, protocol.run_message(run))
@@ -98,7 +98,7 @@ def test_any_result_arrives_as_it_was_sent(run: EpisodeRun) -> None:
             assert got == wanted
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(st.lists(st.binary(max_size=20), max_size=4), st.data())
 def test_a_stream_that_breaks_off_ends_with_the_last_whole_message(
     messages: list[bytes], data: st.DataObject
