@@ -48,18 +48,16 @@ def main() -> int:
         _serve(writer, ring)
         if ring.unread:
             print(
-                f"{order['log']}: the last {ring.unread} bytes of records were damaged in memory and are lost.",
-                flush=True,
+                f"{order['log']}: the last {ring.unread} bytes of records were damaged in memory and are lost."
             )
             return 1
     except LogError as problem:
-        print(problem, flush=True)
+        print(problem)
         return 1
     except OSError as problem:
         print(
             f"{order['log']} can no longer be written ({problem.strerror}): later records are lost. Free some space, "
-            "or name another file with --log.",
-            flush=True,
+            "or name another file with --log."
         )
         return 1
     return 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import io
 import json
 import marshal
 import os
@@ -242,6 +243,20 @@ def test_bytes_that_were_damaged_in_memory_are_reported(program: Any, tmp_path: 
     length = LENGTH.size + len(marshal.dumps(("mission", 5.0), 2)) + 8
     lost = f"the last {length} bytes of records were damaged in memory and are lost."
     assert (status, said) == (1, f"ready\n{tmp_path / 'log'}: {lost}\n")
+
+
+def test_the_node_learns_that_the_writer_is_ready_before_it_serves(
+    program: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Pipe(io.StringIO):
+        def flush(self) -> None:
+            told.append(self.getvalue())
+
+    told: list[str] = []
+    monkeypatch.setattr(sys, "stdout", Pipe())
+    monkeypatch.setattr(writer_main, "_serve", lambda writer, _: told.append("serves") or writer.close())
+    assert program()[0] == 0
+    assert told[:2] == ["ready\n", "serves"]
 
 
 def test_a_log_that_cannot_be_opened_is_reported(program: Any, tmp_path: Path) -> None:
