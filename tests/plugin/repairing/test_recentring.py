@@ -85,7 +85,9 @@ def nearer(window: tuple[float, float]) -> list[float]:
     trials = Trials(run, 300)
     trials.misses[2] = 1
     others = Others(mutants, Ledger(), missed)
-    found = [factor(one.mutations[0]) or 1.0 for one in others.improved(candidate, trials)]
+    proposed = list(others.improved(candidate, trials))
+    assert set(proposed) == others.chosen
+    found = [factor(one.mutations[0]) or 1.0 for one in proposed]
     assert list(others.nearer(candidate, trials)) == []  # once
     assert trials.spent <= 12
     return found
@@ -97,6 +99,12 @@ def test_a_value_that_loses_too_much_in_the_designed_world_is_reduced_while_it_s
 ) -> None:
     (by,) = nearer((low, 3.0))
     assert low < by < 2.2
+
+
+@pytest.mark.parametrize(("low", "share"), [(1.3, 0.375), (1.15, 0.25), (1.09, 0.25)])
+def test_of_several_smaller_values_that_succeed_the_middle_one_is_proposed(low: float, share: float) -> None:
+    # the bisection tries 2.2**0.5 and 2.2**0.25 first, and then goes on below or between them
+    assert nearer((low, 3.0)) == pytest.approx([2.2**share], rel=1e-3)
 
 
 def test_nothing_is_proposed_if_no_smaller_value_succeeds() -> None:
