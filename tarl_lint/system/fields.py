@@ -82,12 +82,15 @@ def _uses(tree: ast.Module, outline: Outline, heard: Heard) -> Iterator[_Use]:
     functions = [
         one for one in outline.definitions if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef)
     ]
-    received = _received(tree, types)
+    received, synchronized = _received(tree, types), _synchronized(tree, types)
     for function in functions:
         held = _made(function, types)
         kinds = received.get(function.name) or _heard(function, heard)
-        if len(kinds) == 1 and sum(one.name == function.name for one in functions) == 1:
-            held |= _parameter(function, *next(iter(kinds)))
+        if sum(one.name == function.name for one in functions) == 1:
+            if len(kinds) == 1:
+                held |= _parameter(function, *next(iter(kinds)))
+            for number, kind in enumerate(synchronized.get(function.name, ())):
+                held |= _parameter(function, kind, number) if kind else {}
         for node in ast.walk(function) if held else ():
             if isinstance(node, ast.Attribute):
                 name, path = _path(node)
@@ -181,6 +184,48 @@ def _received(tree: ast.Module, types: _Types) -> dict[str, set[tuple[str, int]]
             name, number = _called(callback)
             found.setdefault(name, set()).add((types.of(kind), number))
     return {name: kinds for name, kinds in found.items() if name and all(kind for kind, _ in kinds)}
+
+
+def _synchronized(tree: ast.Module, types: _Types) -> dict[str, list[str]]:
+    """Return function name → the types of the messages that a synchronizer of message_filters passes to it, in order.
+
+    A function that several synchronizers call is left out.
+    """
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    calls = [one for one in calls if last_name(one.func) == "registerCallback" and one.args]
+    if not calls:
+        return {}
+    assigned: dict[str, list[ast.expr]] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign):
+            for target in node.targets:
+                assigned.setdefault(ast.unparse(target), []).append(node.value)
+    found: dict[str, list[list[str]]] = {}
+    for call in calls:
+        owner = call.func.value if isinstance(call.func, ast.Attribute) else call
+        for made in [owner] if isinstance(owner, ast.Call) else assigned.get(ast.unparse(owner), []):
+            if not isinstance(made, ast.Call) or not last_name(made.func).endswith("Synchronizer"):
+                continue
+            filters = _only(made.args[0], assigned) if made.args else None
+            if isinstance(filters, ast.List | ast.Tuple):
+                kinds = [_filtered(_only(one, assigned), types) for one in filters.elts]
+                found.setdefault(last_name(call.args[0]), []).append(kinds)
+    return {name: several[0] for name, several in found.items() if name and len(several) == 1}
+
+
+def _only(expr: ast.expr, assigned: Mapping[str, list[ast.expr]]) -> ast.expr | None:
+    """Return an expression, or the only value of a variable."""
+    if not isinstance(expr, ast.Name | ast.Attribute):
+        return expr
+    values = assigned.get(ast.unparse(expr), [])
+    return values[0] if len(values) == 1 else None
+
+
+def _filtered(made: ast.expr | None, types: _Types) -> str:
+    """Return the type of the messages of a `message_filters.Subscriber`; "" if it is unknown."""
+    if not isinstance(made, ast.Call) or last_name(made.func) != "Subscriber" or len(made.args) < 2:
+        return ""
+    return types.of(made.args[1])
 
 
 def _argument(call: ast.Call, place: int, name: str) -> ast.expr | None:

@@ -20,19 +20,20 @@ from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.ir.lower_expressions import position
 from tarl_lint.ir.nodes import Pos
 from tarl_lint.model import Finding, Flow
-from tarl_lint.models.ros.endpoints import Publisher
+from tarl_lint.models.ros.endpoints import Publisher, SourceRecord
 from tarl_lint.node_names import node_name
 from tarl_lint.parameter_names import MARK, ParameterName
 from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
 from tarl_lint.system.fields import misfits, uses
-from tarl_lint.system.model import Endpoint, Interface, Role
+from tarl_lint.system.model import Endpoint, Interface, Qos, Role
 from tarl_lint.system.parameters import configurations, deciding, reads_named_parameters, words
 from tarl_lint.system.qos import of_call
 from tarl_lint.system.quiet_imports import closed
 from tarl_lint.system.service_calls import CLIENTS, called_services
 from tarl_lint.system.staleness import stale
+from tarl_lint.system.table_rows import separated
 
 _OWN: Final = "__main__"
 _SERVED: Final[Mapping[str, Role]] = {"service": "serves", "action": "performs"}
@@ -73,7 +74,8 @@ def interface(
         for finding, flow in zip(engine.findings(flows), flows, strict=True)
         if not {"tf2", ""} & {flow.source.api.partition(".")[0], flow.sink.api.partition(".")[0]}
     )
-    quiet = closed(modules) and len(imported) == len(modules) - 1
+    imports_read = len(imported) == len(modules) - 1
+    quiet = closed(modules) and imports_read
     named = all(one.names for one in endpoints) and not any(topicless(one) for one in flows)
     heard = _heard(machine)
     configured = configurations(modules)
@@ -84,9 +86,13 @@ def interface(
         endpoints=endpoints,
         flows=found,
         words=words(modules),
-        parameters=quiet and configured is not None and reads_named_parameters(modules),
+        parameters=closed(modules, of_parameters=True)
+        and imports_read
+        and configured is not None
+        and reads_named_parameters(modules),
         closed=quiet,
         whole=quiet and named and not machine.cut,
+        complete=quiet and not machine.cut,
         stale=stale(found, modules),
         deciding=deciding(modules),
         in_names=tuple(parameters),
@@ -151,21 +157,12 @@ def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline])
     for record in machine.sources.values():
         source = tracer.ends.source(record)
         if record.kind == "topic":
-            qos = (
-                of_call(outlines[record.path], record.pos, outlines.values(), source.topics)
-                if record.api.startswith("rclpy")
-                else None
-            )
             whole = only(record.whole_types)
-            yield Endpoint(
-                "subscribes",
-                source.topics,
-                source.type,
-                source.span,
-                qos,
-                source.qualname,
-                whole_type=whole,
+            end = Endpoint(
+                "subscribes", source.topics, source.type, source.span, None, source.qualname, whole_type=whole
             )
+            for one in separated(end, record.whole_types, outlines.values()):
+                yield replace(one, qos=_profile(record, one.names, outlines))
         elif record.kind in _SERVED and not record.api.startswith(CLIENTS):
             role = _SERVED[record.kind]
             whole = imported_type(outlines[record.path].tree, source.type)
@@ -173,6 +170,17 @@ def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline])
                 role, source.topics, source.type, source.span, None, source.qualname, whole_type=whole
             )
     yield from _publishers(machine, tracer, outlines)
+
+
+def _profile(
+    made: SourceRecord | Publisher, topics: Collection[str], outlines: Mapping[str, Outline]
+) -> Qos | None:
+    """Return the quality of service of a publisher or subscription of rclpy; None if it is not constant."""
+    if not made.api.startswith("rclpy"):
+        return None
+    via = made.via if isinstance(made, SourceRecord) else ()
+    inside = [(outlines[path], pos) for path, pos in via if path in outlines]
+    return of_call(outlines[made.path], made.pos, outlines.values(), topics, inside)
 
 
 def _clients(machine: Linker, module: Module, outline: Outline, texts: Texts) -> Iterator[Endpoint]:
@@ -199,12 +207,11 @@ def _publishers(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline]
     for (path, pos), publishers in ((at, alike) for at, every in made.items() for alike in _by_topics(every)):
         topics = tuple(sorted({topic for one in publishers for topic in one.topics}))
         types = " | ".join(sorted({kind for one in publishers for kind in one.types}))
-        outline = outlines[path]
-        ros2 = publishers[0].api.startswith("rclpy")
-        qos = of_call(outline, pos, outlines.values(), topics) if ros2 else None
-        span = tracer.texts[path].stretch(pos)
-        whole = only({kind for one in publishers for kind in one.whole_types})
-        yield Endpoint("publishes", topics, types, span, qos, outline.qualname(pos[0]), whole_type=whole)
+        whole = {kind for one in publishers for kind in one.whole_types}
+        span, place = tracer.texts[path].stretch(pos), outlines[path].qualname(pos[0])
+        end = Endpoint("publishes", topics, types, span, None, place, whole_type=only(whole))
+        for one in separated(end, whole, outlines.values()):
+            yield replace(one, qos=_profile(publishers[0], one.names, outlines))
 
 
 def _made(machine: Linker, kind: str, paths: Collection[str]) -> dict[tuple[str, Pos], list[Publisher]]:

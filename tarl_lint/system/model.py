@@ -74,6 +74,7 @@ class Interface:
     `stale` are publish calls that go on without new messages; `misfits` are uses of fields that a message
     type lacks. `uses` are uses of fields of types `package/Name` that are unknown here; their fields are dotted paths.
     `configured` are the classes `PACKAGE.cfg.NAMEConfig`, whose `.cfg` files name further parameters.
+    `complete` says that the endpoints are all that the program has, though some may have no known name.
     """
 
     path: str
@@ -91,6 +92,7 @@ class Interface:
     in_names: tuple[ParameterName, ...] = ()
     uses: tuple[Misfit, ...] = ()
     configured: tuple[str, ...] = ()
+    complete: bool = False
 
 
 @dataclass(frozen=True)
@@ -145,8 +147,13 @@ class Instance:
 
     def may_use(self, kind: str) -> bool:
         """Return whether the node may have an unknown endpoint of a type of messages or services."""
-        return not self.whole and (
-            self.interface is not None or self.known.kinds is None or kind in self.known.kinds
+        if self.whole:
+            return False
+        if self.interface is None:
+            return self.known.kinds is None or kind in self.known.kinds
+        unnamed = [one.type.split(" | ") for one in self.interface.endpoints if not one.names]
+        return not self.interface.complete or any(
+            kind in types or not {"", "AnyMsg"}.isdisjoint(types) for types in unnamed
         )
 
     def ends(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
@@ -230,11 +237,16 @@ class System:
         """
         own = end.whole_type.partition("/")[0] in self.packages
         able = (one for one in self.instances if not own or one.node.package in self.packages)
-        return not any(one.may_use(end.type) for one in able) and not self.hides(end.type)
+        return not any(one.may_use(end.type) for one in able) and not self.hides(end.type, own=own)
 
-    def hides(self, kind: str) -> bool:
-        """Return whether a part of the launch that was not read may start a node that uses a type."""
+    def hides(self, kind: str, *, own: bool = False) -> bool:
+        """Return whether a part of the launch that was not read may start a node that uses a type.
+
+        `own` says that a package of the workspace defines it, so launch files of other packages start no such node.
+        """
         hiding = [one for one in self.problems if one.hides]
+        if own:
+            hiding = [one for one in hiding if not one.package or one.package in self.packages]
         return any(kind in self.included.get(one.package, (kind,)) for one in hiding)
 
     def ends(self, role: Role) -> Iterator[tuple[str, Instance, Endpoint]]:

@@ -10,6 +10,7 @@ from typing import Final
 from tarl_lint.evidence import Outline
 from tarl_lint.ir.nodes import Pos
 from tarl_lint.system.model import Qos
+from tarl_lint.system.table_rows import rows
 from tarl_lint.trees import last_name
 
 _NAMED: Final = {
@@ -33,28 +34,72 @@ _POLICIES: Final = (("reliability", _RELIABILITY, "reliable"), ("durability", _D
 
 
 def of_call(
-    outline: Outline, pos: Pos, others: Collection[Outline] = (), topics: Collection[str] = ()
+    outline: Outline,
+    pos: Pos,
+    others: Collection[Outline] = (),
+    topics: Collection[str] = (),
+    inside: Collection[tuple[Outline, Pos]] = (),
 ) -> Qos | None:
     """Return the quality of service in a call at a position; None if it is not constant.
 
-    `others` are the outlines of all modules of the program, which may define the profile. If the profile is a variable
-    of a wrapper, it is taken from the tables and calls that name it beside one of the `topics`.
+    `others` are the outlines of all modules of the program, which may define the profile. If the call is one of a
+    wrapper, `inside` are the calls in it. If the profile is a variable of a wrapper, it is taken from the tables and
+    calls that name it beside one of the `topics`, or else from all calls of the wrapper.
     """
     call = outline.call(pos)
     if call is None:
         return None
-    name = call.func.attr if isinstance(call.func, ast.Attribute) else ""
-    place = _PLACES.get(name)
-    if place is None:
-        return None
-    given = next((one.value for one in call.keywords if one.arg in ("qos_profile", "qos")), None)
-    given = given if given is not None else call.args[place] if len(call.args) > place else None
+    if last_name(call.func) not in _PLACES:
+        made = ((where, where.call(at)) for where, at in inside)
+        return next(
+            (_through(call, outline, where, one, others) for where, one in made if one and _given(one)), None
+        )
+    given = _given(call) if isinstance(call.func, ast.Attribute) else None
     if given is None:
         return None
     found = _anywhere(given, outline, others)
     if found is None and isinstance(given, ast.Name | ast.Starred | ast.Subscript | ast.Attribute):
-        return _beside(topics, outline, others)
+        return _beside(topics, outline, others) or _passed(last_name(given), call, outline, others)
     return found
+
+
+def _given(call: ast.Call) -> ast.expr | None:
+    """Return the profile in a call that makes a publisher or subscription; None for other calls."""
+    place = _PLACES.get(last_name(call.func))
+    if place is None:
+        return None
+    named = next((one.value for one in call.keywords if one.arg in ("qos_profile", "qos")), None)
+    return named if named is not None else call.args[place] if len(call.args) > place else None
+
+
+def _through(
+    call: ast.Call, outline: Outline, where: Outline, made: ast.Call, others: Collection[Outline]
+) -> Qos | None:
+    """Return the quality of service of a subscription that the call of a wrapper makes in another function."""
+    given = _given(made)
+    found = None if given is None else _anywhere(given, where, others)
+    function = _function_around(made, where)
+    if found is not None or given is None or function is None or function.name != last_name(call.func):
+        return found
+    value = _argument(call, function, last_name(given))
+    return None if value is None else _anywhere(value, outline, others)
+
+
+def _function_around(node: ast.AST, outline: Outline) -> ast.FunctionDef | None:
+    return next((one for one in outline.around(node) if isinstance(one, ast.FunctionDef)), None)
+
+
+def _argument(call: ast.Call, function: ast.FunctionDef, name: str) -> ast.expr | None:
+    """Return what a call passes for a parameter of a function or method; None if it is not known."""
+    plain = [one.arg for one in function.args.args]
+    given = next((word.value for word in call.keywords if word.arg == name), None)
+    if given is not None or any(isinstance(one, ast.Starred) for one in call.args):
+        return given
+    defaults = dict(zip(reversed(plain), reversed(function.args.defaults), strict=False))
+    keywords = zip(function.args.kwonlyargs, function.args.kw_defaults, strict=True)
+    defaults |= {one.arg: value for one, value in keywords if value is not None}
+    place = plain.index(name) - (plain[0] in ("self", "cls")) if name in plain else len(call.args)
+    return call.args[place] if place < len(call.args) else defaults.get(name)
 
 
 def _anywhere(expr: ast.expr, outline: Outline, others: Collection[Outline]) -> Qos | None:
@@ -74,22 +119,25 @@ def _beside(topics: Collection[str], outline: Outline, others: Collection[Outlin
     found = [
         [one for part in row if (one := _anywhere(part, where, others)) is not None]
         for where in (outline, *(one for one in others if one is not outline))
-        for node in ast.walk(where.tree)
-        if len(row := _row(node)) >= _ROW
-        and any(isinstance(one, ast.Constant) and one.value in topics for one in row)
+        for row in rows(topics, where)
+        if len(row) >= _ROW
     ]
     profiles = [profile for row in found for profile in row]
     alike = bool(profiles) and all(len(row) == 1 and row[0] == profiles[0] for row in found)
     return profiles[0] if alike else None
 
 
-def _row(node: ast.AST) -> list[ast.expr]:
-    """Return the elements of a tuple or list, or the arguments of a call."""
-    if isinstance(node, ast.Tuple | ast.List):
-        return node.elts
-    if isinstance(node, ast.Dict):
-        return [one for one in (*node.keys, *node.values) if one is not None]
-    return [*node.args, *(one.value for one in node.keywords)] if isinstance(node, ast.Call) else []
+def _passed(name: str, call: ast.Call, outline: Outline, others: Collection[Outline]) -> Qos | None:
+    """Return the only quality of service that calls pass for a parameter of the function around a call."""
+    function = _function_around(call, outline)
+    if function is None or name not in [one.arg for one in (*function.args.args, *function.args.kwonlyargs)]:
+        return None
+    found: set[Qos | None] = set()
+    for where in (outline, *(one for one in others if one is not outline)):
+        calls = [one for same in where.calls.values() for one in same if last_name(one.func) == function.name]
+        for value in (_argument(one, function, name) for one in calls):
+            found.add(None if value is None else _anywhere(value, where, others))
+    return found.pop() if len(found) == 1 else None
 
 
 def _functions(name: str, outline: Outline) -> list[ast.FunctionDef]:

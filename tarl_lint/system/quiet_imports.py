@@ -33,10 +33,33 @@ _TRANSFORMS: Final = frozenset(
 )  # packages whose code communicates by /tf, which no rule examines
 
 
-def closed(modules: Sequence[Module]) -> bool:
-    """Return whether the modules import only each other, modules without topics, and packages of messages."""
+_NO_PARAMETERS: Final = frozenset(
+    [
+        "smach_ros",
+        "actionlib_tutorials",
+        "rosservice",
+        "rosnode",
+        "rostopic",
+        "rosmsg",
+        "tf_conversions",
+        "tf2_tools",
+        "interactive_markers",
+        "rviz_tools_py",
+        "rqt_gui_py",
+        "cv_bridge",
+    ]
+)  # packages whose code uses topics, but reads no parameter of the node
+
+
+def closed(modules: Sequence[Module], *, of_parameters: bool = False) -> bool:
+    """Return whether the modules import only each other, modules without topics, and packages of messages.
+
+    `of_parameters` asks for modules without parameters instead of modules without topics.
+    """
     own = {part for module in modules for part in (module.name, module.name.partition(".")[0])}
     own |= {module.name.rpartition(".")[2] for module in modules}
+    if of_parameters:
+        own |= _NO_PARAMETERS
     return all(_quiet(name, own) for module in modules for name in _imported(module.tree))
 
 

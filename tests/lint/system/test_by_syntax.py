@@ -9,14 +9,15 @@ from textwrap import dedent
 import pytest
 
 from tarl_lint.evidence import Outline
-from tarl_lint.model import Finding, SiteId, Step
+from tarl_lint.model import Finding, SiteId, Span, Step
 from tarl_lint.parameter_names import ARGUMENTS
 from tarl_lint.read.source import Module
 from tarl_lint.system.cpp_sources import named_topics
-from tarl_lint.system.model import Qos
+from tarl_lint.system.model import Endpoint, Qos
 from tarl_lint.system.parameters import deciding, reads_named_parameters, words
 from tarl_lint.system.qos import of_call
 from tarl_lint.system.staleness import commands, stale
+from tarl_lint.system.table_rows import separated
 from tarl_lint.workspace.read import read
 
 
@@ -127,6 +128,70 @@ def test_the_profile_of_a_wrapper_is_the_one_beside_the_topic(profile, topics, f
     )
     at = (call.lineno, call.col_offset, call.end_lineno or 0, call.end_col_offset or 0)
     assert of_call(Outline(tree), at, (), topics) == found
+
+
+WRAPPER = """
+class Base(Node):
+    def sub(self, kind, topic, function, profile=10):
+        self.create_subscription(kind, topic, function, profile)
+    def pub(self, kind, topic, *, profile=qos_profile_sensor_data):
+        self.create_publisher(kind, topic, profile)
+{}
+"""
+
+
+def call_in(tree: ast.Module, text: str) -> tuple[int, int, int, int]:
+    """Return the position of the first call that contains a text."""
+    found = next(one for one in ast.walk(tree) if isinstance(one, ast.Call) and text in ast.unparse(one))
+    return found.lineno, found.col_offset, found.end_lineno or 0, found.end_col_offset or 0
+
+
+@pytest.mark.parametrize(
+    ("given", "found"),
+    [("", RELIABLE), (", qos_profile_sensor_data", EFFORT), (", profile=qos_profile_sensor_data", EFFORT),
+     (", profile=other", None), (", *more", None)],
+)  # fmt: skip
+def test_the_call_of_a_wrapper_passes_the_profile_or_leaves_the_default(given, found):
+    tree = ast.parse(WRAPPER.format(f"node.sub(F, name, f{given})"))
+    outline = Outline(tree)
+    inside = [(outline, call_in(tree, "self.create_subscription"))]
+    assert of_call(outline, call_in(tree, "node.sub"), (), (), inside) == found
+    assert of_call(outline, call_in(tree, "node.sub")) is None
+
+
+@pytest.mark.parametrize(
+    ("calls", "found"),
+    [
+        (["node.pub(F, name)", "node.pub(F, other)"], EFFORT),
+        (["node.pub(F, name, profile=10)"], RELIABLE),
+        (["node.pub(F, name, profile=10)", "node.pub(F, other)"], None),
+        ([], None),
+    ],
+)
+def test_all_calls_of_a_wrapper_may_pass_the_same_profile(calls, found):
+    tree = ast.parse(WRAPPER.format("\n".join(calls)))
+    assert of_call(Outline(tree), call_in(tree, "self.create_publisher")) == found
+
+
+@pytest.mark.parametrize(
+    ("rows", "found"),
+    [
+        ("{'bell': String, 'door': Bool}", [("bell", "String"), ("door", "Bool")]),
+        ("[('bell', String), ('door', msg.Bool)]", [("bell", "String"), ("door", "Bool")]),
+        ("{'bell': (String, 10), 'door': (Bool, 1)}", [("bell", "String"), ("door", "Bool")]),
+        ("[('bell', String), ('door', Other)]", None),
+        ("[('bell', String), ('bell', Bool), ('door', Bool)]", None),
+    ],
+)
+def test_the_rows_of_a_table_tell_the_type_of_each_topic(rows, found):
+    outline = Outline(ast.parse(f"TOPICS = {rows}"))
+    end = Endpoint("subscribes", ("bell", "door"), "Bool | String", Span("a.py", 1, 1, 1, 2))
+    parts = separated(end, ["std_msgs/Bool", "std_msgs/String", "demo/Bool"], [outline])
+    if found is None:
+        assert parts == [end]
+    else:
+        assert [(one.names[0], one.type) for one in parts] == found
+        assert [one.whole_type for one in parts] == ["std_msgs/String", ""]
 
 
 def test_a_function_of_another_module_may_return_the_profile():

@@ -114,6 +114,36 @@ def test_the_analysis_may_tell_which_messages_a_function_receives(kinds, functio
     assert unknown == (["demo/Own"] if kinds == ["demo/Own"] else [])
 
 
+TWICE = """a = m.Synchronizer([image])
+        b = m.Synchronizer([self.info])
+        a.registerCallback(self.on), b.registerCallback(self.on)"""
+SYNCHRONIZED = """
+from sensor_msgs.msg import CameraInfo, Image
+class Seam:
+    def __init__(self):
+        image = message_filters.Subscriber('image', Image)
+        self.info = message_filters.Subscriber(self, CameraInfo, 'info')
+        {}
+    def on(self, image, info):
+        print(image.cols, info.width, info.cols)
+"""
+
+
+@pytest.mark.parametrize(
+    ("made", "found"),
+    [
+        ("self.s = TimeSynchronizer([image, self.info], 5)\n        self.s.registerCallback(self.on)", 2),
+        ("m.ApproximateTimeSynchronizer((image, self.info), 5, 1).registerCallback(self.on)", 2),
+        ("subs = [image, other]\n        m.TimeSynchronizer(subs, 5).registerCallback(self.on)", 1),
+        ("m.TimeSynchronizer(subs, 5).registerCallback(self.on)", 0),
+        ("m.Cache(image, 5).registerCallback(self.on)", 0),
+        (TWICE, 0),
+    ],
+)  # fmt: skip
+def test_a_synchronizer_passes_messages_in_the_order_of_its_filters(made, found):
+    assert absent(SYNCHRONIZED.format(made)) == [("Image", "cols"), ("CameraInfo", "cols")][:found]
+
+
 def test_no_field_counts_as_absent_if_the_message_type_is_unknown():
     module = Module(
         "a.py", "a", "", ast.parse("from demo.msg import Twist\ndef f():\n    t = Twist()\n    t.x = 1")

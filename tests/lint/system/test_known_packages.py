@@ -46,7 +46,7 @@ PAIR = """
 
 def codes(root: Path, launch: str, pilot: str = "Twist", base: str = "Twist") -> list[str]:
     """Return the hazards of a workspace with a pilot and a base."""
-    (root / "robot/launch").mkdir(parents=True)
+    (root / "robot/launch").mkdir(parents=True, exist_ok=True)
     (root / "robot/package.xml").write_text("<package><name>robot</name></package>")
     (root / "robot/launch/r.launch").write_text(dedent(launch).strip())
     (root / "robot/pilot.py").write_text("#!/usr/bin/env python3" + PILOT.format(kind=pilot))
@@ -86,7 +86,9 @@ def test_a_message_type_of_the_workspace_is_used_only_by_packages_of_the_workspa
     (tmp_path / "robot/launch").mkdir()
     (tmp_path / "robot/package.xml").write_text("<package><name>robot</name></package>")
     (tmp_path / "robot/launch/r.launch").write_text(
-        PAIR.format(NODE.format("unknown_driver", "node")).strip()
+        PAIR.format(
+            NODE.format("unknown_driver", "node") + '<include file="$(find other)/a.launch"/>'
+        ).strip()
     )
     for name, text in (("pilot", PILOT), ("base", BASE)):
         own = text.format(kind="Twist").replace("geometry_msgs", "robot")
@@ -179,3 +181,31 @@ def test_the_type_of_a_multiplexer_of_ros_2_depends_on_its_version():
 )  # fmt: skip
 def test_an_absent_launch_file_of_a_known_package_starts_only_nodes_of_its_types(tmp_path, include, found):
     assert codes(tmp_path, PAIR.format(f'<include file="{include}"/>')) == found
+
+
+UNNAMED = """#!/usr/bin/env python3
+import sys
+import rospy
+from geometry_msgs.msg import Twist
+from std_msgs.msg import Bool, {kind}
+{imported}
+rospy.init_node("other")
+pub = rospy.Publisher(sys.stdin.readline(), {kind}, queue_size=1)
+pub.publish()
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "imported", "found"),
+    [
+        ("Bool", "", ["TARL301"]),
+        ("Twist", "", []),
+        ("Bool", "import some_library", []),
+        ("Other", "", ["TARL301"]),
+    ],
+)
+def test_a_node_with_computed_names_uses_only_the_types_in_its_code(tmp_path, kind, imported, found):
+    text = UNNAMED.format(kind="Bool" if kind == "Twist" else kind, imported=imported)
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "robot/other.py").write_text(text.replace("(), Bool,", f"(), {kind},"))
+    assert codes(tmp_path, PAIR.format(NODE.format("robot", "other.py"))) == found

@@ -57,6 +57,22 @@ def test_the_cfg_files_of_the_workspace_name_parameters_of_a_program(tmp_path, c
     assert messages(tmp_path, launch, edge=EDGE) == found
 
 
+@pytest.mark.parametrize(
+    ("module", "found"), [("smach_ros", ["TARL307 /edge has no parameter sped"]), ("other", [])]
+)
+def test_modules_that_use_topics_may_read_no_parameters(tmp_path, module, found):
+    launch = (
+        '<launch><node pkg="robot" type="edge.py" name="edge"><param name="sped" value="1"/></node></launch>'
+    )
+    text = EDGE.replace("from robot.cfg import EdgeConfig", f"import {module}").replace(
+        "Server(EdgeConfig", "print(1"
+    )
+    assert (
+        messages(tmp_path, launch, edge=text.replace("from dynamic_reconfigure.server import Server\n", ""))
+        == found
+    )
+
+
 KEEPER = """#!/usr/bin/env python3
 import rospy
 rospy.init_node("keeper")
