@@ -11,10 +11,11 @@ abbreviated (`/cmd` and `/command`). Two private names of the same node are simi
 `/speech/finish`. If the launch file names the node `lift` of the code `elevator`, its topic `~floor` is
 `/elevator/floor`, and `/lift/floor` has no publisher.
 
-The rule reports nothing if the other end might be in code that was not read: if a node that was not read may use the
-type, if a node computes the names of its topics, or if an included launch file is not in the workspace. tarl-lint
-knows the message types of well-known packages, for example that a laser driver does not publish `Twist`. The rule
-also reports nothing if no publisher has a similar name, because sensors and simulators are often started elsewhere.
+The rule reports nothing if a node of the launch file was not read and may use the type, or computes the names of its
+topics, or if an included launch file is not in the workspace, because the other end might be there. The types of
+well-known packages are known: a laser driver does not publish `Twist`. C++ programs of the workspace use only types
+that their files name. The rule also reports nothing if no publisher has a similar name, because sensors and simulators
+are often started elsewhere.
 """
 
 from __future__ import annotations

@@ -19,10 +19,11 @@ from tarl_lint.system.binding import (
     with_names_in_code,
     with_prints,
 )
-from tarl_lint.system.cpp_sources import named_topics
+from tarl_lint.system.cpp_sources import is_compiled, named_topics
+from tarl_lint.system.cpp_types import used_types
 from tarl_lint.system.gz_bridges import bridged, own_name
 from tarl_lint.system.image_transport import is_republisher, republished, transported
-from tarl_lint.system.known_packages import kinds, of_package, typed
+from tarl_lint.system.known_packages import identity, kinds, of_package, typed
 from tarl_lint.system.known_programs import stated
 from tarl_lint.system.model import Hop, Instance, Interface, Role, Seen, System, full_name
 from tarl_lint.system.reconfigured import with_configured
@@ -156,9 +157,13 @@ def _known(instance: Instance, launch: Launch, workspace: Workspace) -> Seen:
     if package is None:
         passed = passed_on(instance, values, ros2=launch.ros2)
         found = passed if passed.ends else stated(instance, values, ros2=launch.ros2)
-        return replace(found if found.ends else typed(instance, values, ros2=launch.ros2), kinds=kinds(node))
+        inside = workspace.package(identity(node)[0])  # that of a nodelet's class
+        known = kinds(node) if inside is None else used_types(inside, workspace)
+        return replace(found if found.ends else typed(instance, values, ros2=launch.ros2), kinds=known)
     ends = named_topics(package, node.executable) if node.kind == "node" else ()
-    return Seen(tuple(transported(instance, ends)))
+    compiled = node.kind == "component" or is_compiled(package, node.executable)
+    known = used_types(package, workspace) if compiled else None
+    return Seen(tuple(transported(instance, ends)), kinds=known)
 
 
 def _decided(

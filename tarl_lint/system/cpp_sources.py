@@ -1,7 +1,7 @@
 """Find the topics that the C++ source of a node names as literals in calls, without any analysis of the code.
 
-The topics of C++ nodes are drawn and composed, so that a chain does not end at a C++ node. No rule relies on
-them.
+The topics of C++ nodes are drawn and composed, so that a chain does not end at a C++ node. Rules take them for ends
+that may exist, never for certain ones.
 """
 
 from __future__ import annotations
@@ -46,6 +46,11 @@ _PRIVATE: Final = re.compile(
 def named_topics(package: Package, executable: str) -> tuple[Endpoint, ...]:
     """Return the topics that the sources of a C++ program name, in the order of the files."""
     return tuple(end for path in _sources(package, executable) for end in _ends(path))
+
+
+def is_compiled(package: Package, executable: str) -> bool:
+    """Return whether CMakeLists.txt states the C++ files of a program."""
+    return bool(_sources(package, executable))
 
 
 def _sources(package: Package, executable: str) -> list[Path]:

@@ -126,7 +126,7 @@ _UNSTAMPED: Final = "Twist"
 
 def kinds(node: LaunchedNode) -> frozenset[str] | None:
     """Return the types of messages and services that a program may use; None if it is unknown."""
-    package, program = _identity(node)
+    package, program = identity(node)
     if f"{package}/{program}" in _QUIET or node.kind == "container":
         return frozenset()
     return of_package(package)
@@ -140,7 +140,7 @@ def of_package(package: str) -> frozenset[str] | None:
 
 def typed(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen:
     """Return the topics with known types of a program. `values` are its parameters."""
-    package, program = _identity(instance.node)
+    package, program = identity(instance.node)
     topics = _TYPED.get(f"{package}/{program}")
     if topics is None:
         return Seen()
@@ -182,7 +182,7 @@ def _multiplexed(group: str, values: Mapping[str, Any]) -> list[str] | None:
     return known if len(known) == len(names) else None
 
 
-def _identity(node: LaunchedNode) -> tuple[str, str]:
+def identity(node: LaunchedNode) -> tuple[str, str]:
     """Return package and program; of a nodelet or component, the package of its class."""
     if node.package == "nodelet" and node.executable == "nodelet":
         words = plain(node.arguments, for_ros2=False)
