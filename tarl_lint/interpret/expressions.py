@@ -99,6 +99,8 @@ def _attribute(ctx: Interpreter, expr: ir.Attribute, frame: Frame) -> Value:
 
 def read_attribute(ctx: Interpreter, base: Value, expr: ir.Attribute, frame: Frame) -> Value:
     """Return an attribute of an evaluated object; call the getter of a property or descriptor."""
+    if expr.name == "value" and base.consts and not base.pts:
+        return base  # a member of an enumeration, which is represented by its value
     value = heap.read_or_hold(ctx, base, expr.name)
     for obj in value.objects:
         if obj.kind == "bound" and is_property(obj):

@@ -107,7 +107,24 @@ def _named(path: Path, text: str) -> Iterator[Endpoint]:
         role: Role = (
             "publishes" if "advertise" in found["call"] or "publisher" in found["call"] else "subscribes"
         )
-        kind = (found["type"] or "").rpartition("::")[2]
+        kind = _of_message(found["type"] or "", text)
         if who in images:
             kind = CAMERA if "amera" in found["call"] else IMAGE
         yield Endpoint(role, (name,), kind, span)
+
+
+def _of_message(written: str, text: str) -> str:
+    """Return the name of a type of messages; "" for an alias, which stands for another type.
+
+    `std_msgs::msg::Bool` and `std_msgs::Bool` are no aliases, nor is `arm::Grip` if the file includes `arm/Grip.h`. A
+    name without a package is an alias if the file defines it as one.
+    """
+    package, _, name = written.removeprefix("::").rpartition("::")
+    first = package.partition("::")[0]
+    if not package:
+        alias = rf"\busing\s+{re.escape(name)}\s*=|\btypedef\b[^;]*\b{re.escape(name)}\s*;"
+        return "" if not name or re.search(alias, text) else name
+    known = package.endswith("::msg") or first.endswith("_msgs")
+    return (
+        name if known or re.search(rf"#include\s*[<\"]{re.escape(f'{first}/{name}')}\.h[>\"]", text) else ""
+    )

@@ -33,6 +33,12 @@ _QUIET: Final = frozenset(
 )  # fmt: skip
 _MESSAGES: Final = re.compile(r"\w+_(?:msgs|srvs|interfaces|actions?|msg|srv)$")
 _GENERATED: Final = ("msg", "srv", "action")
+# headers with which a library only makes its classes known to a loader
+_EXPORTS: Final = (
+    "pluginlib/class_list_macros",
+    "class_loader/register_macro",
+    "class_loader/class_loader_register",
+)
 _IMAGES: Final = frozenset(
     ["Image", "CompressedImage", "CameraInfo", "Theora", "Packet"]
 )  # of image_transport
@@ -88,6 +94,8 @@ def _names(folder: Path) -> tuple[frozenset[str], frozenset[str]] | None:
         for header in _INCLUDE.findall(text):
             first, slash, rest = header.partition("/")
             # headers without a folder are of the system, or of the package itself; the latter are read, too
+            if header.startswith(_EXPORTS):
+                continue
             if slash and first not in ("..", ".") and not (folder / first).is_dir():
                 generated = rest.partition("/")[0] in _GENERATED and rest.endswith(".hpp")
                 packages |= set() if generated or (folder / "include" / header).is_file() else {first}

@@ -163,7 +163,7 @@ def _of(expr: ast.expr, outline: Outline, depth: int) -> Qos | None:
     if _preset(expr) in _PRESETS:
         return _PRESETS[_preset(expr)]
     if isinstance(expr, ast.Call) and last_name(expr.func) == "QoSProfile":
-        return _profile(expr)
+        return _profile(expr, outline)
     if isinstance(expr, ast.Call) and depth < 3:
         return _returned(expr, outline, depth)
     if isinstance(expr, ast.Name | ast.Attribute) and depth < 3:
@@ -197,10 +197,31 @@ def _preset(expr: ast.expr) -> str:
     return ""
 
 
-def _profile(call: ast.Call) -> Qos | None:
-    stated = {one.arg: one.value for one in call.keywords}
-    if None in stated:
+def _table(expr: ast.expr, outline: Outline) -> dict[str, ast.expr] | None:
+    """Return the entries of a mapping, also of a variable; None if they are not known."""
+    if isinstance(expr, ast.Name | ast.Attribute):
+        values = outline.assigned.get(last_name(expr), [])
+        return (
+            _table(values[0], outline)
+            if len(values) == 1 and isinstance(values[0], ast.Dict | ast.Call)
+            else None
+        )
+    if isinstance(expr, ast.Call) and last_name(expr.func) == "dict" and not expr.args:
+        named = {one.arg: one.value for one in expr.keywords if one.arg}
+        return named if len(named) == len(expr.keywords) else None
+    if not isinstance(expr, ast.Dict):
         return None
+    keys = [one.value for one in expr.keys if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+    return dict(zip(keys, expr.values, strict=True)) if len(keys) == len(expr.keys) else None
+
+
+def _profile(call: ast.Call, outline: Outline) -> Qos | None:
+    stated: dict[str, ast.expr] = {}
+    for one in call.keywords:
+        table = {one.arg: one.value} if one.arg else _table(one.value, outline)
+        if table is None:
+            return None
+        stated |= table
     reliable = _RELIABILITY.get(_policy(stated.get("reliability"), "RELIABLE"))
     latched = _DURABILITY.get(_policy(stated.get("durability"), "VOLATILE"))
     return Qos(reliable, latched)

@@ -8,11 +8,16 @@ from tarl_lint.settings.config import Config
 
 NODE = """
 import os
+from enum import Enum
 import rospy
 from std_msgs.msg import Float64
 
 NAMES = ("left", "right")
 prefix = "robot"
+
+
+class Topic(str, Enum):
+    SCAN = "scan"
 
 
 def subscribe(topic, callback):
@@ -43,6 +48,10 @@ def topics(statement, config=DEFAULT):
         ('"in"', ("in",)),
         ('prefix + "/in"', ("robot/in",)),
         ('f"/{prefix}/in"', ("/robot/in",)),
+        ("Topic.SCAN.value", ("scan",)),
+        ("Topic.SCAN", ("scan",)),
+        ('prefix + "/" + Topic.SCAN.value', ("robot/scan",)),
+        ("os.value", ()),
         ('"/%s/in" % prefix', ("/robot/in",)),
         ('"/%s/%d" % (prefix, 2)', ("/robot/2",)),
         ('"/{}/in".format(prefix)', ("/robot/in",)),

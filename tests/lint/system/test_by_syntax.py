@@ -55,6 +55,11 @@ PROFILES = [
     (SUBSCRIBED.format("QoSProfile(reliability=ReliabilityPolicy.SYSTEM_DEFAULT)"), Qos(reliable=None, latched=False)),
     (SUBSCRIBED.format("QoSProfile(durability=chosen())"), Qos(reliable=True, latched=None)),
     (SUBSCRIBED.format("QoSProfile(**given)"), None),
+    (SUBSCRIBED.format("QoSProfile(**{'reliability': R.BEST_EFFORT, 'depth': 1})"), EFFORT),
+    (SUBSCRIBED.format("QoSProfile(**dict(reliability=R.BEST_EFFORT), depth=1)"), EFFORT),
+    (SUBSCRIBED.format("QoSProfile(**dict(**other))"), None),
+    (SUBSCRIBED.format("QoSProfile(**{key: R.BEST_EFFORT})"), None),
+    (SUBSCRIBED.format("QoSProfile(**dict(other))"), None),
 ]  # fmt: skip
 
 
@@ -84,6 +89,9 @@ def test_the_quality_of_service_of_a_call_is_read_if_it_is_constant(call, found)
         ("p = QoSProfile(depth=1)\np.depth = 5", RELIABLE),
         ("p = QoSProfile(depth=1)\nq.reliability = R.BEST_EFFORT\nprint(p.reliability)", RELIABLE),
         ("p = p", None),
+        ("given = {'reliability': R.BEST_EFFORT}\np = QoSProfile(**given)", EFFORT),
+        ("given = dict(reliability=R.BEST_EFFORT)\np = QoSProfile(1, **given)", EFFORT),
+        ("given = {}\ngiven = {'reliability': R.BEST_EFFORT}\np = QoSProfile(**given)", None),
     ],
 )
 def test_a_profile_in_a_variable_is_followed_with_the_policies_assigned_to_it(before, found):
@@ -223,6 +231,31 @@ void f() {
     "late", 1);
 }
 """
+
+
+@pytest.mark.parametrize(
+    ("before", "written", "kind"),
+    [
+        ("", "std_msgs::Bool", "Bool"),
+        ("", "std_msgs::msg::Bool", "Bool"),
+        ("", "::std_msgs::msg::Bool", "Bool"),
+        ("", "arm::Bool", ""),
+        ("#include <arm/Bool.h>", "arm::Bool", "Bool"),
+        ('#include "arm/Bool.h"', "arm::Bool", "Bool"),
+        ("#include <arm/types.hpp>", "arm::Bool", ""),
+        ("", "Bool", "Bool"),
+        ("using Bool = std_msgs::msg::Float64;", "Bool", ""),
+        ("typedef std_msgs::Float64 Bool;", "Bool", ""),
+        ("using std_msgs::msg::Bool;", "Bool", "Bool"),
+    ],
+)
+def test_an_alias_of_cpp_is_no_type_of_messages(tmp_path, before, written, kind):
+    (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
+    (tmp_path / "CMakeLists.txt").write_text("add_executable(drive a.cpp)\n")
+    (tmp_path / "a.cpp").write_text(f'{before}\nauto p = n.advertise<{written}>("on", 1);\n')
+    package = read(tmp_path).package("arm")
+    assert package is not None
+    assert [one.type for one in named_topics(package, "drive")] == [kind]
 
 
 def test_the_topics_of_cpp_are_the_literals_in_its_calls(tmp_path, monkeypatch):

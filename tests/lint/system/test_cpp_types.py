@@ -43,6 +43,7 @@ def types(root: Path, *lines: str, **files: str) -> frozenset[str] | None:
     [
         ("", set()),
         ("#include <arm/limits.h>", set()),
+        ("#include <pluginlib/class_list_macros.h>", set()),
         ("#include <geometry_msgs/msg/twist.hpp>\nusing geometry_msgs::msg::Twist;", {"Twist"}),
         ("#include <demo/srv/add.hpp>\ndemo::srv::Add a;", {"Add"}),
         ("#include <image_transport/image_transport.h>", {"Image", "CameraInfo"}),
