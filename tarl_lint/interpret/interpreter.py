@@ -214,7 +214,9 @@ class Interpreter:
         if frame.cls is None:
             if function.control is None:
                 body = lower_body(function, frame.program.package)
-                function.control = control_dependence(body, function.raising, self.exception_types)
+                function.control = control_dependence(
+                    body, function.raising, self.exception_types, waits=self.config.arrivals
+                )
             if frame.control is not function.control:
                 frame.control = function.control
                 frame.closures = {}

@@ -83,7 +83,12 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
         made = sizes.combined(ctx, expr, values, frame)
         if made is not None:
             return made
-    if expr.operator in PRESENT and (decides := nullness.only_presence(ctx, expr, frame)) is not None:
+    arrivals = ctx.config.arrivals
+    if (
+        expr.operator in PRESENT
+        and not arrivals
+        and (decides := nullness.only_presence(ctx, expr, frame)) is not None
+    ):
         there = ctx.node(frame, ("there", expr.pos), "condition")
         ctx.graph.choice(values[0].deps, there)
         ctx.graph.flow(decides, there)
@@ -128,7 +133,7 @@ def tested(ctx: Interpreter, name: str, value: Value, frame: Frame, slot: tuple[
         return frozenset().union(*(tested(ctx, "is none", p, frame, slot) for p in parts))
     if name in MEMBER and slot[1] == 1:
         return membership(ctx, value, frame, slot)
-    if name in ("is", "is none"):
+    if name in ("is", "is none") and not ctx.config.arrivals:
         hollow = _there if name == "is none" else _whole
         return ctx.use(Value(value.deps, frozenset(o for o in value.pts if not hollow(o))))
     return truth(ctx, value, frame, slot) if name == "not" else ctx.use(value)
@@ -162,7 +167,8 @@ def truth(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes
     if said is not None:
         return ctx.use(said)
     ours = frozenset(o for o in value.pts if sizes.sized(ctx, o))
-    kept = frozenset(o for o in value.pts - ours if not _always_true(ctx, o))
+    arrivals = ctx.config.arrivals
+    kept = frozenset(o for o in value.pts - ours if arrivals or not _always_true(ctx, o))
     deps = ctx.use(Value(value.deps, kept)) | sizes.length(ctx, Value(pts=ours))
     if ours:
         deps |= chosen(ctx, ours, frame, ("truth", slot))

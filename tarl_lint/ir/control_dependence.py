@@ -47,6 +47,7 @@ class _Graph:
     raising: Raising = field(default_factory=dict)
     types: ExceptionTypes = NO_CLASSES
     statements: dict[int, ir.Stmt] = field(default_factory=dict)
+    waits: bool = False  # whether statements after a `while` depend on its condition
     finals: list[tuple[ir.Try, int]] = field(
         default_factory=list
     )  # (`try`, number of the first statement of its `finally`), inner `try` statements first
@@ -83,10 +84,17 @@ class _Exits:
 
 
 def control_dependence(
-    body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISES, types: ExceptionTypes = NO_CLASSES
+    body: Sequence[ir.Stmt],
+    raising: Raising = NOTHING_RAISES,
+    types: ExceptionTypes = NO_CLASSES,
+    *,
+    waits: bool = False,
 ) -> Control:
-    """Return the control dependence of a function's statements. `raising` maps statements to exceptions of calls."""
-    graph = _Graph(raising=raising, types=types)
+    """Return the control dependence of a function's statements. `raising` maps statements to exceptions of calls.
+
+    With `waits`, statements after a `while` depend on its condition.
+    """
+    graph = _Graph(raising=raising, types=types, waits=waits)
     entry = _block(graph, body, EXIT, _Exits())
     order = _reachable(graph, [entry, *(begin for _, begin in graph.finals)])
     if not graph.finals and all(len(graph.edges[n]) < 2 for n in order):
@@ -123,6 +131,8 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
         graph.link(s.id, "body", _block(graph, s.body, s.id, inner))
         if not s.endless:
             graph.link(s.id, "done", _block(graph, s.orelse, follow, exits))
+            if graph.waits and s.target is None:
+                graph.link(s.id, "never", EXIT)
         elif not _breaks(s.body):
             graph.link(s.id, "never", EXIT)  # needed so that every statement reaches the exit
     elif isinstance(s, ir.Try):

@@ -24,6 +24,9 @@ from tarl_lint.trees import outside_functions
 HEARS: Final = re.compile("|".join(whole(w) for w in (*catalog.SOURCE_WORDS, *sorted(catalog.LOOKUPS))))
 # matches the words of servers, which both receive and send
 ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")
+CLIENTS: Final = re.compile(
+    "|".join(map(whole, catalog.CLIENT_WORDS))
+)  # with the setting `clients`, these do too
 SAYS: Final = re.compile("|".join(map(whole, catalog.SINK_WORDS)))
 
 
@@ -62,7 +65,7 @@ def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) 
     if config.named:
         return False
     texts = [code(m.text) for m in modules]
-    hears, says = _hears_and_says(texts)
+    hears, says = _hears_and_says(texts, config)
     if hears and says:
         return False
     if hears and any(
@@ -76,12 +79,13 @@ def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) 
 
 def two_sided(texts: Sequence[str], config: Config) -> bool:
     """Return whether words alone show that modules with these texts are not one-sided."""
-    return bool(config.named) or all(_hears_and_says([code(text) for text in texts]))
+    return bool(config.named) or all(_hears_and_says([code(text) for text in texts], config))
 
 
-def _hears_and_says(texts: Sequence[str]) -> tuple[bool, bool]:
+def _hears_and_says(texts: Sequence[str], config: Config) -> tuple[bool, bool]:
     """Return two truth values: whether texts contain words used to subscribe, and words used to publish."""
     hears, says, answers = (any(map(words.search, texts)) for words in (HEARS, SAYS, ANSWERS))
+    answers |= config.clients and any(map(CLIENTS.search, texts))
     return (True, True) if answers else (hears, says)
 
 

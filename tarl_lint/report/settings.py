@@ -37,6 +37,8 @@ def _values(config: Config) -> Mapping[str, Any]:
         "wrappers": {wrapper.name: _wrapper(wrapper) for wrapper in config.wrappers},
         "remaps": dict(config.remaps),
         "tf2": config.tf2,
+        "clients": config.clients,
+        "arrivals": config.arrivals,
         "fail-on": config.fail_on,
     }
 

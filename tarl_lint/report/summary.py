@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
 from tarl_lint.baseline import Accepted, Baseline
+from tarl_lint.catalog import CLIENT_WORDS
 from tarl_lint.files import shown
 from tarl_lint.fingerprints import OfFlow, OfHazard, topic_text
 from tarl_lint.model import Cut, Finding, Flow
@@ -155,8 +156,14 @@ def _missed(result: Result) -> Iterator[str]:
         yield many(notes.cpp_nodes, "C++ node")
     if notes.remapping_launch_files:
         yield f"remaps in {many(notes.remapping_launch_files, 'launch file')}"
+    if not result.follows_clients and (asking := sum(map(_asks, result.texts.values()))):
+        yield f"what clients of services and actions send and receive in {many(asking, 'file')} (clients = true)"
     if unknown := unknown_topics(result):
         yield f"the names of {many(unknown, 'topic')} computed at run time"
+
+
+def _asks(text: str) -> bool:
+    return any(word in text for word in CLIENT_WORDS)
 
 
 def _named(cut: Sequence[Cut]) -> str:

@@ -57,9 +57,9 @@ class Result:
     `unmatched` are messages about settings without effect. `followed` are the installed packages that were analysed.
     `ended` are the classes outside the files at which flows ended. `texts` maps paths to the texts of the files.
     `has_endpoints` is false if no file contains a word used to subscribe or publish. `left_out` counts findings
-    disabled by `per-file-ignores`. `off_by_default` counts findings of rules that are off by default. Unless
-    `names_errors`, text reports count unreadable files without listing them. `kinds` are the kinds of flows that were
-    requested; `reports_hazards` says whether hazards were. New findings with codes in `failing` fail the run.
+    disabled by `per-file-ignores`, `off_by_default` those of rules that are off by default. Unless `names_errors`, text
+    reports count unreadable files without listing them. `kinds` are the kinds of flows that were requested,
+    `reports_hazards` and `follows_clients` tell whether hazards and clients were. Codes in `failing` fail the run.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -81,6 +81,7 @@ class Result:
     off_by_default: int = 0
     kinds: tuple[Kind, ...] = ("explicit", "implicit")
     reports_hazards: bool = True
+    follows_clients: bool = True
     failing: frozenset[str] = frozenset()
 
     @property
@@ -180,6 +181,7 @@ def _result(report: Report, files: _Files, config: Config) -> Result:
         off_by_default=sum(f.fingerprint in unasked for f in marked),
         kinds=tuple(kind for kind, code in CODES.items() if config.enabled(code)),
         reports_hazards=any(config.enabled(rule) for rule in RULES if rule.startswith("TARL2")),
+        follows_clients=config.clients,
         failing=failing(findings, config),
     )
 

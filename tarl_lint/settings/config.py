@@ -59,8 +59,9 @@ class Config:
     with the codes that are disabled in matching files. `sources`, `sinks` and `sanitizers` are qualified names
     (`robot.bus.listen`); results of sanitizers are not tainted. `wrappers` are functions that subscribe, publish or
     wait like a function of ROS. `remaps` are pairs of topic names: the name in the code, and the name at launch. With
-    `tf2`, look-ups of transforms are also sources; with `clients`, which no settings file contains, requests to
-    services and goals of actions are also sinks, and their answers sources. `follow_installed` names packages in the
+    `tf2`, look-ups of transforms are also sources; with `clients`, requests to services and goals of actions are also
+    sinks, and responses, results and feedback sources; with `arrivals`, it is also a decision whether a message has
+    arrived. `follow_installed` names packages in the
     virtual environment `python` that are also analysed. `origins` maps each key to its origin: "default", "command
     line" or the settings file.
     """
@@ -79,6 +80,7 @@ class Config:
     remaps: tuple[tuple[str, str], ...] = ()
     tf2: bool = False
     clients: bool = False
+    arrivals: bool = False
     follow_installed: tuple[str, ...] = ()
     python: str = ""
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
@@ -143,6 +145,8 @@ def resolve(options: Options) -> Config:
         wrappers=choose("wrappers", None, ()),
         remaps=choose("remaps", None, ()),
         tf2=choose("tf2", None, False),
+        clients=choose("clients", None, False),
+        arrivals=choose("arrivals", None, False),
         follow_installed=choose("follow-installed", None, ()),
         python=choose("python", None, ""),
         per_file_ignores=choose("per-file-ignores", options.per_file_ignores, ()),
@@ -154,9 +158,9 @@ def resolve(options: Options) -> Config:
 def describing(paths: Sequence[Path], root: Path | None) -> Config:
     """Return the settings that describe the code at the paths, not what a report shows of it, for use by a program.
 
-    These are sources, sinks, sanitizers, wrappers and `tf2`, which is on unless the settings file says otherwise:
-    a program that runs the code sees that a look-up of a transform depends on messages. `clients` is on, since a goal
-    or a request moves a robot as a message does. Raises ConfigError.
+    These are sources, sinks, sanitizers, wrappers, and `tf2` and `clients`, which are on unless the settings file says
+    otherwise: a program that runs the code sees that a look-up of a transform depends on messages, and a goal or a
+    request moves a robot as a message does. Raises ConfigError.
     """
     file = find_settings(common_directory(paths))
     table = read_settings(file, required=False) if file else {}
@@ -167,7 +171,7 @@ def describing(paths: Sequence[Path], root: Path | None) -> Config:
         sanitizers=table.get("sanitizers", ()),
         wrappers=table.get("wrappers", ()),
         tf2=table.get("tf2", True),
-        clients=True,
+        clients=table.get("clients", True),
     )
 
 

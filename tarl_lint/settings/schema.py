@@ -145,5 +145,7 @@ KEYS: Final[Mapping[str, tuple[Callable[[Any], Any], str]]] = {
         'a table from topics in the code to topics on the robot, such as {"scan" = "/front/scan"}',
     ),
     "tf2": (_switch, "true or false"),
+    "clients": (_switch, "true or false"),
+    "arrivals": (_switch, "true or false"),
     "fail-on": (_fail_on, f"one of {', '.join(map(repr, FAIL_ON))}"),
 }

@@ -80,6 +80,14 @@ def test_the_report_says_which_files_have_no_subscription_or_publisher(in_direct
         assert words in capsys.readouterr().out.splitlines()
 
 
+@pytest.mark.parametrize("follows", [False, True])
+def test_the_report_names_the_setting_for_clients_unless_it_is_on(in_directory, capsys, follows):
+    node = "import rospy\nask = rospy.ServiceProxy('speed', GetSpeed)\n"
+    in_directory({"node.py": node, "pyproject.toml": f"[tool.tarl-lint]\nclients = {str(follows).lower()}\n"})
+    main(["--format", "text"])
+    assert ("in 1 file (clients = true)" in capsys.readouterr().out) is not follows
+
+
 def test_a_configured_source_counts_as_a_subscription(in_directory, capsys):
     settings = "[tool.tarl-lint]\nsources = ['driver.read']\n"
     in_directory({"tool.py": "import driver\nprint(driver.read())\n", "pyproject.toml": settings})

@@ -87,6 +87,20 @@ while not rospy.is_shutdown():
     assert lint({"node.py": node, **settings("tf2 = true")}) == ["node.py:8 TARL101"]
 
 
+def test_clients_of_services_are_followed_on_request(lint):
+    node = """\
+import rospy
+from std_msgs.msg import Float64
+from std_srvs.srv import GetSpeed
+pub = rospy.Publisher("/out", Float64, queue_size=1)
+ask = rospy.ServiceProxy("speed", GetSpeed)
+while not rospy.is_shutdown():
+    pub.publish(ask().speed)
+"""
+    assert lint({"node.py": node}) == []
+    assert lint({"node.py": node, **settings("clients = true")}) == ["node.py:7 TARL101"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "found"),
     [

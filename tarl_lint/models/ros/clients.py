@@ -1,6 +1,7 @@
 """Models of clients of services and actions: requests and goals are sinks, responses and results are sources.
 
-Clients are followed in runs for launch files, where the server is another node, and for programs that run the code.
+Clients are followed with the setting `clients`, in runs for launch files, where the server is another node, and for
+programs that run the code.
 """
 
 from __future__ import annotations
@@ -130,4 +131,5 @@ def _record(ctx: Interpreter, info: Publisher, it: Invocation, channel: str) -> 
     if record is not None:
         record.topics.update(info.topics)
         record.types.update(info.types)
+        record.registered.add((info.path, info.pos))
     return record

@@ -296,11 +296,13 @@ def call_when(
         for obj, name, value in fresh:
             recency.clear_fields(ctx, obj)
             ctx.store.put((obj, name), value)
-        ctx.guards += [(node, "called") for node in guards]
+        received = (o.info for v in values for o in v.objects if o.parent is None and ctx.config.arrivals)
+        decides = [*guards, *(node for node in received if isinstance(node, int))]
+        ctx.guards += [(node, "called") for node in decides]
         result = calls.call_object(ctx, target, (list(values), dict(named)), frame, ROOT_CALL)
         for rest in context_managers.rest_of(ctx, result).objects:
             call_later(ctx, rest, ())
-        del ctx.guards[len(ctx.guards) - len(guards) :]
+        del ctx.guards[len(ctx.guards) - len(decides) :]
 
     ctx.ops.add_root(ctx, root, run, news=news)
 
