@@ -8,13 +8,13 @@
 
 The worlds of stress_worlds.py and stress_worlds_2.py are formulas; those of stress_worlds_3.py and stress_worlds_4.py
 are small simulations, written without knowledge of the search; so are those of stress_worlds_5.py to
-stress_worlds_10.py, whose drifts have units and whose nominal values are not always in the middle or at an end of the
-range. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the task, and
-three faults of the topic of its first numeric sensor (bias, latency, dropout), of the same relative size in every task.
-Each method may run BUDGET episodes. A peer receives a cost for each drift that it proposes. If the guarantee fails on
-PROBES common seeds, the cost is the distance from nominal; otherwise it is the margin above the largest distance. A
-failure counts if fresh seeds confirm it; these episodes are not charged. Each method may offer its nearest OFFERS
-failing drifts, of which the k-th is tested at RISK / k(k + 1). A stress run offers two kinds of drifts: those that it
+stress_worlds_11.py, whose drifts have units and whose nominal values are not always in the middle or at an end of the
+range. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the task,
+and three faults of the topic of its first numeric sensor (bias, latency, dropout), of the same relative size in every
+task. Each method may run BUDGET episodes. A peer receives a cost for each drift that it proposes. If the guarantee
+fails on PROBES common seeds, the cost is the distance from nominal; otherwise it is the margin above the largest
+distance. A failure counts if fresh seeds confirm it; these episodes are not charged. Each method may offer its nearest
+OFFERS failing drifts, of which the k-th is tested at RISK / k(k + 1). A stress run offers the drifts that it
 confirmed, for which it spent episodes, and those that it expects to fail. The method `confirmed` offers only the
 confirmed ones of the same run. A cell of the table gives the number of seeds for which `ours` and `confirmed` are at
 least as near as the peer.
@@ -55,6 +55,7 @@ from stress_worlds_7 import SEVENTH_MACHINES  # noqa: E402
 from stress_worlds_8 import EIGHTH_MACHINES  # noqa: E402
 from stress_worlds_9 import NINTH_MACHINES  # noqa: E402
 from stress_worlds_10 import TENTH_MACHINES  # noqa: E402
+from stress_worlds_11 import ELEVENTH_MACHINES  # noqa: E402
 
 from pytest_tarl import faults  # noqa: E402
 from pytest_tarl.designation import Designation  # noqa: E402
@@ -77,6 +78,7 @@ MACHINES = {
     **EIGHTH_MACHINES,
     **NINTH_MACHINES,
     **TENTH_MACHINES,
+    **ELEVENTH_MACHINES,
 }
 HARMLESS: Mapping[str, World | Machine] = {  # worlds in which no point of the space breaks the guarantee
     "harmless": harmless,

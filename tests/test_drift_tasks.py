@@ -33,6 +33,7 @@ JUDGING = (
     "drift_judging_16",
     "drift_judging_17",
     "drift_judging_18",
+    "drift_judging_19",
     "drift_structure",
 )
 TASKS = sorted(
@@ -274,6 +275,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "structure",
     ],
+    "drift_judging_19": [
+        "narrow window",
+        "one constant",
+        "permanent",
+        "range",
+        "rare failures",
+        "structure",
+        "structure",
+        "two constants",
+    ],
 }
 
 
@@ -330,6 +341,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_16",
         "drift_judging_17",
         "drift_judging_18",
+        "drift_judging_19",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
