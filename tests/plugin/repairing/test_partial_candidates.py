@@ -73,7 +73,7 @@ def test_a_candidate_that_loses_more_may_lose_a_fifth_of_its_gain(lost: float, t
     assert spent == KNOWN + (BOTH if tested else 0)
 
 
-def test_a_costly_candidate_that_the_search_did_not_see_is_dropped() -> None:
+def test_a_costly_candidate_without_a_result_in_the_search_is_dropped() -> None:
     def refuse(mutants: Any, judge: Any, watch: Watch) -> None:
         judge.refused = Refused(ONE, "not shown")
         watch.seen.clear()

@@ -69,7 +69,9 @@ def test_refining_goes_on_while_the_gain_grows_or_is_almost_the_wanted_gain() ->
     assert len(search.tried) == 2
 
 
-def test_constants_with_a_noise_gain_a_refusal_or_enough_refinements_are_not_refined() -> None:
+def test_constants_are_not_refined_after_a_refusal_or_enough_refinements_or_with_a_gain_within_the_noise() -> (
+    None
+):
     assert adjusted(entered((A, 2.2, 0.1)))[1].tried == []
     assert adjusted(Gains(0.1))[1].tried == []
     refused = entered((A, 2.2, 3.0), (B, 2.2, 1.0))

@@ -122,7 +122,7 @@ def test_a_proposal_is_combined_only_with_parameters_of_the_same_change() -> Non
 # the leaders
 
 
-def test_the_leaders_of_the_statements_are_united_with_what_has_no_effect_alone() -> None:
+def test_the_leaders_of_the_statements_are_combined_with_units_without_an_effect_of_their_own() -> None:
     search = searching([A, B, C], (A, 2.2, 3.0), (B, 0.4, 4.0), (C, 2.2, 0.0))
     list(Combining(search).leaders(ALWAYS))
     assert search.calls == [("unions", [(B, 0.4), (A, 2.2)], ALWAYS, [C])]

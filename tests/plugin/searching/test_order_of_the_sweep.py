@@ -225,7 +225,7 @@ def test_a_constant_that_cannot_be_written_is_skipped_and_the_rest_goes_on() -> 
     assert found.count("A=2.2") == 1
 
 
-def test_the_interlude_is_called_with_the_largest_gain_before_each_step() -> None:
+def test_the_function_interlude_is_called_with_the_largest_gain_before_each_step() -> None:
     heard: list[float] = []
 
     def interlude(gain: float) -> Iterator[Candidate]:
@@ -247,7 +247,7 @@ def test_the_interlude_may_yield_candidates_of_another_search() -> None:
     assert seen == []
 
 
-def test_a_candidate_of_the_sweep_is_tried_on_further_seeds_and_yielded_once() -> None:
+def test_a_candidate_that_the_sweep_confirms_on_further_seeds_is_yielded_once() -> None:
     search, seen = sweeping(lambda changes: 10.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL])
     found = list(search.candidates())
     assert [one.mutations[0].value for one in found] == [6.6]
@@ -285,7 +285,7 @@ def announced(operands: Sequence[Operand]) -> list[list[tuple[float, int]]]:
     return heard
 
 
-def test_the_rest_of_a_step_is_announced_before_each_of_its_runs() -> None:
+def test_the_remaining_runs_of_a_step_are_announced_before_each_run() -> None:
     heard = announced([LITERAL, ZERO])
     assert heard[:2] == [[(6.6, 0), (1.2, 0)], [(1.2, 0)]]
     assert heard[2:4] == [[(pytest.approx(1.2), 1), (-1.5, 1)], [(-1.5, 1)]]
@@ -303,7 +303,7 @@ def test_a_zero_with_its_own_scale_has_no_other_steps() -> None:
     assert all(-1.0 <= float(one.partition("=")[2]) <= 1.0 for one in found)
 
 
-def test_the_effects_are_those_of_the_best_factor_by_statement() -> None:
+def test_the_effect_of_a_statement_is_the_effect_of_its_best_factor() -> None:
     search, _ = sweeping(lambda changes: 3.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL, A])
     list(search.candidates())
     effects = search.effects()

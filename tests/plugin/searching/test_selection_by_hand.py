@@ -124,7 +124,7 @@ def test_a_fixed_parameter_that_climbs_downwards_is_not_moved_up() -> None:
     assert first(seen) == ["A2.2", "A2.2 B0.9", "A2.2 B0.81", "A2.2 B0.729", "A2.2 B0.656"]
 
 
-def test_a_base_that_cannot_run_is_not_climbed() -> None:
+def test_no_fixed_parameter_climbs_if_the_base_cannot_run() -> None:
     def world(by: dict[str, float], _: int) -> float:
         raise refused(by)
 
@@ -247,7 +247,7 @@ def test_the_first_part_is_combined_with_the_next_five_and_the_best_pair_with_a_
     assert len(triples) == 4  # 4.5 of 10 is not promising, so the best one is not balanced
 
 
-def test_a_promising_union_is_balanced_and_units_without_an_effect_are_added_to_the_pair() -> None:
+def test_a_promising_combination_is_balanced_and_units_without_an_effect_are_added_to_the_pair() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 3.0 * ("A" in by) + 3.0 * ("B" in by) + 2.0 * (by.get("D", 0) == 5.0 and len(by) == 3)
 
@@ -260,7 +260,7 @@ def test_a_promising_union_is_balanced_and_units_without_an_effect_are_added_to_
     assert any("D7.5" in words for words in tried)  # 8 exceeds 6 by more than the slack, so it is balanced
 
 
-def test_units_without_an_effect_are_added_to_the_first_two_parts_of_the_best_union() -> None:
+def test_units_without_an_effect_are_added_to_the_first_two_parts_of_the_best_combination() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 2.0 * len(by.keys() & {"A", "B", "C"})
 
@@ -287,7 +287,7 @@ def test_a_pair_that_suffices_on_the_first_seed_gets_no_third_part() -> None:
     assert not any(len(words.split()) > 2 for words in first(seen))
 
 
-def test_a_first_part_that_was_confirmed_is_not_united() -> None:
+def test_a_first_part_that_was_confirmed_is_not_combined_with_others() -> None:
     search, seen = selection(needs("A"))
     list(search.gain(joint((A, 2.2))))
     before = len(seen)
