@@ -481,7 +481,7 @@ def test_only_drifts_of_the_space_are_read_back(value: Any, kept: bool) -> None:
     assert (_as_point(data, SPACE) is not None) is kept
 
 
-def test_a_file_of_margins_is_refused_if_the_end_of_a_range_is_nominal_or_no_finite_number() -> None:
+def test_a_file_of_margins_is_refused_if_the_end_of_a_range_is_nominal_or_not_finite() -> None:
     text = (
         '{"format": 1, "test": "t", "drift": "d", "guarantee": {"success": 0.9, "loss": 1}, "confidence": 0.9, '
         '"directions": [{"name": "a", "nominal": 0, "end": %s, "holds_to": null, "fails_at": 0.5}]}'
@@ -572,7 +572,7 @@ def test_a_guarantee_is_printed_with_its_rate_and_tolerance() -> None:
 # the end of the budget
 
 
-def test_the_map_of_a_search_whose_budget_is_spent_needs_no_further_episodes() -> None:
+def test_the_map_is_drawn_without_further_episodes_after_the_budget_is_spent() -> None:
     space = space_of(
         a=Drift.range(0.0, 1.0, nominal=0.0),
         b=Drift.range(0.0, 1.0, nominal=0.0),

@@ -53,7 +53,7 @@ UNIT = ((tornado_figure.WIDTH - tornado_figure.LABEL) / 2 - tornado_figure.END) 
 MIDDLE = tornado_figure.LABEL + (tornado_figure.WIDTH - tornado_figure.LABEL) / 2
 
 
-def test_a_bar_is_as_long_as_the_margin_lost_towards_its_end() -> None:
+def test_the_length_of_a_bar_is_the_margin_that_is_lost_towards_its_end() -> None:
     drawn = tornado(stress(*LOST))
     bars = [(float(one["x"]), float(one["width"]), float(one["y"])) for one in elements(drawn, "rect")]
     step = tornado_figure.BAR + tornado_figure.GAP

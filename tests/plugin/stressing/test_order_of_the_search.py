@@ -212,7 +212,7 @@ def test_a_chain_tests_the_part_of_the_guarantee_that_its_nearest_drift_breaks(
     assert part_of(model_of([], []), []) == "both"
 
 
-def test_clear_failures_are_taken_at_half_three_quarters_and_the_end() -> None:
+def test_of_the_clear_failures_those_at_half_and_three_quarters_and_the_end_of_the_list_are_tested() -> None:
     tried = [drift(a=size, b=size) for size in (0.2, 0.9, 0.5, 0.4, 0.7)]
     tried += [drift(a=0.1), drift(a=0.3, c=0.3)]
     results = {0.3: "holds"}

@@ -166,7 +166,7 @@ def test_a_vector_is_shortened_to_the_limit_that_the_options_leave() -> None:
 # generated drifts
 
 
-def test_drawn_bits_are_a_size_from_one_sixteenth_to_the_whole_range() -> None:
+def test_the_drawn_bits_give_a_size_from_one_sixteenth_of_the_range_to_the_whole_range() -> None:
     slope, mud, camera = (SPACE.extents[name] for name in ("slope", "mud", "camera"))
     assert [_number(slope, True, number) for number in (0, 7, 15)] == [1 / 16, 0.5, 1.0]
     assert [_number(slope, False, number) for number in (0, 15)] == [-1 / 16, -1.0]
@@ -247,7 +247,7 @@ def test_undecided_evidence_counts_as_a_failure_if_its_margin_is_negative() -> N
     assert [seen(margin, result).failing for result, margin in results] == [True, False, False, True]
 
 
-def test_a_curve_that_never_fails_is_monotone() -> None:
+def test_a_curve_is_monotone_if_it_does_not_hold_again_after_a_failure() -> None:
     assert curve(MUD, {0.5: 1.0, 1.0: 1.0}).monotone
     assert curve(MUD, {0.5: -1.0, 1.0: -1.0}).monotone
     assert not curve(MUD, {0.5: -1.0, 1.0: 1.0}).monotone
