@@ -45,7 +45,7 @@ def test_a_random_stream_depends_on_its_name_and_not_on_earlier_draws(tmp_path):
         assert tarl.rng("wind").random(4).tolist() != first
 
 
-def test_a_cell_begins_when_its_last_sensor_is_known_and_lasts_until_the_next_message(tmp_path):
+def test_a_cell_begins_when_its_last_sensor_gets_a_value_and_lasts_until_the_next_message(tmp_path):
     with episode(tmp_path) as (tarl, recorder):
         tarl.message("odom", SimpleNamespace(data=3.5))
         tarl.reward(0.0)

@@ -115,7 +115,7 @@ def test_an_unreadable_file_has_an_error_on_the_whole_line(
     assert shown[0].range == types.Range(types.Position(*start), types.Position(*end))
 
 
-def test_a_lens_stands_above_each_publish_call_in_the_order_of_the_file(places: Places) -> None:
+def test_a_code_lens_is_above_each_publish_call_in_the_order_of_the_file(places: Places) -> None:
     later, first = span(4, 5, 23), span(2, 1, 5)
     result = Result(
         findings=(
@@ -144,7 +144,7 @@ def test_a_lens_stands_above_each_publish_call_in_the_order_of_the_file(places: 
         ([], ""),
     ],
 )
-def test_the_title_of_a_lens_names_each_topic_once_by_kind(flows: Any, title: str) -> None:
+def test_the_title_of_a_code_lens_names_each_topic_once_by_kind(flows: Any, title: str) -> None:
     assert findings.title(flows) == title
 
 

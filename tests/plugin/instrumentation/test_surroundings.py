@@ -358,7 +358,7 @@ def test_only_files_with_sites_or_replacements_are_handled(tmp_path: Path) -> No
     assert node.edited(first.resolve()) is None
 
 
-def test_sites_that_cannot_be_placed_are_named_and_not_cached(tmp_path: Path) -> None:
+def test_sites_without_a_place_in_the_code_are_named_and_not_cached(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text("x = 1\n")
     cache = Cache()

@@ -319,7 +319,7 @@ def test_a_polling_task_waits_after_its_limit_of_polls_and_then_more_often(
 
 
 @pytest.mark.parametrize(("ahead", "pauses"), [(1, 0), (0, 1), (None, 0)])
-def test_a_wait_for_a_later_instant_resets_the_poll_limit_of_a_task(
+def test_a_wait_for_a_later_instant_resets_the_limit_of_polls_of_a_task(
     ahead: int | None, pauses: int, clock: Scheduler, program: Program
 ) -> None:
     before: list[int] = []

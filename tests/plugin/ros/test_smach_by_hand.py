@@ -295,7 +295,7 @@ def concurrence(**given: Any) -> Concurrence:
     ("ended", "outcome"),
     [({"a": "x", "b": "x"}, "good"), ({"a": "x", "b": "y"}, "bad"), ({"a": "y", "b": "x"}, "default")],
 )
-def test_the_first_outcome_whose_mapped_states_have_ended_accordingly_is_chosen(
+def test_the_first_outcome_is_chosen_whose_mapped_states_have_all_ended_as_mapped(
     ended: dict[str, str], outcome: str
 ) -> None:
     made = concurrence(outcome_map={"good": {"a": "x", "b": "x"}, "bad": {"b": "y"}})
