@@ -49,7 +49,7 @@ def missing_sobol(what: str) -> str | None:
 
 
 def install_command(extra: str) -> str:
-    """Return the command that installs an extra; if tarl was installed from a local source tree, from there."""
+    """Return the command that installs an extra, from the local source tree if tarl was installed from one."""
     origin = _source_tree()
     if origin is None:
         return f'pip install "tarl[{extra}]"'

@@ -164,7 +164,7 @@ class Gains:
         return [unit for unit, gains in tried.items() if all(lost(unit, gains, one) for one in factors)]
 
     def clearly_lost(self, guard: Guard, among: Sequence[Unit], factors: Sequence[float]) -> list[Unit]:
-        """Return the units that lost more than `slack` with each of these factors, as seen in the reward itself."""
+        """Return the units that lost more than `slack` with each of these factors, judged by the reward alone."""
         tried = {unit: self.of(unit, guard) for unit in among}
         return [
             unit for unit, known in tried.items() if all(known.get(one, 0.0) < -self.slack for one in factors)

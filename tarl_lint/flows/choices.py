@@ -17,7 +17,7 @@ class Entrance(NamedTuple):
     condition: int
     frame: Frame  # the frame of the value
     outer: Frame  # the frame of the condition
-    value: int  # the node that uses the value, or the value itself if the node uses it without conditions
+    value: int  # the node that uses the value; the value itself if no condition decides whether it is used
 
 
 @dataclass(frozen=True, slots=True)

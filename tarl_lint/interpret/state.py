@@ -46,7 +46,7 @@ class Work:
 
     spent: int = 0  # number of statements of work in this run
     saved: int = 0  # the part of `spent` that was done in replayed calls
-    # number of values that this run looked up, compared or copied to search data, record calls and return from them
+    # number of values that this run handled to search for data, to record calls, and to return from calls
     handled: int = 0
     idled: int = 0  # the part of `spent` that was done in calls into modules without ROS calls
     limit: int = MAX_STATEMENTS

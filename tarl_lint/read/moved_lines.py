@@ -22,7 +22,7 @@ class DifferenceError(Exception):
 
 
 def moved_lines(old: str, new: str, reading: Reading) -> Mapping[int, int] | None:
-    """Return where the lines that an analysis has read are in a new text, from 1; None if it must run again.
+    """Return the lines of a new text, from 1, at which the analysed lines are; None if the analysis must run again.
 
     These lines have the same characters and the same order as before.
     """

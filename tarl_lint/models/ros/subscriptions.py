@@ -124,7 +124,7 @@ def handle(ctx: Interpreter, frame: Frame, call: ir.Call) -> Value:
 def connect(
     ctx: Interpreter, record: SourceRecord, callback: Value, extra: Sequence[Value], it: Invocation
 ) -> None:
-    """Run a callback whenever a message of the source arrives; call a callback of a library where it is registered."""
+    """Run a callback whenever a message of the source arrives; call a library's callback where it is registered."""
     for target in callback.objects:
         if _of_library(ctx, target):
             obj = _received(ctx, record, it.frame, ("forward", it.call.slot, target.key))
