@@ -1,6 +1,6 @@
 """Mutation testing: insert small faults, chosen by a seed, and run the tests that reach the line.
 
-`make mutants` inserts ten faults in each package of pytest_tarl, `make mutants OF=tarl_lint` in each of tarl_lint.
+`make mutants` inserts ten faults in each package of pytest_tarl, and `make mutants OF=tarl_lint` does so for tarl_lint.
 Coverage contexts record which tests reach which line, including processes that tests start. Each fault goes into a
 copy of the checkout without the caches of TARL. The fault is caught if a test fails, or if the tests take far longer
 than without the fault. A test that also fails without the fault catches nothing. A fault that no test reaches is not

@@ -164,7 +164,7 @@ def test_tests_that_never_end_even_without_the_fault_catch_no_faults(
         assert word == "unclear"
 
 
-def test_tests_that_end_only_without_the_fault_catch_it(
+def test_a_test_that_does_not_end_because_of_the_fault_catches_it(
     mutants: Any, sown: Any, tmp_path: Path, runner: Any
 ) -> None:
     file = tmp_path / "half.py"

@@ -41,7 +41,7 @@ class Keeper:
     prefix: str
     place: int
     indent: str
-    behind: str = ""  # text that follows the new lines
+    behind: str = ""  # text to write after the new lines
     declare: int | None = None  # offset at which a function declares its global variables
     declare_indent: str = ""
 

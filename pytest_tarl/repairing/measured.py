@@ -1,8 +1,8 @@
 """Steps that recorded missions suggest: values of the node differ between both worlds by a factor or by an offset.
 
 If electrodes deliver 45 % of the signal, the threshold with which the signal is compared must be 45 % as large. If a
-sensor reads 14 more, so must the set point from which its value is subtracted. Such steps have the unit and the size of
-the error, which fixed factors hit by chance only. They are stated by mission pairs with common seeds.
+sensor reads 14 too high, the set point from which its value is subtracted must be 14 higher. Such steps have the unit
+and the size of the error, which fixed factors hit by chance only. Recorded missions with common seeds show these steps.
 """
 
 from __future__ import annotations

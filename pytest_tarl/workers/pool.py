@@ -20,7 +20,7 @@ from pytest_tarl.workers import protocol
 
 TRIES = 3  # maximum number of runs of an episode whose worker dies
 PATIENCE = 5.0  # time to tear down fixtures before a worker is killed (s)
-SILENCE = 180  # number of checks without a heartbeat, one per second; a count, so that suspending the machine adds none
+SILENCE = 180  # number of checks without a heartbeat, one per second; suspending the machine adds no checks
 _FRAME = re.compile(r'^ *File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
 WORKER_MAIN = Path(__file__).with_name("worker_main.py")
 

@@ -91,7 +91,7 @@ def run_message(run: EpisodeRun) -> bytes:
 def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
     """Decode the result of an episode.
 
-    Raise the TarlError that prevented it, SkippedError, or EndedError.
+    If the episode has no result, raise the error that the worker reported: a TarlError, SkippedError, or EndedError.
     """
     head, arrays = _parted(message)
     if "error" in head:

@@ -56,7 +56,7 @@ class Shared:
     certain: dict[Obj, dict[Root, None]] = field(default_factory=dict)
     several: set[Obj] = field(default_factory=set)  # objects that now stand for several concrete ones
     dirty: set[Root] = field(default_factory=set)
-    # key → the tuple that stands for it in the records of calls, which would otherwise keep a tuple for each read
+    # key → the one tuple that all records of calls share for it; otherwise each read would store its own tuple
     one: dict[Key, Key] = field(default_factory=dict)
     loaded: int = 0  # number of objects that turned out to hold data
     edition: int = 0  # number of changes so far of a class, a `from … import *` or a `__dict__`

@@ -14,7 +14,7 @@ VALUES = st.recursive(LEAVES, lambda v: st.lists(v) | st.dictionaries(st.text(),
 
 
 @given(VALUES)
-def test_the_output_equals_that_of_json_dumps(value):
+def test_the_text_equals_the_output_of_json_dumps(value):
     assert dumped(value) == json.dumps(value, indent=1)
 
 

@@ -158,7 +158,7 @@ def test_the_parts_of_a_wrench_are_set_as_copies() -> None:
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, -2.0, pi / 2])
-def test_a_rotation_about_an_axis_turns_the_other_two(angle: float) -> None:
+def test_a_rotation_about_an_axis_turns_the_other_two_axes(angle: float) -> None:
     c, s = cos(angle), sin(angle)
     assert numbers(Rotation.RotX(angle)) == near(1, 0, 0, 0, c, -s, 0, s, c)
     assert numbers(Rotation.RotY(angle)) == near(c, 0, s, 0, 1, 0, -s, 0, c)

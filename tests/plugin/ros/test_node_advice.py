@@ -304,7 +304,7 @@ def test_a_file_that_includes_the_launch_file_supplies_its_arguments(tmp_path: P
     assert found.note == "parameters and arguments of arm come from robot.launch (driver.launch)."
 
 
-def test_if_launch_files_differ_the_parameters_come_from_the_one_named_after_the_script(
+def test_if_launch_files_differ_the_parameters_come_from_the_file_named_after_the_script(
     tmp_path: Path,
 ) -> None:
     node = '<node pkg="saver" type="node.py" name="saver"><param name="rate" value="{0}"/></node>'

@@ -175,7 +175,7 @@ def test_rospy_logs_once_or_at_most_once_per_period(
         ("skip_first=True, throttle_duration_sec=1.0", "135"),
     ],
 )
-def test_rclpy_logs_once_or_at_most_once_per_period(
+def test_options_of_rclpy_limit_a_message_to_once_or_to_once_per_period(
     start: Start, caplog: pytest.LogCaptureFixture, options: str, turns: str
 ) -> None:
     caplog.set_level("DEBUG", "rclpy")

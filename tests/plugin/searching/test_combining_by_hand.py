@@ -198,7 +198,7 @@ def test_the_joint_search_starts_at_the_three_best_points_of_the_best_guard(
     assert starts == [Joint(((one, 2.2),), ALWAYS) for one in (B, A, C)]
 
 
-def test_a_negative_factor_is_no_start_of_a_joint_search(together: list[tuple[Any, ...]]) -> None:
+def test_a_joint_search_does_not_start_from_a_negative_factor(together: list[tuple[Any, ...]]) -> None:
     search = searching([A, B], (A, -1.0, 3.0), (B, 2.2, 2.0), generator=np.random.default_rng(0))
     list(Combining(search).jointly([ALWAYS]))
     assert together[0][2] == [Joint(((B, 2.2),), ALWAYS)]
@@ -277,7 +277,7 @@ def test_a_change_that_cannot_be_written_unmasks_nothing() -> None:
 
 
 @pytest.mark.parametrize(("steps", "expected"), [(11, False), (12, True)])
-def test_missions_count_as_longer_under_a_change_from_a_fifth_more_steps_on(
+def test_missions_count_as_longer_if_a_change_adds_at_least_a_fifth_more_steps(
     steps: int, expected: bool
 ) -> None:
     joining, _ = selection(lambda _: Outcome(0.0, False, steps=steps))

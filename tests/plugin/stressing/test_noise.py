@@ -49,7 +49,7 @@ def test_drifts_without_noise_do_not_hide_the_noise_of_the_others() -> None:
     assert typical_variance([*quiet, *noisy]) == pytest.approx(2 * 0.08 / 32)
 
 
-def test_the_variance_at_the_boundary_is_that_of_drifts_with_similar_losses() -> None:
+def test_the_variance_at_the_boundary_is_computed_from_drifts_with_similar_losses() -> None:
     quiet = [cut_off([0.0, 0.02, -0.02])] * 30
     varying = [cut_off([0.4, 1.6, 1.0])] * 30
     far = [cut_off([30.0, 90.0])] * 30
