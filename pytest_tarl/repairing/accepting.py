@@ -204,7 +204,7 @@ class Examiner:
         if same is not None:
             return self.ledger.enter(Tried(candidate, same.reason, ()))
         better = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
-        # examine the original value if centring leads to a value that was examined before
+        # if the centred value was examined before, examine the value that was not centred
         return candidate if self.ledger.alike(better) else better
 
     def _known(self, candidate: Candidate) -> Tried | None:

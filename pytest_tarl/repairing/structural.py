@@ -96,9 +96,9 @@ class Structures:
     def early(self, most: int, once: bool = True) -> Iterator[Candidate]:
         """Yield confirmed candidates of the changes with symptoms; spend `most` episodes, more if one gains much.
 
-        Among them are the templates with a telling sensor that varies, because no constant fits all its values. With
-        `once`, the changes without parameters come first, one episode each. A group of changes ends after its first
-        steps if none of them gains anything.
+        Templates that use a telling sensor are among them if the sensor varies, because no constant fits all its
+        values. With `once`, the changes without parameters come first, one episode each. A group of changes ends after
+        its first steps if none of them gains anything.
         """
         order = self.order
         known, places = templates(order.root), list(spots(order))

@@ -19,11 +19,14 @@ SHORT = 3  # number of missions after which a candidate is rejected if each of t
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
     """Return whether a candidate passes on further seeds, starting after `goal.pairs[first]`.
 
-    The seeds on which other candidates fell short run first. A candidate is rejected early if it loses missions of
-    rejected candidates' tests, at its first failed mission (if missions succeed in the designed world and the drift's
-    size does not vary), at its second seed with too little reward, if its mean total is estimated to be too low
-    (`falls_short`), or if each of its first `SHORT` missions clearly earns too little, also compared with the designed
-    missions of the same seeds.
+    The seeds on which other candidates fell short run first. A candidate is rejected early
+
+    - if it loses missions that the tests of rejected candidates ran,
+    - at its first failed mission, if missions succeed in the designed world and the drift's size does not vary,
+    - at its second seed with too little reward,
+    - if its mean total is estimated to be too low (`falls_short`),
+    - if each of its first `SHORT` missions clearly earns too little, also compared with the designed missions of the
+      same seeds.
     """
     if trials.loses(candidate):
         return False

@@ -273,7 +273,7 @@ def test_early_changes_wait_longer_while_a_constant_gains_a_part(tmp_path: Path)
     assert early.spent > 0
 
 
-def test_early_changes_wait_until_constants_were_tried_then_run_a_single_time_and_keep_the_budget_of_constants(
+def test_early_changes_run_once_after_constants_were_tried_and_leave_their_budget_unchanged(
     tmp_path: Path,
 ) -> None:
     order, rollout = missions(tmp_path)

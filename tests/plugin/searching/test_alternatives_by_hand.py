@@ -250,7 +250,7 @@ def test_a_gain_of_half_a_percent_is_followed_by_larger_steps(gain: float, follo
     assert bool(onward([(B, 1.22)], A, 50.0, entered((B, 1.22, gain)), ALWAYS, 10.0)) is followed
 
 
-def test_the_factor_halfway_to_one_is_the_square_root_and_the_ends_do_not_count_as_between() -> None:
+def test_the_factor_halfway_to_one_is_the_square_root_unless_a_factor_between_was_tried() -> None:
     assert milder(A, 2.25, {1.0: 0.0, 2.25: 9.0, 0.4: 1.0, 3.0: 1.0}) == 1.5
     assert milder(A, 0.25, {1.0: 0.0, 0.25: 9.0, 2.2: 1.0, 0.2: 1.0}) == 0.5
     assert milder(A, 2.25, {2.0: 1.0}) is None

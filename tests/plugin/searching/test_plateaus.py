@@ -78,13 +78,13 @@ def test_a_proposal_without_effect_is_made_stronger_before_others_are_moved() ->
     assert tried[: len(proposals) + 1] == [*((one, 1.0) for one in proposals), (RIGHT, 0.4)]
 
 
-def test_while_nothing_gains_constants_get_ever_larger_steps() -> None:
+def test_constants_get_ever_larger_steps_until_one_of_them_gains() -> None:
     found, _ = searched(8.0, 12.0, STEPS)
     assert found is not None
     assert {one.operand for one in found.mutations} == {RIGHT}
 
 
-def test_a_proposal_without_effect_becomes_stronger_still_where_constants_gained() -> None:
+def test_a_proposal_without_effect_is_strengthened_further_in_places_where_constants_gained() -> None:
     """Only a limit of 0.15 has an effect; elsewhere proposals without an effect are dropped after 0.4."""
     tried: list[tuple[Operand, float]] = []
 

@@ -272,7 +272,7 @@ def test_units_without_an_effect_are_added_to_the_first_two_parts_of_the_best_co
     assert [words for words in first(seen) if "D" in words] == ["A2.2 B2.2 D5"]
 
 
-def test_a_pair_that_cannot_run_gets_no_hidden_unit_however_small_the_wanted_gain_is() -> None:
+def test_a_pair_that_cannot_run_is_not_combined_with_a_hidden_unit() -> None:
     def world(by: dict[str, float], _: int) -> float:
         raise refused(by)
 
