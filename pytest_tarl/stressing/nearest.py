@@ -217,7 +217,7 @@ class Nearest:
         return min(share + POWER * sqrt(share * (1.0 - share) / episodes), IMPOSSIBLE)
 
     def _shown(self, noise: float) -> Shown:
-        """Return what the largest number of fresh episodes can show; `noise` is the noise of a loss at the boundary."""
+        """Return the loss and failure rate that fresh episodes can show; `noise` is that of a loss at the boundary."""
         depth = min(max(STANDARD * noise / sqrt(NEAREST[-1]), SHALLOW), DEEP)
         return Shown(depth, self._share)
 

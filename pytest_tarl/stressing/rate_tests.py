@@ -17,7 +17,7 @@ from pytest_tarl.stressing.evaluating import Count, Evaluator
 from pytest_tarl.stressing.guarantee import hopeful, most_passed
 
 LOOKS = (16, 32, 64, 128)  # numbers of seeds, from the first one, among which a test counts the failures
-# shares of the risk that these counts spend; most of it is left for the last one, which can show the most
+# share of the risk that each of these counts spends; the last count spends the most, because it can show the most
 SPENT = (0.1, 0.15, 0.25, 0.5)
 BLOCK = 8  # number of episodes after which a test checks for a decision
 

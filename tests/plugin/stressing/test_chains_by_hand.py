@@ -202,7 +202,7 @@ def test_a_chain_is_refined_before_and_after_its_near_end_if_the_same_seeds_fail
     assert all(one["b"] == pytest.approx(0.75 * one["a"]) for one in found)
 
 
-def test_further_drifts_lie_nearer_than_the_drift_before_the_near_end_and_in_the_space() -> None:
+def test_further_drifts_lie_in_the_space_and_nearer_than_the_drift_before_the_near_end() -> None:
     close: list[Any] = [{"a": 0.432, "b": 0.324}, {"a": 0.4, "b": 0.3}]  # 1.08 times as far
     alike = model_of((), (), luck=0.1)
     assert lengths(finer(alike, close, "rate"))[:3] == pytest.approx([0.54, 0.52, 0.5])

@@ -152,7 +152,9 @@ def test_exploration_and_prediction_alternate(monkeypatch: pytest.MonkeyPatch) -
     assert trail == ["predict", "descend"] * nearest.ROUNDS
 
 
-def test_the_end_of_a_search_evolves_and_shrinks_the_best_drift(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_at_its_end_a_search_evolves_the_best_drift_and_then_shrinks_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     trail: list[Any] = []
     search = searching(monkeypatch, Model([]), drift(0.5))
     monkeypatch.setattr(Nearest, "_predict", lambda self: trail.append("predict"))
@@ -453,7 +455,7 @@ def test_nothing_is_shown_if_the_loss_may_be_too_large_or_the_budget_is_spent() 
 # rays, files and sentences
 
 
-def test_a_ray_through_a_failure_ends_where_its_first_direction_does() -> None:
+def test_a_ray_through_a_failure_ends_where_the_first_of_its_directions_ends() -> None:
     found = outwards(SPACE, failure(SPACE, {**SPACE.nominal, "mud": 3.0, "slope": 0.5, "camera": 1.0}))
     assert found.farthest == {"mud": 2.0, "slope": 1.0, "camera": 1.0}
     assert found.names == ("mud", "slope", "camera")

@@ -52,7 +52,7 @@ def test_the_probability_of_at_most_a_given_number_of_failures_is_binomial() -> 
         (curve(MUD, {0.25: -1.0}), (0.0, 0.0), 16),
     ],
 )
-def test_the_drift_sizes_at_which_the_guarantee_is_tested_to_hold_are_known(
+def test_the_sizes_at_which_to_test_whether_the_guarantee_holds_are_known(
     one: Curve, values: tuple[float, float], paired: int
 ) -> None:
     evaluator: Any = SimpleNamespace(guarantee=GIVEN)
