@@ -23,7 +23,7 @@ class Reach:
 
     data: set[int]
     any: set[int]
-    # node of a container's length → nodes of source data in the elements that are added under a condition
+    # node of a container's length → source data in those elements that a condition decides to add
     counted: Mapping[int, set[int]]
 
 

@@ -46,7 +46,7 @@ class Reads:
     facts: dict[Fact, object] = field(default_factory=dict)
     whole: bool = True  # whether the call ran to its end; False if a budget limit cut it short
     waits: bool = False
-    heard: int = 0  # number of keys at which the first wait takes in values of other roots
+    heard: int = 0  # number of keys whose values from other roots the first wait takes in
     own: frozenset[Key] = frozenset()  # keys that the call had stored by the first wait
     # key → value that the call took in from other roots at its waits
     admitted: dict[Key, Value] = field(default_factory=dict)

@@ -265,7 +265,7 @@ def test_a_call_is_found_by_its_start_and_end_position():
     assert isinstance(found.scope(inner, (ast.Module,)), ast.Module)
 
 
-def test_by_default_a_wrapper_has_the_argument_positions_of_its_model():
+def test_by_default_a_wrapper_takes_its_arguments_in_the_order_of_the_function_that_it_wraps():
     usual = facts((Wrapper("a.b", "rospy.Subscriber"),))["a.b"]
     other = facts((Wrapper("a.b", "rospy.Subscriber", topic=4, callback="on", type=0),))["a.b"]
     assert usual.api == other.api == "a.b"

@@ -19,7 +19,7 @@ _STAMPS: dict[
 
 
 def snapshot(message: Any, wanted: type | None = None) -> Any:
-    """Copy a message for a receiver of class `wanted` (None: the same class). Raise FieldError if it cannot be sent."""
+    """Copy a message for a receiver of class `wanted` (None: the same class). Raise FieldError if that fails."""
     own = type(message)
     if wanted is not None and wanted is not own:
         if type_name(wanted) != type_name(own):

@@ -34,7 +34,7 @@ def test_a_comparison_does_not_make_an_array():
     assert differing(in_callback(body, HEAD)) == {}
 
 
-def test_an_array_computed_from_data_has_the_data_but_the_empty_operand_gets_none():
+def test_an_array_computed_from_data_holds_the_data_but_its_empty_operand_holds_none():
     body = """
         zeros = np.zeros(4)
         shifted = zeros + msg.data

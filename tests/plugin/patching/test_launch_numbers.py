@@ -75,7 +75,7 @@ def test_a_number_that_is_the_whole_value_of_a_parameter_has_a_share_of_one(
         ("{'gain': 0.0 + 3.0}", [("3.0", 3.0, 1.0)]),
     ],
 )
-def test_the_share_of_a_number_is_the_part_of_the_change_of_the_parameter_that_the_number_causes(
+def test_the_share_of_a_number_is_its_relative_change_that_doubles_the_parameter(
     text: str, expected: list[tuple[str, object, float]]
 ) -> None:
     assert found(text) == expected

@@ -194,7 +194,7 @@ def test_an_exit_with_a_text_has_status_one_and_the_first_line(code: Any, status
     assert _status(SystemExit(code)) == status
 
 
-def test_sys_exit_in_a_further_task_ends_only_that_task_and_process_exit_ends_the_process(
+def test_sys_exit_in_a_further_task_ends_only_that_task_but_process_exit_ends_the_process(
     network: Network,
 ) -> None:
     def exits(error: SystemExit) -> Callable[[], None]:
