@@ -220,7 +220,9 @@ def test_small_steps_are_tried_on_a_limited_number_of_constants() -> None:
     assert {unit for unit, _ in found} == {*units[:OTHERS]}
 
 
-def test_booleans_and_constants_on_other_scales_and_the_constant_found_get_no_smaller_change() -> None:
+def test_a_smaller_change_is_not_tried_on_booleans_or_constants_with_another_scale_or_the_constant_found() -> (
+    None
+):
     flag, share = Unit((constant(6, "ON", True),)), Unit((constant(7, "S", 0.9),), SHARE)
     again = Unit(A.operands, SHARE)
     assert smaller(A, 9.0, [A, again, flag, share, LITERAL], Gains(0.1), ALWAYS) == []

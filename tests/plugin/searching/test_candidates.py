@@ -154,7 +154,7 @@ def test_a_guard_holds_in_the_cells_of_its_bins(cell: Cell, expected: bool) -> N
     assert holds(guard, cell, (X, WET)) is expected
 
 
-def test_a_guard_has_its_share_of_steps_and_the_episodes_in_which_it_holds() -> None:
+def test_a_guard_stores_its_share_of_the_steps_and_the_episodes_in_which_it_holds() -> None:
     guard = Guard((Conjunct(WET, 1.0, 1.0),))
     assert share(guard, OFFLINE, (X, WET)) == 3 / 20
     assert firing_episodes(guard, OFFLINE, (X, WET)) == (2,)

@@ -115,9 +115,7 @@ def test_larger_steps_are_not_tried_if_the_smaller_steps_lost_more_than_the_slac
     assert found[late:] == ["A=10", "A=0.05", "A=5", "A=0.15"]
 
 
-def test_constants_that_lose_when_raised_and_when_lowered_get_the_steps_between_and_then_finer_steps() -> (
-    None
-):
+def test_constants_that_lose_in_both_directions_get_the_steps_between_and_then_finer_steps() -> None:
     found = tried(lambda changes: -3.0 * float(LITERAL in changes), [LITERAL])
     assert found[:6] == ["3.0=6.6", "3.0=1.2", "3.0=4.5", "3.0=1.95", "3.0=3.66", "3.0=2.46"]
 
@@ -134,12 +132,12 @@ def test_no_finer_steps_follow_if_another_constant_gains_half_of_the_wanted_gain
     assert {"3.0=4.5", "3.0=1.95"} <= set(found[:combined])
 
 
-def test_a_negative_sign_is_tried_at_once_on_a_constant_that_gained_when_it_was_reduced() -> None:
+def test_a_constant_that_gained_when_it_was_reduced_is_tried_with_a_negative_sign_next() -> None:
     found = tried(lambda changes: 2.0 if changes.get(LITERAL, 3.0) < 3.0 else 0.0, [LITERAL, A])
     assert found[found.index("3.0=1.2") + 1] == "3.0=-3"
 
 
-def test_the_sign_is_changed_for_three_constants_at_most_and_for_none_that_gained_too_little() -> None:
+def test_the_sign_is_changed_for_at_most_three_constants_and_only_for_those_that_gained_enough() -> None:
     many = [constant(line, f"N{line}") for line in range(10, 16)]
 
     def world(changes: Changes) -> float:

@@ -45,7 +45,7 @@ def test_constants_that_change_failed_missions_get_small_steps_before_other_cons
     assert spent <= 2 * (len(INERT) + 1) + 8 < more
 
 
-def test_steps_become_smaller_while_nothing_gains() -> None:
+def test_steps_become_smaller_as_long_as_nothing_gains() -> None:
     found, spent = searched(1.15, 1.3, STEPS)
     assert found is not None
     assert {one.operand for one in found.mutations} == {RIGHT}

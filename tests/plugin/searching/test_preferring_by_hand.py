@@ -128,7 +128,9 @@ def before(
 # plainer changes
 
 
-def test_two_named_constants_are_tried_in_two_steps_each_before_a_literal_and_then_in_larger_ones() -> None:
+def test_before_a_literal_two_named_constants_are_tried_in_two_steps_each_and_then_in_two_larger_steps() -> (
+    None
+):
     search = Scripted([LITERAL, A, B, C], proposed=True)
     before(search, LITERAL, 2.2, pair=3)
     assert search.tries == [
@@ -264,7 +266,7 @@ def test_a_constant_of_nature_has_alternatives_even_if_it_is_only_nearly_confirm
     assert search.tries == [("A", 1.5), ("A", 0.65), ("B", 1.5), ("B", 0.65)][:tries]
 
 
-def test_a_change_is_compared_with_gentler_changes_once_and_on_the_seed_where_most_candidates_failed() -> (
+def test_a_change_is_compared_with_gentler_changes_only_once_on_the_seed_where_most_candidates_failed() -> (
     None
 ):
     search = Scripted([A, B], longer, goal=replace(GOAL, steps=10.0), proposed=True)
@@ -317,7 +319,7 @@ def test_a_value_at_the_edge_is_set_aside_until_the_change_found_was_refused() -
     assert list(made.after()) == []
 
 
-def test_a_value_whose_nearer_one_cannot_be_written_is_set_aside() -> None:
+def test_a_value_is_set_aside_if_a_nearer_value_cannot_be_written() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         if candidate.mutations[0].value < 1.45:
             raise RepairError("no place")
@@ -467,7 +469,7 @@ def test_small_steps_of_other_constants_come_before_an_extreme_change_once() -> 
 
 
 @pytest.mark.parametrize(("factor", "proposed"), [(7.0, False), (11.5, True)])
-def test_no_small_steps_of_other_constants_precede_a_moderate_change_or_a_proposal(
+def test_small_steps_of_other_constants_are_not_tried_before_a_moderate_change_or_a_proposal(
     factor: float, proposed: bool
 ) -> None:
     search = Scripted([A, B], proposed=proposed)

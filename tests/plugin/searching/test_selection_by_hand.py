@@ -341,7 +341,7 @@ def many(count: int) -> list[Unit]:
 
 
 @pytest.mark.parametrize("count", [5, 41])
-def test_a_screening_runs_six_times_the_root_of_the_number_of_units_with_four_changes_each(
+def test_the_number_of_runs_of_a_screening_grows_with_the_root_of_the_number_of_units(
     count: int,
 ) -> None:
     search, seen = selection(lambda by, seed: 0.0, many(count))

@@ -203,7 +203,7 @@ def test_a_small_step_that_gains_something_is_followed_by_larger_steps() -> None
     assert change.operand == TARGET
 
 
-def test_larger_steps_follow_only_where_a_small_one_gained_and_stay_small() -> None:
+def test_larger_steps_follow_only_where_a_small_step_gained_and_stay_below_the_change_found() -> None:
     found, *others = (Unit((one,)) for one in (HOTTEST, TARGET, TAU, *(named(at, f"A{at}") for at in (7, 8))))
     gains = Gains(0.1)
     small = [(unit, step) for unit in others for step in (0.82, 1.22)]

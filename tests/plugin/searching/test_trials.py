@@ -45,7 +45,7 @@ def trials(totals: Mapping[Candidate, Mapping[int, float]], budget: int = 99) ->
     return made
 
 
-def test_a_candidate_that_acts_like_another_one_takes_its_outcomes_but_keeps_its_own() -> None:
+def test_a_candidate_that_acts_like_another_one_gets_the_outcomes_that_it_lacks_from_that_candidate() -> None:
     made = trials({ONE: {0: 9.0, 1: 8.0}, TWO: {0: 7.0}})
     made.equate(ONE, TWO)
     assert made.totals_of(TWO, PAIRS) == {0: 7.0, 1: 8.0}
