@@ -114,7 +114,7 @@ def test_each_chain_has_seeds_of_its_own_that_the_model_learns_from_afterwards()
     assert not set(plans[0]) & set(plans[1])
 
 
-def test_a_chain_whose_first_test_exceeds_the_budget_leaves_nothing_to_learn_from() -> None:
+def test_a_chain_whose_first_test_exceeds_the_budget_yields_no_episodes_for_the_model() -> None:
     evaluator = evaluator_of(sloping, SQUARE, budget=NEAREST[0] + 3)  # enough for the drift, not for nominal
     point = {"a": 0.8, "b": 0.5}
     together = Together(0.02, [])

@@ -212,7 +212,7 @@ def test_a_chain_tests_the_part_of_the_guarantee_that_its_nearest_drift_breaks(
     assert part_of(model_of([], []), []) == "both"
 
 
-def test_of_the_clear_failures_those_at_half_and_three_quarters_and_the_end_of_the_list_are_tested() -> None:
+def test_the_clear_failures_at_half_at_three_quarters_and_at_the_end_of_their_list_are_tested() -> None:
     tried = [drift(a=size, b=size) for size in (0.2, 0.9, 0.5, 0.4, 0.7)]
     tried += [drift(a=0.1), drift(a=0.3, c=0.3)]
     results = {0.3: "holds"}
@@ -285,7 +285,7 @@ def test_a_failure_in_one_direction_belongs_to_its_curve() -> None:
     assert [one.names for one in together.confirmed] == [("b",)]
 
 
-def test_an_end_of_the_budget_still_releases_the_pool_and_keeps_what_was_confirmed() -> None:
+def test_when_the_budget_ends_the_pool_is_released_and_confirmed_drifts_are_kept() -> None:
     together, evaluator = Together(0.1, []), Confirming(0.0)
     confirm = evaluator.confirm
 

@@ -127,7 +127,7 @@ def test_two_directions_that_fail_only_together_are_found() -> None:
     assert "although the guarantee holds with each change alone" in "\n".join(words.together(found))
 
 
-def test_a_combination_is_not_said_to_hold_alone_in_a_direction_that_fails_alone() -> None:
+def test_the_text_says_that_each_change_alone_holds_only_if_no_such_change_fails_alone() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool((1.0 - point["mud"]) + abs(point["slope"]) < 0.6), float(draws.normal(1.0, 0.01))
 

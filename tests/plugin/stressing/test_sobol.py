@@ -57,7 +57,7 @@ def test_an_option_that_decides_the_margin_has_all_of_its_variance() -> None:
     assert not any(one.total for one in found.shares)
 
 
-def test_a_space_in_which_every_draw_fails_clearly_is_not_said_to_have_no_effect() -> None:
+def test_if_every_draw_fails_clearly_the_report_does_not_claim_that_the_directions_have_no_effect() -> None:
     found = sobol(evaluator_of(lambda point, _: (point["a"] == point["b"] == 0.0, 1.0), SPACE, budget=400))
     assert found is not None
     assert found.hopeless
