@@ -248,7 +248,7 @@ def test_merging_the_values_of_a_field_adds_no_steps_to_flows_of_other_sources(a
         assert f"def on_{name[2:]}" in "".join(s.code for s in flow.steps)
 
 
-def test_work_grows_linearly_with_the_values_that_are_added_to_a_field_whose_values_are_merged():
+def test_work_grows_linearly_with_the_number_of_values_that_are_added_to_a_merged_field():
     totals = [linked(many(number)).total for number in (MANY, 2 * MANY)]
     assert totals[1] < 2.3 * totals[0]
 

@@ -50,7 +50,7 @@ def test_the_error_of_a_test_inside_a_package_that_imports_ros_advises_moving_th
     )
 
 
-def test_the_advice_appears_if_the_package_tries_another_import_after_that_of_ros(
+def test_the_advice_appears_if_the_package_tries_another_import_after_the_import_of_ros(
     tank: pytest.Pytester,
 ) -> None:
     package = tank.mkpydir("robot")

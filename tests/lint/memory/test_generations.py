@@ -93,7 +93,7 @@ def test_the_last_object_of_a_long_chain_represents_all_further_ones(ctx, frame)
     assert [obj.many for obj in chain] == [False, False, True]
 
 
-def test_entry_points_that_treated_an_object_as_one_run_again_when_it_stands_for_several(ctx):
+def test_entry_points_run_again_if_an_object_that_they_read_now_stands_for_several_objects(ctx):
     obj = recency.intern(ctx, "instance", "a")
     assert recency.single(ctx, obj)
     recency.one_of_many(ctx, obj)

@@ -321,7 +321,7 @@ def test_recorded_reads_are_outdated_when_a_new_object_has_fields_or_holders(sto
     assert not same(store, Reads(objects={obj: NEW}))
 
 
-def test_recorded_reads_are_outdated_when_an_object_ceases_to_be_a_single_one(store, obj):
+def test_recorded_reads_are_outdated_when_an_object_begins_to_stand_for_several_objects(store, obj):
     outer, inner = Reads(), Reads(single={obj})
     outer.add(inner)
     assert same(store, outer)

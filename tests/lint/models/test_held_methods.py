@@ -56,7 +56,7 @@ def test_a_stored_reference_to_a_publisher_method_makes_a_publisher(main):
     assert ends(f"{make}\n        {DIRECT}", main) == [("explicit", ("in",), ("out",))]
 
 
-def test_a_stored_reference_to_any_other_method_makes_nothing():
+def test_a_stored_reference_to_a_method_that_ros_does_not_know_creates_no_endpoint():
     subscribe = 'make = node.create_something; make(Float64, "in", self.receive, 10)'
     assert ends(PLAIN.format(subscribe=subscribe), MAINS["a node of a library"]) == []
 

@@ -331,7 +331,9 @@ def test_folders_of_tools_are_skipped_and_folders_marked_as_ignored_are_noted(tm
     assert not is_ignored(tmp_path / "a", tmp_path)
 
 
-def test_the_root_of_a_workspace_is_its_src_its_repository_or_the_folder_of_the_outermost_package(tmp_path):
+def test_the_root_of_a_workspace_is_its_src_folder_its_repository_or_the_folder_of_the_outermost_package(
+    tmp_path,
+):
     inner = tmp_path / "ws/src/group/arm/arm"
     inner.mkdir(parents=True)
     file = inner / "node.py"

@@ -46,7 +46,7 @@ def test_a_repair_helps_only_if_the_whole_interval_of_its_effect_is_above_zero(
     assert repaired(reward_bound=bound(low, high), strata=0).verdict == "not comparable"
 
 
-def test_strata_with_only_one_arm_are_left_out() -> None:
+def test_strata_without_missions_of_both_kinds_are_left_out() -> None:
     robot_, stratum = ints(7, 7, 7, 8, 8, 9), ints(0, 0, 2, 2, 2, 1)
     treated, passed = ints(0, 1, 0, 1, 1, 0), ints(1, 0, 1, 1, 0, 1)
     total = np.array([1.0, 2.0, 4.0, 8.0, 16.0, 32.0])

@@ -146,7 +146,7 @@ def test_tarl_fleet_and_the_comparison_of_a_log_give_the_same_verdict(folder: Pa
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_the_answer_does_not_depend_on_files_copies_order_threads_and_the_missions_read_at_a_time(
+def test_the_answer_is_independent_of_files_copies_order_threads_and_the_size_of_portions(
     folder: Path, found: Answer, seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     random = Random(seed)

@@ -36,7 +36,7 @@ def test_at_most_the_share_alpha_of_all_groups_has_a_p_value_below_alpha(
             assert (np.array(p_values) <= alpha + 1e-12).mean() <= alpha + 1e-12
 
 
-def test_if_all_missions_succeed_the_p_value_of_the_loss_is_that_of_the_test_without_successes() -> None:
+def test_if_all_missions_succeed_the_test_of_successes_does_not_change_the_p_value_of_the_loss() -> None:
     for seed in range(5):
         one, other = (outcomes(seed + at, 30, failing=0.0, linked=False) for at in (0, 100))
         alone = permuted_loss(one[:, 0], other[:, 0], generator(seed, "groups"))

@@ -20,7 +20,7 @@ def found(p_drift: float, p_loss: float, loss: float = 2.0, cells: int = 1) -> D
 
 
 @pytest.mark.parametrize(("episodes", "looks"), [(40, 3), (40, 1), (200, 5), (12, 3), (3, 3)])
-def test_the_checks_spend_the_whole_alpha_and_the_last_one_has_all_episodes(
+def test_the_checks_together_spend_all_of_alpha_and_the_last_check_uses_all_episodes(
     episodes: int, looks: int
 ) -> None:
     plan = planned(episodes, looks)

@@ -159,7 +159,7 @@ node.create_subscription(Float64, "/c", print, 1)
 """
 
 
-def test_calls_that_use_a_node_are_places_in_main_in_init_and_outside_of_functions_first() -> None:
+def test_calls_on_a_node_in_main_in_init_and_outside_of_functions_come_first_among_the_places() -> None:
     analysis: Any = SimpleNamespace(flows=[], sources={"pilot.py": USED})
     site: Any = None
     found = [ast.unparse(one.statement).partition("(")[0] for one in anchors(analysis, site, "pilot.py")]

@@ -179,7 +179,7 @@ def _episode() -> bytes:
     return run_message(EpisodeRun(EpisodePlan(1), trace(1.0), passed=True))
 
 
-def test_a_kept_episode_is_passed_on_at_once_and_its_request_counts_as_cancelled(path: Path) -> None:
+def test_a_kept_episode_is_returned_immediately_and_its_request_counts_as_cancelled(path: Path) -> None:
     first_run(path, 1)
     pending = resumed(path, Inner(), checked=True).begin(EpisodePlan(1))
     heard: list[EpisodeRun] = []

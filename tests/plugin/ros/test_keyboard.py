@@ -80,7 +80,7 @@ def test_a_node_in_raw_mode_gets_each_key(way: str, start: Start) -> None:
     assert not ros.shutdown_errors
 
 
-def test_a_node_that_still_reads_at_the_end_is_interrupted_as_by_ctrl_c(start: Start) -> None:
+def test_a_node_that_is_still_reading_input_at_the_end_is_interrupted_as_if_by_ctrl_c(start: Start) -> None:
     body = "ended = []\ntry:\n    input()\nexcept KeyboardInterrupt:\n    ended.append(rospy.is_shutdown())"
     ros = start(NODE.format(body=body))
     ros.step(0.1)

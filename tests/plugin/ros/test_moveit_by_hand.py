@@ -103,7 +103,7 @@ def test_the_planning_frame_is_that_of_a_moving_virtual_joint_or_the_root(text: 
     assert semantic(text).planning_frame == frame
 
 
-def test_a_group_of_a_chain_has_its_joints_its_links_and_the_link_at_its_end() -> None:
+def test_a_group_that_names_a_chain_has_the_joints_and_links_of_this_chain_and_its_last_link() -> None:
     arm = ARM.groups["arm"]
     assert (arm.joints, arm.tip) == (("shoulder", "elbow"), "hand")
     assert arm.links[-1] == "hand"

@@ -75,7 +75,9 @@ def test_a_name_is_declared_once_and_is_not_empty() -> None:
             node.declare_parameter(wrong)  # type: ignore[arg-type]
 
 
-def test_the_type_is_the_declared_one_or_that_of_the_default_or_else_that_of_the_override() -> None:
+def test_a_parameter_has_the_declared_type_or_the_type_of_its_default_or_else_the_type_of_the_override() -> (
+    None
+):
     with pytest.raises(InvalidParameterTypeException):
         declared(("a", 1), overrides={"a": 1.5})
     with pytest.raises(InvalidParameterTypeException):

@@ -264,7 +264,7 @@ def test_slots_of_goal_result_and_feedback_are_mapped_to_userdata() -> None:
     assert server.feedback == [{"step": 4}] * 2
 
 
-def test_only_the_mapped_slots_are_passed_by_default_and_no_feedback_without_a_goal() -> None:
+def test_by_default_only_mapped_slots_are_passed_and_no_feedback_is_sent() -> None:
     server, container = Server(active=False), Container("ok", sum=7, rest=3)
     made = served(container, server, goal_slots_map={"order": "wanted"}, result_slots_map={"total": "sum"})
     made.execute_cb(slots(order=5, extra=6))
@@ -295,7 +295,7 @@ def concurrence(**given: Any) -> Concurrence:
     ("ended", "outcome"),
     [({"a": "x", "b": "x"}, "good"), ({"a": "x", "b": "y"}, "bad"), ({"a": "y", "b": "x"}, "default")],
 )
-def test_the_first_outcome_is_chosen_whose_mapped_states_have_all_ended_as_mapped(
+def test_the_first_outcome_whose_mapped_states_have_all_ended_as_mapped_is_chosen(
     ended: dict[str, str], outcome: str
 ) -> None:
     made = concurrence(outcome_map={"good": {"a": "x", "b": "x"}, "bad": {"b": "y"}})

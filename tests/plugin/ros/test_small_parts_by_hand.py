@@ -122,7 +122,7 @@ def test_an_error_report_contains_the_message_the_traceback_of_the_node_and_the_
     assert line.endswith('raise NodeError("Node failed.") from error')
 
 
-def test_the_report_of_an_error_in_the_test_or_without_a_cause_is_only_its_message() -> None:
+def test_an_error_in_the_test_and_an_error_without_a_cause_are_reported_by_their_message_only() -> None:
     assert account(raised(None), Path(__file__)) == "Node failed."
     assert account(ValueError("mine"), Path(__file__)) == "mine"
     other = account(raised(ValueError("boom")), Path("/elsewhere/test_x.py"))

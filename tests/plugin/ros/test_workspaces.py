@@ -282,7 +282,9 @@ def test_a_node_gets_the_parameters_of_its_enclosing_namespaces(launches: Path) 
     assert given(launches / "node.py").shared == {"/everywhere": 1, "/side": "l"}
 
 
-def test_conflicting_launch_files_set_what_is_equal_in_all_and_give_a_note(launches: Path) -> None:
+def test_if_launch_files_conflict_only_parameters_with_equal_values_are_set_and_a_note_is_given(
+    launches: Path,
+) -> None:
     other = LAUNCH1.format(rate=9).replace('name="rate"', 'name="limits/low" value="1.0"/><param name="rate"')
     write(launches, {"launch/two.launch": other})
     workspace.forget()

@@ -83,7 +83,7 @@ def test_a_response_of_another_type_is_refused(start: Start, node: str, wrong: s
     )
 
 
-def test_none_refuses_a_request_if_the_service_has_a_type_of_ros_1(start: Start) -> None:
+def test_a_service_with_a_type_of_ros_1_refuses_a_request_by_returning_none(start: Start) -> None:
     ros = start("pass")
     ros.bus.serve("dock", OLD_TRIGGER, lambda _: None)
     start(CLIENTS["rospy"], ros=ros)
