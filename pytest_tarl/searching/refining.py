@@ -14,8 +14,8 @@ FINEST = 1.1  # ratio of two factors below which no factor between them is tried
 # minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
 ALMOST = 0.9
 NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
-# a sharp peak (see SHARP) is also refined down to `NARROWEST` if it exceeds 0 or a neighbour by at least this share of
-# the wanted gain; other factors are promising if they gain at least this share
+# minimum gain of a promising factor, as a share of the wanted gain; a sharp peak (see SHARP) that exceeds 0 or a
+# neighbour by this share is also refined down to `NARROWEST`
 PROMISING = 0.4
 SHARP = 0.5  # a peak is sharp if both neighbouring factors gain at most this share of its gain
 
