@@ -37,7 +37,7 @@ PREDICTED = 3  # number of predicted drifts to try in a row
 GAIN = 0.01  # minimum expected reduction of the distance, as a share of the best distance, for a drift to be tried
 # numbers of standard deviations by which successive predictions assume larger losses, in turn
 BOLD = (0.0, 1.0, 0.0, 0.5)
-# the predicted excess loss of a drift that counts as failing may be smaller than the detectable one by this share
+# a drift also counts as failing if its predicted excess loss is below the detectable loss by at most this share
 SURE = 0.5
 # a margin that lies at least this number of standard deviations below 0 clearly shows a failure
 CLEAR = 4.0
