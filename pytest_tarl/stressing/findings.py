@@ -15,7 +15,7 @@ CONFIDENCE = 0.9  # probability that a boundary lies in the interval that is rep
 # maximum probability that the guarantee still holds at the far end of the interval
 FAR_RISK = (1.0 - CONFIDENCE) / 6
 NEARER = 0.98  # maximum ratio of two distances at which the first counts as nearer
-# minimum distance of a reported failure that contains another one, as a multiple of the other's distance
+# if a failure contains another failure, it is reported only if it is at least this many times as far
 APART = 1.03
 # maximum probability that the guarantee already fails at the near end of the interval
 NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
