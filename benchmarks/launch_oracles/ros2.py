@@ -221,7 +221,7 @@ def _parameters(arguments):
     found = {}
     for text, is_file in arguments or ():
         if ABSENT in str(text):
-            found["*"] = ABSENT  # some parameters are known to a module that is not installed
+            found["*"] = ABSENT  # a module that is not installed gives some of the parameters
         elif is_file and os.path.isfile(text):
             with open(text) as file:
                 for content in (yaml.load(file, _Loader) or {}).values():

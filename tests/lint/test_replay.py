@@ -121,7 +121,7 @@ def obj(store):
     return recency.intern(linked("x = 1\n"), "sequence", "a")
 
 
-def test_a_read_counts_for_a_call_only_if_no_store_of_the_call_to_that_key_precedes_it(store, obj):
+def test_a_read_belongs_to_a_call_unless_the_call_has_already_stored_to_that_key(store, obj):
     store.get((obj, "x"))
     store.put((obj, "x"), Value(DATA))
     store.put((obj, "y"), Value(DATA))

@@ -206,7 +206,7 @@ def test_the_guard_checks_for_none_unless_the_surrounding_code_excludes_it(
         ),
     ],
 )
-def test_a_guard_uses_an_attribute_that_only_a_callback_sets_only_where_the_code_reads_it(
+def test_if_only_a_callback_sets_an_attribute_a_guard_uses_it_only_where_the_code_also_reads_it(
     text: str, bound: bool
 ) -> None:
     assert (choose(text, ("self.p",)) is not None) is bound
@@ -221,7 +221,7 @@ def test_a_guard_uses_an_attribute_that_only_a_callback_sets_only_where_the_code
         ("def step(p): HERE = 1", True),
     ],
 )
-def test_a_guard_uses_a_global_that_only_a_callback_sets_only_where_the_code_reads_it(
+def test_if_only_a_callback_sets_a_global_a_guard_uses_it_only_where_the_code_also_reads_it(
     text: str, bound: bool
 ) -> None:
     assert (choose(text, ("p",)) is not None) is bound

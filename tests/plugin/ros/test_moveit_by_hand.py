@@ -99,7 +99,9 @@ def test_a_joint_that_mimics_another_does_not_move_by_itself() -> None:
         ('<virtual_joint name="v" type="floating" child_link="base"/>', "base"),
     ],
 )
-def test_the_planning_frame_is_that_of_a_moving_virtual_joint_or_the_root(text: str, frame: str) -> None:
+def test_the_planning_frame_is_the_frame_of_a_moving_virtual_joint_or_else_the_root(
+    text: str, frame: str
+) -> None:
     assert semantic(text).planning_frame == frame
 
 
