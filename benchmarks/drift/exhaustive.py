@@ -30,7 +30,8 @@ from stage import HERE, Stage, tasks_in, visit
 
 from pytest_tarl.errors import RepairError, TarlError
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.mutate import Mutation, is_integral, mutations, rewrite
+from pytest_tarl.patching.mutate import Mutation, is_integral, mutations
+from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.recording import sound
 from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.seeds import episode_seeds
@@ -39,7 +40,7 @@ from tarl_lint.model import Operand
 FINE = tuple(percent / 100 for percent in range(5, 100, 5))
 FACTORS = (*sorted((*FINE, *(round(1 / factor, 3) for factor in FINE)), key=lambda f: abs(log(f))), 0.0, -1.0)
 COARSE = (0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.2, 1.5, 2.0, 2.75, 4.0, 8.0)
-# after this number of repairs of the same sites, the search for a repair that also works in the nominal world ends
+# number of repairs of the same sites after which the search for a repair that also works in the nominal world ends
 SHOWN = 8
 COARSEST = (0.35, 0.65, 1.5, 2.0, 3.0, 5.0)  # factors for all pairs of operands
 EPISODES = 24

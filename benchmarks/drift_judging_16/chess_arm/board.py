@@ -18,7 +18,7 @@ class Board:
     seen: bool = False
 
     def update(self, x, y, yaw, share):
-        """Average the seen poses of the corner near a1. The first pose has the weight 1."""
+        """Average the pose of the corner near a1; the first one counts in full."""
         if not self.seen:
             share, self.seen = 1.0, True
         self.x += share * (x - self.x)

@@ -18,7 +18,7 @@ TURNS = 4
 
 
 class Yard:
-    """A yard in which the robot drives `grip` times the distance that it drives on new tyres."""
+    """A yard; `grip` is the distance that the robot drives as a share of that on new tyres."""
 
     def __init__(self, rng, grip):
         self.grip = grip * rng.uniform(0.98, 1.02)
