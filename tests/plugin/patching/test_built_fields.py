@@ -10,7 +10,8 @@ import pytest
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.built_fields import built_fields
 from pytest_tarl.patching.document import apply_edits, document
-from pytest_tarl.patching.mutate import Mutation, rewrite
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.patching.structures import Form, described, form_edits
 from pytest_tarl.patching.templates import SHIPPED, template
 from tarl_lint.api import analyse
