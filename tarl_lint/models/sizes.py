@@ -75,9 +75,7 @@ def grown(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Fram
     tables = frozenset(o for o in first.pts if o.kind == "mapping" and expr.operator == "|=")
     for obj in in_order(tables):
         absorb(ctx, obj, second)
-    # a received value to which a number is added is a number, and another variable with it stays as it is
-    numbers = frozenset(o for o in first.pts if o.kind == "message" and not second.pts)
-    if others := first.pts - tables - numbers:
+    if others := first.pts - tables:
         news = ctx.carry(heap.elements(ctx, second), ctx.node(frame, ("grown", expr.pos), "assign"))
         updates.add_element(ctx, Value(first.deps, others), news)
         longer = ctx.carry(Value(length(ctx, second)), ctx.node(frame, ("longer", expr.pos), "assign"))
