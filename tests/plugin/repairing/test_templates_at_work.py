@@ -57,6 +57,7 @@ if __name__ == "__main__":
     Keeper()
 """
 VALUE = "value = msg.data + msg.data\n        self.out.publish(value)"
+BUILT = "sent = Float64()\n        sent.data = msg.data\n        sent.data += msg.data\n        self.out.publish(sent)"
 BODIES = {  # other ways to compute the same value
     "a call": "value = self.twice(msg.data)\n        self.out.publish(value)",
     "a result": "self.out.publish(self.twice(msg.data))",
@@ -164,6 +165,7 @@ MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
     "delay": (INPUT, delayed),
     "delay_by_travel": (INPUT, delayed_by_travel),
     "derivative": (VALUE, lambda: kept(derivative)),
+    "field_gain": (BUILT, lambda: lambda value, _: 3.4 * value),
     "gain": (INPUT, lambda: lambda value, _: 3.1 * value),
     "hysteresis": (COMPARED, lambda: kept(hysteresis)),
     "integral": (VALUE, lambda: kept(integral)),
