@@ -6,10 +6,9 @@ them takes only a few episodes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from math import log
 from statistics import fmean
-from typing import Protocol
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
@@ -18,13 +17,14 @@ from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, rivals
 from pytest_tarl.searching.exact import exactest
-from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
-from pytest_tarl.searching.gains import Gains, Part
+from pytest_tarl.searching.forward_selection import Joint
+from pytest_tarl.searching.gains import Part
 from pytest_tarl.searching.gentler import another_way, gentler
 from pytest_tarl.searching.moderate import MODERATE, extreme, moderate
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer
+from pytest_tarl.searching.preference_search import Search
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING
-from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
+from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.smaller import (
     BESIDE,
     EARLY,
@@ -43,37 +43,6 @@ from pytest_tarl.searching.units import NEAR, Unit, change_size
 PLAINER_ROUNDS = 2  # number of refinements of each constant whose change a maintainer would prefer
 FUNCTIONS = 2  # maximum number of functions whose constants are compared by the course of their missions
 PLAINER = 12  # maximum number of episodes for trying constants whose change a maintainer would prefer
-
-
-class Search(Protocol):
-    """The parts of the search that `Preferences` uses."""
-
-    units: tuple[Unit, ...]
-    guards: Sequence[Guard]
-    mutate: Mutate
-    trials: Trials
-    goal: Goal
-    proposed: bool
-    gains: Gains
-    refused: set[tuple[Unit, Guard]]
-
-    def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """Try a factor; yield the candidates that are confirmed."""
-
-    def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
-        """Try factors between the unit's best factor and its neighbours."""
-
-    def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a factor; return the candidate if it is new and confirmed."""
-
-    def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
-        """Return whether a new factor reaches the goal on the seed of a pair."""
-
-    def corrections(self) -> Iterator[Candidate]:
-        """Yield the confirmed corrections of sensor readings that are wrong from the start, if not done before."""
-
-    def joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
-        """Return a selection that combines units."""
 
 
 class Preferences:
