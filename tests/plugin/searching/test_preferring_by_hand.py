@@ -449,8 +449,9 @@ def test_small_steps_end_after_their_episodes_and_skip_refused_constants() -> No
     search.gains.enter((A, ALWAYS), 3.0, 0.0)
     before(search, A, 7.0)
     assert not any(code == "N20" for code, _ in search.tries)
-    # a step that has begun is completed
-    assert EPISODES <= search.trials.spent - 1 <= EPISODES + 2
+    assert (
+        EPISODES <= search.trials.spent - 1 <= EPISODES + 2
+    )  # a step that began is finished with those beside it
 
 
 # moderate changes before extreme ones
