@@ -32,11 +32,19 @@ class Purse:
         order, passed = mutants.order, monotonic() - self.begun
         until = None if self.seconds is None else passed + share * (self.seconds - passed)
 
-        def run(candidate: Candidate, seed: int) -> Outcome:
+        def in_time() -> float:
             now = monotonic() - self.begun
             if until is not None and now > until:
                 self.late = True
                 raise BudgetSpentError
+            return now
+
+        def unchanged(seed: int, drift: str | None) -> Outcome:
+            in_time()
+            return mutants.run(ORIGINAL, seed, drift)
+
+        def run(candidate: Candidate, seed: int) -> Outcome:
+            now = in_time()
             done, total = (trials.spent, trials.budget) if until is None else (int(now), int(until))
             order.progress(done, total, watch.progress(method))
             outcome = mutants.run(candidate, seed, order.drift)
@@ -48,8 +56,8 @@ class Purse:
             run,
             budget,
             foresee=lambda wanted: mutants.foresee(wanted, order.drift),
-            design=lambda seed: mutants.run(ORIGINAL, seed, None),
-            unchanged=lambda seed: mutants.run(ORIGINAL, seed, order.drift),
+            design=lambda seed: unchanged(seed, None),
+            unchanged=lambda seed: unchanged(seed, order.drift),
         )
         return trials
 

@@ -35,7 +35,7 @@ def entered(ctx: Interpreter, manager: Value) -> tuple[Value, Value]:
 def rest_of(ctx: Interpreter, value: Value) -> Value:
     """Return the functions that run after the bodies of the `with` statements of managers."""
     found = BOTTOM
-    for obj in value.pts:
+    for obj in value.objects:
         if obj.kind == "sequence" and (later := _rest(ctx, obj)) is not None:
             found = join(found, later)
     return found

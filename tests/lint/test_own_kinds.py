@@ -49,9 +49,10 @@ def test_transforms_are_sources_with_the_setting_tf2():
     case = "sources/transforms_are_off.py"
     assert {f.source.api for f in flows(case)} == {"rclpy.create_subscription"}
     looked_up = [f for f in flows(case, tf2=True) if f.source.api == "tf2.lookup_transform"]
-    assert {f.kind for f in looked_up} == {"explicit"}
     assert {f.source.topics for f in looked_up} == {("/tf",)}
-    assert len(looked_up) == 2  # each value reaches the next publish call before another one replaces it
+    # Each value reaches the next publish call before another one replaces it. If the first look-up fails, the callback
+    # returns before its second publish call.
+    assert sorted(f.kind for f in looked_up) == ["explicit", "explicit", "implicit"]
 
 
 def test_services_actions_and_transforms_are_distinguished_from_topics():

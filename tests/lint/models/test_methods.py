@@ -146,6 +146,15 @@ READ: dict[tuple[str, ...], str] = {
         out.publish(loop.NAME(None, lambda a, b: a, msg.data, 0.0).result())  # data
         out.publish(loop.NAME(None, lambda a, b: b, msg.data, 0.0).result())  # clean
     """,
+    ("enter_context", "enter_async_context"): """
+        @contextlib.contextmanager
+        def first_of(value, other):
+            yield value
+
+        stack = contextlib.ExitStack()
+        out.publish(stack.NAME(first_of(msg.data, 0.0)))  # data
+        out.publish(stack.NAME(first_of(0.0, msg.data)))  # clean
+    """,
     ("done",): """
         kept, decided = asyncio.Future(), asyncio.Future()
         kept.set_result(msg.data)
@@ -216,7 +225,7 @@ CHANGED: dict[tuple[str, ...], str] = {
         kept.NAME("b", msg.data)
         out.publish(kept["b"])  # data
         out.publish(kept["a"])  # clean
-        out.publish(kept.NAME("c", 0.0))  # data
+        out.publish(kept.NAME("c", 0.0))  # clean
         other = {}
         other.NAME(msg.name, msg.data)
         out.publish(other["d"])  # data
