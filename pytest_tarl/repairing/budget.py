@@ -39,10 +39,6 @@ class Purse:
                 raise BudgetSpentError
             return now
 
-        def unchanged(seed: int, drift: str | None) -> Outcome:
-            in_time()
-            return mutants.run(ORIGINAL, seed, drift)
-
         def run(candidate: Candidate, seed: int) -> Outcome:
             now = in_time()
             done, total = (trials.spent, trials.budget) if until is None else (int(now), int(until))
@@ -56,8 +52,9 @@ class Purse:
             run,
             budget,
             foresee=lambda wanted: mutants.foresee(wanted, order.drift),
-            design=lambda seed: unchanged(seed, None),
-            unchanged=lambda seed: unchanged(seed, order.drift),
+            design=lambda seed: mutants.run(ORIGINAL, seed, None),
+            unchanged=lambda seed: mutants.run(ORIGINAL, seed, order.drift),
+            in_time=in_time,
         )
         return trials
 

@@ -111,6 +111,10 @@ def lost_nothing(_: Candidate) -> bool:
     return False
 
 
+def never_late() -> None:
+    """Do nothing: the default for searches without a time limit."""
+
+
 @dataclass
 class Trials:
     """Run candidates in the drifted world, each seed once, and keep the outcomes.
@@ -130,6 +134,7 @@ class Trials:
     loses: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world
     unchanged: Callable[[int], Outcome] | None = None  # runs the unchanged program in the drifted world
+    in_time: Callable[[], object] = never_late  # raises BudgetSpentError when the time is up
     # seed → number of candidates that earned too little on it
     misses: Counter[int] = field(default_factory=Counter)
     totals: list[float] = field(default_factory=list)
@@ -196,6 +201,7 @@ class Trials:
     def charge(self) -> None:
         """Count an episode that is about to run in the designed world. Raise BudgetSpentError."""
         self._afford()
+        self.in_time()
         self.beside += 1
 
     def gain(self, candidate: Candidate, pairs: Iterable[Pair]) -> float:
