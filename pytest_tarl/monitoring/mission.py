@@ -51,7 +51,7 @@ Steps = tuple[Table, bytes, bytes]
 class Mission(NamedTuple):
     """A finished mission, its cells that the recording lacks, and the progress in its log.
 
-    `begun` is the progress when the log was opened; from there, the log was read up to the record at `last`.
+    `begun` is the progress from which this run read the log; it read up to the record at `last`.
     """
 
     passed: bool

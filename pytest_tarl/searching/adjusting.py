@@ -22,7 +22,7 @@ LEAST = 0.5  # minimum gain of a unit whose exact value is searched, as a share 
 REFINED = 8  # maximum number of runs that refine one operand
 # maximum number of consecutive refinements without progress, for an operand that gains less than `PROMISING`
 IDLE = 2
-# a named constant with a sharp peak is refined nevertheless if the factors on both sides of it have at least this ratio
+# a named constant with a sharp peak is refined if the factors on both sides of the peak have at least this ratio
 WIDE = 1.4
 AMID = 6  # maximum number of constants that are tried at once between two steps
 MORE = 0.05  # minimum increase of the gain, as a share of the wanted gain

@@ -74,7 +74,9 @@ class Settled:
 
 
 class ForwardSelection:
-    """Combine units; `gains` are the gains of single units by factor, `slack` is the smallest gain that matters.
+    """Combine changes of several units.
+
+    `gains` maps each unit to its gains when it alone is changed, by factor. Gains below `slack` do not matter.
 
     If a confirmed combination has only one part that is needed, `preferred` yields the changes that come before it.
     """

@@ -11,7 +11,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, item_field
 from tarl_lint.memory.values import Key, Nodes, Obj, Value, lineage
 
-RETURNED = "<return>"  # pseudo-variable of a function's result
+RETURNED = "<return>"  # pseudo-variable that stands for a function's result
 # kinds of expressions that may copy the value of a variable
 COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)
 

@@ -84,7 +84,7 @@ def framed(text: str, span: Span, view: View = View()) -> list[str]:  # noqa: B0
     return [plain(line).rstrip() for line in frame(text.split("\n"), span, "", view)]
 
 
-def test_a_frame_has_the_lines_before_and_carets_below_each_line_of_the_span():
+def test_a_frame_shows_the_lines_before_the_span_and_carets_below_its_lines():
     text = "\n\na = 1\nf(\n  x,\n)\nb"
     assert framed(text, Span("n", 4, 1, 6, 2)) == [
         "   3 │ a = 1",

@@ -41,7 +41,7 @@ def test_in_an_unchanged_text_all_read_lines_keep_their_numbers():
     assert found == {line: line for line in (1, 3, 4, 5, 7, 10, 11, 12, 14, 15)}
 
 
-def test_an_edit_of_blank_lines_comments_or_unread_bodies_only_moves_lines():
+def test_edits_that_the_analysis_ignores_only_shift_line_numbers():
     new = OLD.replace("import a\n", "# first\n\nimport a\n").replace("return 1", "z = 1\n        return z")
     found = moved(new)
     assert found is not None

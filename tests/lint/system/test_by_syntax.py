@@ -212,7 +212,7 @@ def test_a_function_of_another_module_may_return_the_profile():
     assert of_call(Outline(call), at, [Outline(ast.parse(two))]) is None
 
 
-def test_no_quality_of_service_is_read_at_a_position_without_a_call():
+def test_the_quality_of_service_is_unknown_where_there_is_no_call():
     assert of_call(Outline(ast.parse("f(1)")), (1, 0, 1, 3)) is None
 
 

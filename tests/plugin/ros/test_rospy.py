@@ -117,7 +117,7 @@ def test_subscribers_do_not_see_what_the_publisher_changes_later(start: Start) -
     assert ros.namespace["got"][0].linear.x == 0.0
 
 
-def test_publish_accepts_fields_by_position_or_keyword_and_messages(start: Start) -> None:
+def test_publish_accepts_a_message_or_its_fields_by_position_or_keyword(start: Start) -> None:
     ros = Ros()
     said = heard(ros, "/x")
     with ros.installed():

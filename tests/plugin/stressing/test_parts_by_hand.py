@@ -139,7 +139,7 @@ def test_a_vector_beyond_the_ranges_is_clipped_and_rounding_errors_vanish() -> N
     assert NOMINAL.point(np.array([-1e-11, 0.0]))["mud"] < 4.0
 
 
-def test_the_ends_of_the_coordinates_and_the_changed_options_are_known() -> None:
+def test_a_base_knows_the_range_of_each_coordinate_and_the_options_it_changes() -> None:
     assert (NOMINAL.low.tolist(), NOMINAL.high.tolist()) == ([-1.0, -0.5], [0.0, 0.5])
     assert (NOMINAL.options, OTHER.options) == (0, 1)
     assert list(NOMINAL.spans) == ["mud", "slope"]
