@@ -30,7 +30,7 @@ TUTORIAL = ROOT / "docs" / "tutorial.md"
 BLOCK = re.compile(
     r"(<!-- nightly -->\n)?^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```$", re.MULTILINE | re.DOTALL
 )
-VARIES = re.compile(r"\bin \d+\.\d+s\b|\b[0-9a-f]{7,}\b")
+VARIES = re.compile(r"\bin \d+\.\d+s\b(?: \(\d+:\d\d:\d\d\))?|\b[0-9a-f]{7,}\b")
 LEFT_OUT = re.compile(r"^\.\.\.\n", re.MULTILINE)
 END = "__end of output__"
 LIMIT = 300  # time limit of a command in s
