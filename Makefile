@@ -1,7 +1,7 @@
-# make demo: install, then lint → record → on-line → repair on examples/shuttle
+# make demo: install, then lint → record → compare → repair on examples/shuttle
 # make test: install, then lint, types, import contracts, tests and the demo
 # make docs: the documentation site in build/site; docs-assets fetches the fonts and scripts that it ships, once
-# make test-docs: the whole site in a browser
+# make test-docs: the whole site and a report page in a browser, with axe
 # make test-ros1, make test-ros2: the examples and the probes on a real ROS, in an environment of its own
 
 PYTHON ?= python3
@@ -42,7 +42,7 @@ docs-assets: setup
 	$(BIN)/python -m website.build --fetch
 
 test-docs: docs docs-assets
-	TARL_SITE=build/site $(BIN)/python -m pytest -q tests/site
+	TARL_SITE=build/site $(BIN)/python -m pytest -q tests/site tests/plugin/report/test_browser.py
 
 setup: $(INSTALLED)
 
