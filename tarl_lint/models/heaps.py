@@ -1,0 +1,23 @@
+"""Models of `heapq` that take elements out of a list."""
+
+from __future__ import annotations
+
+from tarl_lint.interpret import call_contexts
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.memory.values import Value
+from tarl_lint.models import containers, removal
+
+
+def popped(ctx: Interpreter, it: Invocation) -> Value:
+    """Remove the smallest element and return it; the remaining elements depend on the values that are compared."""
+    if not it.arguments[0]:
+        return Value(call_contexts.all_used(ctx, it.arguments))
+    base = it.arguments[0][0]
+    result = containers.elements_of_any(ctx, base)
+    decided = removal.decision(ctx, it.frame, it.call.slot, ctx.use(result), counts=base.deps)
+    for obj in base.objects:
+        if obj.kind in removal.CONTAINERS:
+            removal.scatter(ctx, obj, decided)
+    containers.shorten(ctx, base, it.frame, it.call)
+    return Value(result.deps | base.deps, result.pts, result.consts)
