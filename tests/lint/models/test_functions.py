@@ -297,6 +297,10 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(list(NAME(lambda v: 1.0, msg.items))[0])  # clean
         out.publish(len(list(NAME(lambda v: 1.0, msg.items))))  # data
     """,
+    ("heapq.heappop",): """
+        out.publish(NAME([0.0, msg.data]))  # data
+        out.publish(NAME([0.0, 1.0]))  # clean
+    """,
     ("functools.reduce",): """
         out.publish(NAME(lambda total, x: total + x, [1.0, msg.data]))  # data
         out.publish(NAME(lambda total, x: total + 1.0, [1.0, msg.data], 0.0))  # clean
