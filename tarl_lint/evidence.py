@@ -10,7 +10,7 @@ from typing import Final
 
 from tarl_lint.flows.reachability import Tracer
 from tarl_lint.ir.nodes import Pos
-from tarl_lint.model import Finding, Flow, Source, Span
+from tarl_lint.model import Finding, Flow, Span
 from tarl_lint.rules.limits.range_checks import limits
 from tarl_lint.trees import children, last_name, walk
 
@@ -144,10 +144,6 @@ class Evidence:
     def span(self, path: str, pos: Pos) -> Span:
         """Return a position as a span."""
         return self.tracer.texts[path].stretch(pos)
-
-    def source(self, path: str, pos: Pos) -> Source:
-        """Return a subscription by its place."""
-        return self.tracer.ends.source(self.machine.sources[path, pos])
 
     def finding(self, code: str, span: Span, message: str, about: str) -> Finding:
         """Return a hazard. `about` identifies the hazard without lines and names of local variables."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from tarl_lint.flows.apart import named_first, told_apart
 from tarl_lint.flows.choices import Choices, Made
 from tarl_lint.flows.ends import Ends
 from tarl_lint.flows.parts import Part, Parts
@@ -38,6 +39,10 @@ class Tracer:
         self.graph = machine.graph
         self.texts = Texts(machine.modules)
         self.ends = Ends(self.texts, machine.sinks.values())
+        # for a launch file, every call context has its own source
+        self.apart = not machine.launching
+        records = machine.sources.values()
+        self.sources = told_apart(records) if self.apart else list(records)
         self.forward_data = _reversed(self.graph.data)
         self.forward_control = _reversed(self.graph.control)
         self.choices = Choices(self.graph)
@@ -47,9 +52,11 @@ class Tracer:
 
     def flows(self) -> tuple[Flow, ...]:
         """Return every flow, sorted by sink and source."""
-        sources = [(self.ends.source(r), r, self.reach(r)) for r in self.machine.sources.values()]
-        found = (flow for sink in self.machine.sinks.values() for flow in self.flows_into(sink, sources))
-        return tuple(sorted(found, key=lambda f: (f.sink.span, f.source.span)))
+        sources = [(self.ends.source(r), r, self.reach(r)) for r in self.sources]
+        sinks = self.machine.sinks.values()
+        into = (self.flows_into(sink, sources) for sink in sinks)
+        found = (flow for flows in into for flow in (named_first(flows) if self.apart else flows))
+        return tuple(sorted(found, key=lambda f: (f.sink.span, f.source.span, f.source.topics)))
 
     def reach(self, record: SourceRecord) -> Reach:
         """Return the nodes that messages of a source reach."""

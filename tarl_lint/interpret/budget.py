@@ -36,3 +36,4 @@ LARGE_RUN = 500  # a root whose last run took at least this many statements is r
 MAX_GENERATIONS = 1  # maximum number of nested restarts of a thread or callback that starts itself
 # maximum number of objects of one class with separate roots for a method that a thread or framework runs
 MAX_ALIKE = 6
+MAX_APART = 24  # maximum number of sources at one call that are told apart by their topics

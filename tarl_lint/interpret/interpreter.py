@@ -82,8 +82,9 @@ class Interpreter:
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.given: set[Obj] = set()  # objects among the arguments of roots
         self.passed: dict[Hashable, list[Value]] = {}  # root → its arguments
-        # sources by path and position; for a launched node, also by context
+        # sources by path, position and topics; for a launched node, by context instead of topics
         self.sources: dict[Hashable, SourceRecord] = {}
+        self.apart: dict[tuple[str, ir.Pos], int] = {}  # registration → number of its sources
         self.sinks: dict[Hashable, SinkRecord] = {}
         self.called: set[tuple[str, int]] = set()  # called functions: module, line
         # for each instance made by methods: allocation sites and objects, from the first maker to the instance itself

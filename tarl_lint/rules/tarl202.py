@@ -172,15 +172,15 @@ def ruled_out(side: Side) -> bool:  # noqa: ARG001 - shared signature
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
     """Yield a hazard for each statement that computes an unlimited part of a command."""
-    pairs = {(f.source.span, f.sink.span) for f in evidence.flows if f.kind == "explicit" and _hazardous(f)}
+    pairs = {(f.source, f.sink) for f in evidence.flows if f.kind == "explicit" and _hazardous(f)}
     if not pairs:
         return
     found: dict[Span, tuple[set[Source], set[Sink]]] = {}
-    for origin in evidence.machine.sources.values():
-        span = evidence.span(origin.path, origin.pos)
-        records = [
-            s for s in evidence.machine.sinks.values() if (span, evidence.span(s.path, s.pos)) in pairs
-        ]
+    ends = evidence.tracer.ends
+    calls = [(record, ends.sink(record)) for record in evidence.machine.sinks.values()]
+    for origin in evidence.tracer.sources:
+        source = ends.source(origin)
+        records = [record for record, sink in calls if (source, sink) in pairs]
         if records:
             _add(found, evidence, origin, records)
     for span, (sources, sinks) in found.items():

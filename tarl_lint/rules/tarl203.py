@@ -15,6 +15,7 @@ from typing import Final
 
 from tarl_lint.evidence import Evidence
 from tarl_lint.fingerprints import topic_text
+from tarl_lint.flows.apart import by_line, merged
 from tarl_lint.ir.nodes import Function
 from tarl_lint.model import Finding
 from tarl_lint.models.ros.endpoints import SourceRecord
@@ -127,15 +128,15 @@ def _functions(body: Sequence[ast.stmt]) -> Iterator[ast.FunctionDef | ast.Async
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
     """Yield a hazard for each subscription whose callbacks have no effect."""
-    for record in evidence.machine.sources.values():
-        functions = _callbacks(evidence, record) if record.kind == "topic" else []
+    for records in by_line(evidence.machine.sources.values()):
+        functions = _callbacks(evidence, records)
         if not functions or any(_meant(f) for f, _ in functions):
             continue
         kept = [_kept(function, path, evidence) for function, path in functions]
         names = {name for stores in kept for name in stores or ()}
         if any(stores is None for stores in kept) or (names and not _unread(names, functions, evidence)):
             continue
-        source = evidence.tracer.ends.source(record)
+        source = evidence.tracer.ends.source(merged(records))
         reason = "ignores it"
         if names:
             reason = f"stores it in {', '.join(sorted(names))}, which nothing reads"
@@ -144,16 +145,17 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
         yield evidence.finding(CODE, source.span, message, about)
 
 
-def _callbacks(evidence: Evidence, record: SourceRecord) -> list[tuple[Function, str]]:
-    """Return a subscription's callbacks with their files; empty if one of them is unknown."""
+def _callbacks(evidence: Evidence, records: Sequence[SourceRecord]) -> list[tuple[Function, str]]:
+    """Return the callbacks of the subscriptions at one line, with their files; empty if one of them is unknown."""
     found: list[tuple[Function, str]] = []
-    if "ubscri" not in record.api:
+    if records[0].kind != "topic" or "ubscri" not in records[0].api:
         return found  # the rule is about subscriptions: a service handler is allowed to ignore its request
-    for node in sorted(record.nodes):
-        place = evidence.machine.graph.places[node]
-        if place.statement is not None or place.frame is record.frame:
-            return []
-        found.append((place.frame.function, place.frame.program.path))
+    for record in records:
+        for node in sorted(record.nodes):
+            place = evidence.machine.graph.places[node]
+            if place.statement is not None or place.frame is record.frame:
+                return []
+            found.append((place.frame.function, place.frame.program.path))
     return found
 
 

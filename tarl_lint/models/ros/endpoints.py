@@ -24,7 +24,8 @@ class DefaultName(str):
 class SourceRecord:
     """A subscription: its place, its topics, and the nodes at which its messages arrive.
 
-    `key` distinguishes the subscriptions made at one place, which a launch file may give different names.
+    `key` distinguishes the subscriptions made at one place, which have different topics or, for a launch file, call
+    contexts. `contexts` are the call contexts and iterations of unrolled loops in which the place is reached.
     `types` are the last parts of the types' names; `whole_types` are types with packages ("" if that is unknown).
     """
 
@@ -45,6 +46,7 @@ class SourceRecord:
     via: set[tuple[str, ir.Pos]] = field(default_factory=set)
     messages: dict[Hashable, Obj] = field(default_factory=dict)
     kind: Kind = "topic"
+    contexts: set[tuple[Hashable, ...]] = field(default_factory=set)
 
 
 @dataclass(slots=True, eq=False)

@@ -18,7 +18,7 @@ def never_both(evidence: Evidence, first: object, second: object) -> bool:
 def _ways(evidence: Evidence, thread: tuple[object, ...]) -> dict[ast.If, bool]:
     """Return the conditions around the registration of a callback, each with the outcome that leads to it."""
     what = thread[0] if thread else None
-    if not isinstance(what, tuple) or len(what) != 3 or not isinstance(what[1], str):
+    if not isinstance(what, tuple) or len(what) < 3 or not isinstance(what[1], str):
         return {}
     outline = evidence.outline(what[1])
     node: ast.AST | None = outline.call(what[2])

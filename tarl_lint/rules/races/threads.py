@@ -52,20 +52,21 @@ class Threads:
     def _root(self, root: Root, path: str) -> object:
         if root.kind in MAIN_KINDS:
             return self._main(path)
-        what = root.key[0] if isinstance(root.key, tuple) else None
-        if not isinstance(what, tuple) or len(what) != 3:
+        what, *target = root.key if isinstance(root.key, tuple) else (None,)
+        if not isinstance(what, tuple) or len(what) < 3:
             return None
-        kind, where, pos = what
+        kind, where, pos, *_ = what  # the rest are topics
         if kind == "thread":
             return root.key
         if kind not in CALLED_BY_ROS:
             return None
-        return self._group(where, pos, root) if self._rclpy(where) else root.key
+        key = ((kind, where, pos), *target)
+        return self._group(where, pos, key) if self._rclpy(where) else key
 
     def _rclpy(self, path: str) -> bool:
         return self.machine.modules[path].contains("rclpy")
 
-    def _group(self, path: str, pos: Pos, root: Root) -> object:
+    def _group(self, path: str, pos: Pos, key: object) -> object:
         """Return the thread of an rclpy callback: callbacks of a mutually exclusive group never overlap."""
         if not self.several:
             return EXECUTOR
@@ -75,7 +76,7 @@ class Threads:
             return "default group"
         text = ast.unparse(given)
         if isinstance(given, ast.Call) or "ReentrantCallbackGroup" in set(self._made(path, text)):
-            return root.key
+            return key
         return f"group {text}"
 
     def _made(self, path: str, target: str) -> Iterator[str]:
