@@ -7,9 +7,9 @@ parts directly, and higher parts through `ctx.ops` (declared in `operations.py`,
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 
-from tarl_lint.interpret.budget import READS_PER_STATEMENT
+from tarl_lint.interpret.budget import MAX_APART, READS_PER_STATEMENT
 from tarl_lint.interpret.operations import Operations
 from tarl_lint.interpret.state import NullnessFacts, Work
 from tarl_lint.ir import nodes as ir
@@ -136,6 +136,20 @@ class Interpreter:
     def end_key(self, path: str, pos: ir.Pos, frame: Frame) -> tuple[Hashable, ...]:
         """Return the key of a flow's end; for a launch, also by call context and iteration of an unrolled loop."""
         return (path, pos, frame.id, *frame.turn) if self.launching else (path, pos)
+
+    def source_key(
+        self, path: str, pos: ir.Pos, frame: Frame, topics: Collection[str]
+    ) -> tuple[Hashable, ...]:
+        """Return the key of a subscription: for a launch as for any end, else by topics, up to MAX_APART for a call."""
+        place = (path, pos)
+        key = self.end_key(path, pos, frame) if self.launching else (*place, *sorted(topics))
+        if self.launching or key in self.sources:
+            return key
+        known = self.apart.setdefault(place, 0)
+        if known >= MAX_APART:
+            return place
+        self.apart[place] = known + 1
+        return key
 
     @property
     def total(self) -> int:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
 from itertools import zip_longest
 from typing import Final
 
 from tarl_lint import catalog
 from tarl_lint.interpret import call_contexts, calls
-from tarl_lint.interpret.budget import MAX_ALIKE, MAX_APART, MAX_GENERATIONS
+from tarl_lint.interpret.budget import MAX_ALIKE, MAX_GENERATIONS
 from tarl_lint.interpret.call_contexts import CALLABLE, ROOT_CALL
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
@@ -42,7 +42,7 @@ def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
         place = place.caller
     path = place.program.path
     topics = publications.topics(ctx, it)
-    key = _key(ctx, path, pos, place, topics)
+    key = ctx.source_key(path, pos, place, topics)
     record = ctx.sources.get(key)
     if record is None:
         assert statement is not None  # noqa: S101 - a call stands in a statement
@@ -57,23 +57,6 @@ def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
     record.types.update(type_names(it.argument(it.fact.type)))
     record.whole_types.update(whole_type_names(it.argument(it.fact.type)))
     return record
-
-
-def _key(
-    ctx: Interpreter, path: str, pos: ir.Pos, frame: Frame, topics: Collection[str]
-) -> tuple[Hashable, ...]:
-    """Return the key of a subscription: for a launch, by call context, else by topics, up to a number for each call."""
-    if ctx.launching:
-        return ctx.end_key(path, pos, frame)
-    place = (path, pos)
-    key = (*place, *sorted(topics))
-    if key in ctx.sources:
-        return key
-    known = ctx.apart.setdefault(place, 0)
-    if known >= MAX_APART:
-        return place
-    ctx.apart[place] = known + 1
-    return key
 
 
 def call_position(frame: Frame) -> ir.Pos:
