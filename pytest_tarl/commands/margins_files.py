@@ -53,8 +53,10 @@ def _at(revision: str, inner: str) -> list[Margins]:
             f"git is not installed, so {revision} cannot be read: install git, or compare two files."
         )
     if _git("rev-parse", "--verify", "--quiet", f"{revision}^{{commit}}") is None:
-        raise FixtureError(f"{revision}: git does not know this revision. In CI, fetch it first; "
-            "`tarl diff --help` shows how to compare two recordings, reports or revisions.")
+        raise FixtureError(
+            f"{revision}: git does not know this revision. In CI, fetch it first; "
+            "`tarl diff --help` shows how to compare two recordings, reports or revisions."
+        )
     place = inner.removesuffix("/")
     found = _git("ls-tree", "-z", "--name-only", revision, "--", place, f"{place}/") or b""
     names = [one for one in found.decode(errors="surrogateescape").split("\0") if one.endswith(".json")]
