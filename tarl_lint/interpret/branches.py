@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarl_lint.interpret import dunder_methods, expressions, operators
+from tarl_lint.interpret import dunder_methods, expressions, node_starts, operators
 from tarl_lint.interpret.budget import MAX_STATEMENTS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
@@ -59,7 +59,7 @@ def if_statement(ctx: Interpreter, s: ir.If, frame: Frame) -> bool:
 def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
     """Repeat the body until the state at the loop head is stable. Return whether execution continues."""
     source = expressions.evaluate(ctx, s.source, frame) if s.target is not None else BOTTOM
-    if s.target is not None and (elements := _told_apart(ctx, s, source)):
+    if s.target is not None and (elements := _told_apart(ctx, s, source, frame)):
         return _turns(ctx, s, s.target, source, elements, frame)
     depth = len(ctx.store.layers)
     head = _first_head(ctx, s, frame)
@@ -100,8 +100,11 @@ def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
     return {} if known is None else joins.joined(ctx, [{}, known])
 
 
-def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value) -> list[Value]:
-    """Return the elements to unroll a loop over; [] if they are unknown, too many, or carry no data."""
+def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame) -> list[Value]:
+    """Return the elements to unroll a loop over; [] if they are unknown or too many.
+
+    A loop is only unrolled if its elements carry data, or if its body registers inputs, which have topics of their own.
+    """
     elements = sizes.unpacked(ctx, source) or []
     if any(o.name == heap.MEMBERS for o in source.pts):
         return elements
@@ -109,7 +112,9 @@ def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value) -> list[Value]:
     limit = sizes.MAX_KNOWN if plain else MAX_EXACT_TURNS if ctx.exact else MAX_TURNS
     if not 1 < len(elements) <= limit:
         return []
-    if ctx.exact:
+    # the node of a file's own code does not contain its statements
+    scope = frame.function.node if frame.function.name else ctx.modules[frame.program.path].tree
+    if ctx.exact or node_starts.registers_in(s, scope):
         return elements  # such a loop iterates, for example, over groups of command-line arguments
     ctx.look(o for v in elements for o in v.pts)
     laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)

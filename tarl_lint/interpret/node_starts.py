@@ -68,6 +68,27 @@ def starts(function: ir.Function) -> bool:
     return function.starts
 
 
+def registers_in(loop: ir.Loop, scope: ast.AST) -> bool:
+    """Return whether the body of a loop contains a call that registers an input; `scope` is the tree around it."""
+    if loop.registers is None:
+        line, column = loop.pos[:2]
+        inside = (
+            n
+            for node in walk(scope)
+            if isinstance(node, (ast.For, ast.AsyncFor)) and (node.lineno, node.col_offset) == (line, column)
+            for part in node.body
+            for n in walk(part)
+        )
+        loop.registers = any(isinstance(n, ast.Call) and _name(n.func) in REGISTERING for n in inside)
+    return loop.registers
+
+
+def _name(called: ast.expr) -> str:
+    if isinstance(called, ast.Attribute):
+        return called.attr
+    return called.id if isinstance(called, ast.Name) else ""
+
+
 def _holds(node: ast.AST) -> bool:
     """Return whether an expression is a method that registers something, or its name as for `getattr`."""
     if isinstance(node, ast.Attribute):

@@ -250,6 +250,7 @@ class Loop(Stmt):
     body: Sequence[Stmt]
     orelse: Sequence[Stmt]
     endless: bool = False
+    registers: bool | None = None  # whether the body registers an input; None until somebody asks
 
 
 @dataclass(slots=True, eq=False)

@@ -73,8 +73,11 @@ def test_the_topic_is_found_through_a_helper():
     assert topics('subscribe(prefix + "/in", on_value)') == [("robot/in",)]
 
 
-def test_a_loop_subscribes_to_all_its_topics():
-    assert topics("for name in NAMES:\n    rospy.Subscriber(name, Float64, on_value)") == [("left", "right")]
+def test_a_loop_subscribes_to_each_of_its_topics():
+    assert topics("for name in NAMES:\n    rospy.Subscriber(name, Float64, on_value)") == [
+        ("left",),
+        ("right",),
+    ]
 
 
 def test_remapped_topics_have_their_new_name():
@@ -91,4 +94,4 @@ def test_names_in_nested_tables_are_found():
     code = (
         f'for (s, _), (p, _) in [{rows}]:\n    rospy.Subscriber("/{{}}/%s".format(s) % p, Float64, on_value)'
     )
-    assert topics(code) == [tuple(f"/s{n}/p" for n in range(6))]
+    assert topics(code) == [(f"/s{n}/p",) for n in range(6)]

@@ -9,6 +9,7 @@ from tarl_lint.model import Flow
 from tarl_lint.run.runner import run
 from tarl_lint.settings.config import Config, Options
 from tests.lint.analysing import analysed
+from tests.lint.models.marked import flows
 
 HELPER = """
 import rospy
@@ -154,3 +155,36 @@ def test_a_helper_whose_uses_are_all_read_has_no_unused_subscription(tmp_path):
     )
     (found,) = run(Options((tmp_path,), jobs=1, cache=False), chosen).findings
     assert "level, stop" in found.message
+
+
+TABLES = {
+    "callbacks in a table": """
+def on_a(msg):
+    out.publish(msg.data)
+def on_b(msg):
+    other.publish(msg.data)
+for topic, callback in (("a", on_a), ("b", on_b)):
+    rospy.Subscriber(topic, Float64, callback)
+""",
+    "callbacks in a list, in a function": """
+def on_a(msg):
+    out.publish(msg.data)
+def on_b(msg):
+    other.publish(msg.data)
+def main():
+    for topic, callback in [("a", on_a), ("b", on_b)]:
+        name = topic
+        rospy.Subscriber(name, Float64, callback)
+main()
+""",
+}
+
+
+@pytest.mark.parametrize("body", TABLES.values(), ids=TABLES)
+def test_subscriptions_in_a_loop_over_a_table_are_told_apart(body: str) -> None:
+    head = "import rospy\nfrom std_msgs.msg import Float64\n"
+    head += "".join(
+        f'{name} = rospy.Publisher("{name}", Float64, queue_size=1)\n' for name in ("out", "other")
+    )
+    found = {(f.source.topics, f.sink.topics) for f in flows(head + body)}
+    assert found == {(("a",), ("out",)), (("b",), ("other",))}
