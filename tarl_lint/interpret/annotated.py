@@ -11,6 +11,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, instances, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import UNKNOWN, Obj, Value, join_all, pointer
+from tarl_lint.trees import last_name
 
 SEQUENCES: Final = frozenset(
     ["list", "List", "Sequence", "Iterable", "tuple", "Tuple", "set", "Set", "Collection"]
@@ -27,7 +28,7 @@ def handed(ctx: Interpreter, frame: Frame, name: str) -> Value:
     classes = _classes(ctx, module, annotation)
     ctx.wanted.update(classes)
     given = [instances.of_class(ctx, cls) for cls in classes]
-    several = isinstance(annotation, ast.Subscript) and _last_name(annotation.value) in SEQUENCES
+    several = isinstance(annotation, ast.Subscript) and last_name(annotation.value) in SEQUENCES
     value = join_all(one for one in given if one.pts)
     if not value.pts:
         return UNKNOWN
@@ -79,13 +80,7 @@ def _names(annotation: ast.expr) -> Iterator[str]:
     elif isinstance(annotation, ast.BinOp):
         yield from _names(annotation.left)
         yield from _names(annotation.right)
-    elif isinstance(annotation, ast.Subscript) and _last_name(annotation.value) in SEQUENCES | WRAPPERS:
+    elif isinstance(annotation, ast.Subscript) and last_name(annotation.value) in SEQUENCES | WRAPPERS:
         inner = annotation.slice
         for one in inner.elts if isinstance(inner, ast.Tuple) else [inner]:
             yield from _names(one)
-
-
-def _last_name(expr: ast.expr) -> str:
-    if isinstance(expr, ast.Attribute):
-        return expr.attr
-    return expr.id if isinstance(expr, ast.Name) else ""

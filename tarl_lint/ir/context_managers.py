@@ -18,7 +18,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
 from tarl_lint.ir.scopes import Scope, collect
-from tarl_lint.trees import walk
+from tarl_lint.trees import last_name, walk
 
 LEAVE: Final = "<leave>"  # name of the function that runs after the body of the `with`
 DECORATORS: Final = frozenset(["contextmanager", "asynccontextmanager"])
@@ -35,15 +35,9 @@ class _Parts(NamedTuple):
 
 def divided(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Sequence[ast.stmt]:
     """Return the body of a function; if it is the generator of a context manager, in two parts."""
-    if not any(_last_name(d) in DECORATORS for d in node.decorator_list) or _yields(node.body) != 1:
+    if not any(last_name(d) in DECORATORS for d in node.decorator_list) or _yields(node.body) != 1:
         return node.body
     return _rebuilt(node.body, node) or node.body
-
-
-def _last_name(decorator: ast.expr) -> str:
-    if isinstance(decorator, ast.Attribute):
-        return decorator.attr
-    return decorator.id if isinstance(decorator, ast.Name) else ""
 
 
 def _rebuilt(
