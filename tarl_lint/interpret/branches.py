@@ -59,7 +59,7 @@ def if_statement(ctx: Interpreter, s: ir.If, frame: Frame) -> bool:
 def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
     """Repeat the body until the state at the loop head is stable. Return whether execution continues."""
     source = expressions.evaluate(ctx, s.source, frame) if s.target is not None else BOTTOM
-    if s.target is not None and (elements := _told_apart(ctx, s, source, frame)):
+    if s.target is not None and (elements := _told_apart(ctx, s, source)):
         return _turns(ctx, s, s.target, source, elements, frame)
     depth = len(ctx.store.layers)
     head = _first_head(ctx, s, frame)
@@ -100,7 +100,7 @@ def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
     return {} if known is None else joins.joined(ctx, [{}, known])
 
 
-def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame) -> list[Value]:
+def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value) -> list[Value]:
     """Return the elements to unroll a loop over; [] if they are unknown or too many.
 
     A loop is only unrolled if its elements carry data, or if its body registers inputs, which have topics of their own.
@@ -112,9 +112,7 @@ def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame) -> li
     limit = sizes.MAX_KNOWN if plain else MAX_EXACT_TURNS if ctx.exact else MAX_TURNS
     if not 1 < len(elements) <= limit:
         return []
-    # the node of a file's own code does not contain its statements
-    scope = frame.function.node if frame.function.name else ctx.modules[frame.program.path].tree
-    if ctx.exact or node_starts.registers_in(s, scope):
+    if ctx.exact or node_starts.registers_in(s):
         return elements  # such a loop iterates, for example, over groups of command-line arguments
     ctx.look(o for v in elements for o in v.pts)
     laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from tarl_lint import catalog
 from tarl_lint.ir import nodes as ir
-from tarl_lint.trees import walk
+from tarl_lint.trees import last_name, walk
 
 KINDS = frozenset(
     ["subscribe", "receive", "filter", "service", "action"]
@@ -68,25 +68,12 @@ def starts(function: ir.Function) -> bool:
     return function.starts
 
 
-def registers_in(loop: ir.Loop, scope: ast.AST) -> bool:
-    """Return whether the body of a loop contains a call that registers an input; `scope` is the tree around it."""
+def registers_in(loop: ir.Loop) -> bool:
+    """Return whether the body of a `for` contains a call that registers an input."""
     if loop.registers is None:
-        line, column = loop.pos[:2]
-        inside = (
-            n
-            for node in walk(scope)
-            if isinstance(node, (ast.For, ast.AsyncFor)) and (node.lineno, node.col_offset) == (line, column)
-            for part in node.body
-            for n in walk(part)
-        )
-        loop.registers = any(isinstance(n, ast.Call) and _name(n.func) in REGISTERING for n in inside)
+        calls = (n for n in walk(*loop.nodes) if isinstance(n, ast.Call))
+        loop.registers = any(last_name(call.func) in REGISTERING for call in calls)
     return loop.registers
-
-
-def _name(called: ast.expr) -> str:
-    if isinstance(called, ast.Attribute):
-        return called.attr
-    return called.id if isinstance(called, ast.Name) else ""
 
 
 def _holds(node: ast.AST) -> bool:

@@ -250,7 +250,8 @@ class Loop(Stmt):
     body: Sequence[Stmt]
     orelse: Sequence[Stmt]
     endless: bool = False
-    registers: bool | None = None  # whether the body registers an input; None until somebody asks
+    nodes: Sequence[ast.stmt] = ()  # the syntax trees of the body of a `for`
+    registers: bool | None = None  # whether the body registers an input; None until computed
 
 
 @dataclass(slots=True, eq=False)
