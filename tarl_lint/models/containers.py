@@ -236,11 +236,16 @@ def _removed(ctx: Interpreter, it: Invocation) -> Value:
     decides = call_contexts.all_used(ctx, it.arguments) | ctx.use(elements_of_any(ctx, it.base))
     counts = it.base.deps | (decides if it.name == "discard" else NONE)
     decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=counts)
-    for obj in it.base.objects:
+    take_any(ctx, it.base, decided, it.frame, it.call)
+    return UNKNOWN
+
+
+def take_any(ctx: Interpreter, base: Value, decided: removal.Decision, frame: Frame, call: ir.Call) -> None:
+    """Remove an element at an unknown place of containers."""
+    for obj in base.objects:
         if obj.kind in removal.CONTAINERS:
             removal.scatter(ctx, obj, decided)
-    shorten(ctx, it.base, it.frame, it.call)
-    return UNKNOWN
+    shorten(ctx, base, frame, call)
 
 
 def _reversed(ctx: Interpreter, it: Invocation) -> Value:

@@ -16,8 +16,5 @@ def popped(ctx: Interpreter, it: Invocation) -> Value:
     base = it.arguments[0][0]
     result = containers.elements_of_any(ctx, base)
     decided = removal.decision(ctx, it.frame, it.call.slot, ctx.use(result), counts=base.deps)
-    for obj in base.objects:
-        if obj.kind in removal.CONTAINERS:
-            removal.scatter(ctx, obj, decided)
-    containers.shorten(ctx, base, it.frame, it.call)
+    containers.take_any(ctx, base, decided, it.frame, it.call)
     return Value(result.deps | base.deps, result.pts, result.consts)
