@@ -106,15 +106,7 @@ class Structures:
         found = [self._evident(known, places), self._told(known, places, varying)]
         bare = [self._once(known, places), self._gains_of_commands(known, places)] if once else []
         groups = [*bare, *(_Group(operands, lambda share, _: share // 2) for operands in found)]
-        trials = self.trials
-        budget, reserve, worth, spent = trials.budget, trials.reserve, trials.worth, trials.spent
-        trials.budget = min(spent + 2 * most, budget)
-        try:
-            yield from self._searched([group for group in groups if group.operands], brief=True)
-        except BudgetSpentError:
-            pass
-        finally:
-            trials.budget, trials.reserve, trials.worth = budget, reserve, worth
+        yield from self._briefly(groups, 2 * most)
 
     def surest(self, most: int, symptoms: bool = True) -> Iterator[Candidate]:
         """Yield confirmed candidates of factors on built fields, and of the changes with the clearest symptoms.
@@ -125,6 +117,10 @@ class Structures:
         built = [spot for spot in places if spot.kind == FIELD]
         fields = [operand for one in known if one.on == FIELD for operand in self._at(one, built, first=None)]
         groups = [_Group(fields), _Group(self._evident(known, places, SURE)[:SUREST] if symptoms else [])]
+        yield from self._briefly(groups, most)
+
+    def _briefly(self, groups: Sequence[_Group], most: int) -> Iterator[Candidate]:
+        """Search groups within `most` further episodes, then restore the budget of the trials."""
         trials = self.trials
         budget, reserve, worth = trials.budget, trials.reserve, trials.worth
         trials.budget = min(trials.spent + most, budget)
