@@ -34,13 +34,12 @@ def built_fields(source: Document, statement: ast.stmt) -> list[tuple[ast.expr, 
     function = source.function(statement)
     if published is None or function is None:
         return []
-    message = ast.unparse(published)
+    message, above = ast.unparse(published), list(_before(source, statement, function))
+    made = _is_made(above, message)
     found: list[tuple[ast.expr, Built]] = []
     for field, writes in _writes(function, message, statement).items():
         target = f"{message}.{field}"
-        sure = _is_made(source, statement, message) or any(
-            _sets(before, target) for before in _before(source, statement, function)
-        )
+        sure = made or any(_sets(before, target) for before in above)
         if len(writes) >= FEWEST and sure and _is_number(source, writes):
             found.append((published, Built(field, tuple(writes))))
     return found
@@ -101,10 +100,8 @@ def _leaves(statement: ast.stmt) -> bool:
     return isinstance(statement, ast.Return | ast.Raise | ast.Continue | ast.Break)
 
 
-def _is_made(source: Document, statement: ast.stmt, message: str) -> bool:
-    """Return whether the block of a publish call, or the start of its function, makes the message."""
-    function = source.function(statement)
-    above = _before(source, statement, function) if function is not None else iter(())
+def _is_made(above: Sequence[ast.stmt], message: str) -> bool:
+    """Return whether one of the statements that run before a publish call makes its message."""
     return any(
         isinstance(one, ast.Assign)
         and isinstance(one.value, ast.Call)
