@@ -34,6 +34,7 @@ JUDGING = (
     "drift_judging_17",
     "drift_judging_18",
     "drift_judging_19",
+    "drift_judging_20",
     "drift_structure",
 )
 TASKS = sorted(
@@ -285,6 +286,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "two constants",
     ],
+    "drift_judging_20": [
+        "narrow window",
+        "one constant",
+        "permanent",
+        "range",
+        "rare failures",
+        "sparse reward",
+        "structure",
+        "two constants",
+    ],
 }
 
 
@@ -342,6 +353,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_17",
         "drift_judging_18",
         "drift_judging_19",
+        "drift_judging_20",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
