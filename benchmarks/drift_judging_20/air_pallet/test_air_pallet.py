@@ -63,7 +63,7 @@ class Hall:
         self.gained = -0.001
         if self.at[0] > self.dock[0] + 0.4 and fast > 0.15:
             self.failure = f"pallet hits the stop with {fast:.2f} m/s"
-        elif air and not air.data and self.lift > 0.7 and self.time > 3.0 and fast > 0.15:
+        elif air and not air.data and self.lift > 0.7 and self.time > 3.0 and fast > 0.2:
             self.failure = f"cushions tear, set down at {fast:.2f} m/s"
         elif self.time > 45.0:
             self.failure = "dock waits in vain"
