@@ -6,8 +6,8 @@ Each workspace is one text: its files follow each other, each after a line `--- 
 before the linter was run. For each publish call, it names the subscriptions, services and look-ups of transforms that
 reach the call: with their data (`data`), by a decision (`control`), or only by the fact that a message arrives
 (`event`). `also` lists other kinds that count as right; `weak` marks what does not count, and `why` gives the reason.
-A line that subscribes to several topics has one source for each, `path:line topic`. In `flows_written_2`, sources of
-which only the arrival of a message matters are not listed: a report of one is surplus.
+A line that subscribes to several topics has one source for each, `path:line topic`. Since `flows_written_2`, sources
+of which only the arrival of a message matters are not listed: a report of one is surplus.
 
 The linter runs with `tf2 = true`. Responses of services and results of actions that a node asks for are sources for
 the author of the workspaces, but not for the linter; they are counted apart, as events are.
