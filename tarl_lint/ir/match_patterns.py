@@ -82,9 +82,9 @@ def _elements(
         if isinstance(inner, ast.MatchStar):
             starred = True
             after = len(pattern.patterns) - number - 1
-            bounds: list[ir.Expr] = [ir.Const(number, where)]
-            bounds += [ir.Const(-after, where)] if after else []
-            yield inner, ir.Item(subject, ir.Slice(bounds, where), where)
+            lower, upper = ir.Const(number, where), ir.Const(-after, where) if after else None
+            parts = [lower, upper] if upper is not None else [lower]
+            yield inner, ir.Item(subject, ir.Slice(parts, where, (lower, upper)), where)
         else:
             index = number - len(pattern.patterns) if starred else number
             yield inner, ir.Item(subject, ir.Const(index, where), where)

@@ -176,19 +176,22 @@ def received(ctx: Interpreter, base: Value, arguments: Arguments) -> Nodes:
 def _update(
     ctx: Interpreter, base: Value, plain: list[Value], named: Mapping[str, Value], frame: Frame, call: ir.Call
 ) -> None:
+    certain = len(base.pts) == 1
     for number, value in enumerate(plain):
         news = through_statement(ctx, value, frame, call, number)
+        expr = call.arguments[number] if number < len(call.arguments) else None
         for obj in base.objects:
             if obj.kind == "sequence":
                 updates.add_element(ctx, pointer(obj), heap.elements(ctx, news))
+            elif obj.kind == "mapping" and certain and isinstance(expr, ir.MappingDisplay):
+                sizes.absorb(ctx, obj, news, expr)
             elif obj.kind == "mapping":
                 ctx.ops.entries(ctx, obj, news)
             elif obj.kind in ("lib", "instance"):
                 sizes.absorb(ctx, obj, news)
     for name, value in named.items():
         news = through_statement(ctx, value, frame, call, name)
-        for obj in base.objects:
-            updates.weaken(ctx, obj, heap.attribute_of_item(obj, name), news)
+        updates.write_item(ctx, base, const(name), news)
 
 
 def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: Frame, call: ir.Call) -> None:

@@ -33,8 +33,8 @@ def combined(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: F
         return concatenated(ctx, expr, values, frame)
     if kinds == [{"mapping"}, {"mapping"}]:
         obj = recency.allocate(ctx, "mapping", frame, ("combined", expr.pos))
-        for value in values:
-            absorb(ctx, obj, value)
+        for value, part in zip(values, expr.parts, strict=True):
+            absorb(ctx, obj, value, part)
         return Value(values[0].deps | values[1].deps, frozenset([obj]))
     return None
 
@@ -85,7 +85,10 @@ def grown(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Fram
 
 
 def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: Frame) -> Value:
-    """Return `base[a:b]`: a new sequence for sequences, the elements' value for other objects."""
+    """Return `base[a:b]`: a new sequence for sequences, the elements' value for other objects.
+
+    The elements are tracked separately if those of the base and the bounds are known.
+    """
     bounds = [ctx.ops.evaluate(ctx, part, frame) for part in index.parts]
     extra = NONE
     for bound in bounds:
@@ -95,25 +98,34 @@ def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: F
         return ctx.ops.read_item(ctx, base, Value(extra))
     element = heap.elements(ctx, Value(pts=ours))
     longer = length(ctx, Value(pts=ours)) | extra
-    between = _between(ctx, base, index, frame)
+    between = _between(ctx, base, index, bounds)
     obj = recency.allocate(ctx, "sequence", frame, ("slice", pos))
     for number, value in enumerate(between or ()):
-        ctx.store.put((obj, item_field(number)), value)
-    if between is not None:
+        ctx.store.put((obj, item_field(number)), Value(value.deps | extra, value.pts, value.consts))
+    if between is not None and ctx.exact:
         return pointer(obj)
-    updates.add_element(ctx, pointer(obj), Value(element.deps | extra, element.pts, element.consts))
+    if between is None:
+        updates.add_element(ctx, pointer(obj), Value(element.deps | extra, element.pts, element.consts))
     ctx.store.put((obj, LENGTH), Value(longer))
     return Value(base.deps, frozenset([obj]))
 
 
-def _between(ctx: Interpreter, base: Value, index: ir.Slice, frame: Frame) -> list[Value] | None:
-    """Return the elements that a slice selects from a known command line; None if these elements are not known."""
-    elements = constants(ctx, base) if ctx.exact and index.bounds else None
-    found = [part and ctx.ops.evaluate(ctx, part, frame).constant()[1] for part in index.bounds]
-    ends = [one if isinstance(one, int) else None for one in found]
-    if elements is None or ends != found or 0 in ends[2:]:
+def _between(ctx: Interpreter, base: Value, index: ir.Slice, bounds: list[Value]) -> list[Value] | None:
+    """Return the elements that a slice selects; None if those of the base or the bounds are not known.
+
+    In a known command line, only constants count as known.
+    """
+    elements = constants(ctx, base) if ctx.exact else unpacked(ctx, base)
+    if elements is None or not index.bounds or (len(elements) > MAX_KNOWN and not ctx.exact):
         return None
-    return elements[slice(*ends)]
+    given = iter(bounds)
+    ends: list[int | None] = []
+    for part in index.bounds:
+        known, end = next(given).constant() if part is not None else (True, None)
+        if not known or not (end is None or isinstance(end, int)):
+            return None
+        ends.append(end)
+    return elements[slice(*ends)] if 0 not in ends[2:] else None
 
 
 def constants(ctx: Interpreter, value: Value) -> list[Value] | None:
@@ -137,15 +149,26 @@ def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:
     return found
 
 
-def absorb(ctx: Interpreter, obj: Obj, value: Value) -> None:
-    """Copy the elements of all objects of a value into an object."""
+def absorb(ctx: Interpreter, obj: Obj, value: Value, expr: ir.Expr | None = None) -> None:
+    """Copy the elements of all objects of a value into an object.
+
+    If `expr` is a dict literal, each of its constant keys is certainly there, so its value replaces the previous one.
+    """
+    certain = frozenset[str]()
+    if isinstance(expr, ir.MappingDisplay) and len(value.pts) == 1 and recency.single(ctx, obj):
+        texts = (key.value for key, _ in expr.items if isinstance(key, ir.Const))
+        certain = frozenset(item_field(text) for text in texts)
     for source in value.objects:
         ctx.store.look(source)
         for name in list(source.fields):
             stored = ctx.store.get((source, name))
             if stored is not None and (name.startswith("[") or name in (ANY, KEYS, LENGTH)):
                 field = heap.attribute_of_item(obj, name[2:-2]) if name.startswith("['") else name
-                updates.weaken(ctx, obj, field, heap.arrive(ctx, stored, value.deps))
+                arrived = heap.arrive(ctx, stored, value.deps)
+                if name in certain:
+                    ctx.store.put((obj, field), arrived)
+                else:
+                    updates.weaken(ctx, obj, field, arrived)
         content = heap.content(ctx, source)
         if content.deps and ctx.store.get((source, ANY)) is None:
             updates.add_element(ctx, pointer(obj), content)

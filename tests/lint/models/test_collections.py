@@ -25,6 +25,58 @@ out.publish(m[-1])  # data
 out.publish(len(m))  # clean
 m += msg.items
 out.publish(len(m))  # data
+### parts of lists
+l = [msg.data, 1.0, 2.0]
+out.publish(l[1:][0])  # clean
+out.publish(l[:1][0])  # data
+out.publish(l[-2:][1])  # clean
+out.publish(l[::2][0])  # data
+out.publish(l[::-1][2])  # data
+out.publish(l[::-1][0])  # clean
+out.publish(l[1:])  # clean
+out.publish(len(l[1:]))  # clean
+out.publish(l[msg.count:])  # data
+out.publish(len(l[msg.count:]))  # data
+out.publish(l[msg.count:2][1])  # data
+k = l[1:] + [msg.data]
+out.publish(k[0])  # clean
+out.publish(k[2])  # data
+m = list(msg.items)
+out.publish(m[1:3][0])  # data
+### captures of patterns
+match (msg.data, 1.0, 2.0):
+    case (first, *rest):
+        out.publish(first)  # data
+        out.publish(rest[0])  # clean
+        out.publish(rest)  # clean
+match (1.0, 2.0, msg.data):
+    case (*rest, last):
+        out.publish(last)  # data
+        out.publish(rest)  # clean
+match (1.0, msg.data, 2.0):
+    case (_, *rest, _):
+        out.publish(rest[0])  # data
+### a dict literal replaces entries
+d = {"x": msg.data, "y": msg.data}
+d.update({"x": 1.0})
+out.publish(d["x"])  # clean
+out.publish(d["y"])  # data
+d.update(y=2.0)
+out.publish(d["y"])  # clean
+e = {"x": msg.data} | {"x": 1.0, "z": msg.data}
+out.publish(e["x"])  # clean
+out.publish(e["z"])  # data
+e.update({msg.name: 1.0})
+out.publish(e["z"])  # data
+f = {"x": msg.data}
+g = {"y": 1.0}
+if rospy.get_time() > 3.0:
+    g["x"] = 2.0
+f.update(g)
+out.publish(f["x"])  # data
+h = f if rospy.get_time() > 3.0 else e
+h.update({"x": 1.0})
+out.publish(f["x"])  # data
 ### lists shrink
 l = [msg.data, 1.0]
 out.publish(l.pop())  # data
