@@ -1,10 +1,15 @@
 """Draw random sentences from everything that users and contributors read, to judge the wording.
 
-    python benchmarks/readers_sample.py [--sentences 100] [--seed 0]
+    python benchmarks/readers_sample.py [--sentences 100] [--seed 0] [--beside PROJECT... --key KEY.json]
 
 The pool holds the sentences of README, docs, rule pages, docstrings, comments, messages and help texts, page
 templates and names of tests. Each kind of text has the same share of the sample, since there are far more docstrings
 than messages.
+
+How many sentences a reader has to read twice depends on the reader. With `--beside`, as many sentences of each of the
+other projects (unpacked source distributions) are drawn in the same way, and all are printed in random order without
+their places, so that the reader does not know which project a sentence belongs to. KEY.json then holds [project, kind,
+place] for each number.
 """
 
 from __future__ import annotations
@@ -12,11 +17,15 @@ from __future__ import annotations
 import argparse
 import ast
 import io
+import json
 import random
 import re
 import tokenize
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+
+Sentence = tuple[str, str, str]  # kind, place, text
+Pools = dict[str, list[Sentence]]  # by kind
 
 ROOT = Path(__file__).resolve().parents[1]
 CODE = ("tarl_lint", "pytest_tarl", "website", "benchmarks")
@@ -31,47 +40,88 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--sentences", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--beside", type=Path, nargs="+", default=[], metavar="PROJECT")
+    parser.add_argument("--key", type=Path)
     asked = parser.parse_args()
-    for number, (kind, place, sentence) in enumerate(sample(ROOT, asked.sentences, asked.seed), 1):
-        print(f"{number}. [{kind}] {place}: {sentence}")
+    if bool(asked.beside) != bool(asked.key):
+        parser.error("--beside and --key are used together")
+    if not asked.beside:
+        for number, (kind, place, sentence) in enumerate(sample(ROOT, asked.sentences, asked.seed), 1):
+            print(f"{number}. [{kind}] {place}: {sentence}")
+        return
+    projects = {"tarl": pools_of(ROOT, CODE)}
+    projects |= {other.resolve().name: pools_of(other, ("**",)) for other in asked.beside}
+    key = []
+    for number, (project, (kind, place, sentence)) in enumerate(
+        blind(projects, asked.sentences, asked.seed), 1
+    ):
+        key.append([project, kind, place])
+        print(f"{number}. [{kind}] {sentence}")
+    asked.key.write_text(json.dumps(key, indent=1))
 
 
-def sample(root: Path, sentences: int, seed: int) -> list[tuple[str, str, str]]:
+def blind(projects: Mapping[str, Pools], sentences: int, seed: int) -> list[tuple[str, Sentence]]:
+    """Return samples of all projects in random order; only kinds of text that every project has are drawn."""
+    shared = sorted(set.intersection(*(set(pools) for pools in projects.values())))
+    drawn = [
+        (project, one)
+        for project, pools in projects.items()
+        for one in draw({kind: pools[kind] for kind in shared}, sentences, seed)
+    ]
+    random.Random(seed).shuffle(drawn)
+    return drawn
+
+
+def sample(root: Path, sentences: int, seed: int) -> list[Sentence]:
     """Return a stratified random sample as (kind, place, sentence); the same tree and seed give the same sample."""
-    pools: dict[str, list[tuple[str, str, str]]] = {}
-    for kind, place, sentence in sorted(set(everything(root))):
+    return draw(pools_of(root, CODE), sentences, seed)
+
+
+def pools_of(root: Path, code: Sequence[str]) -> Pools:
+    """Return the sentences of a project by kind; `code` names its folders of Python files."""
+    pools: Pools = {}
+    for kind, place, sentence in sorted(set(everything(root, code))):
         pools.setdefault(kind, []).append((kind, place, sentence))
+    return pools
+
+
+def draw(pools: Pools, sentences: int, seed: int) -> list[Sentence]:
+    """Draw sentences without replacement, from each kind in turn."""
     rng = random.Random(seed)
-    for pool in pools.values():
+    left = {kind: list(pool) for kind, pool in pools.items()}
+    for pool in left.values():
         rng.shuffle(pool)
-    drawn: list[tuple[str, str, str]] = []
-    while len(drawn) < sentences and any(pools.values()):
-        for pool in pools.values():
+    drawn: list[Sentence] = []
+    while len(drawn) < sentences and any(left.values()):
+        for pool in left.values():
             if pool and len(drawn) < sentences:
                 drawn.append(pool.pop())
     return drawn
 
 
-def everything(root: Path) -> Iterator[tuple[str, str, str]]:
-    """Yield (kind, place, sentence) for every sentence of the pool."""
+def everything(root: Path, code: Sequence[str]) -> Iterator[Sentence]:
+    """Yield (kind, place, sentence) for every sentence of the pool; `code` names the folders of Python files."""
     pages = [*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("examples/*.md")]
     for path in sorted(pages):
         kind = "rule page" if path.parent.name == "rules" else "docs"
         yield from _of(kind, path.relative_to(root).as_posix(), _prose(path.read_text()))
-    for path in sorted(one for folder in CODE for one in root.glob(f"{folder}/**/*.py")):
-        yield from _of_code(path.relative_to(root).as_posix(), path.read_text())
+    for path in sorted([*root.glob("*.rst"), *root.glob("doc*/**/*.rst")]):
+        yield from _of("docs", path.relative_to(root).as_posix(), _prose_of_rst(path.read_text()))
+    for path in sorted({one for folder in code for one in root.glob(f"{folder}/**/*.py")}):
+        if code is CODE or not {"tests", "testing", "test", "resources"} & set(path.relative_to(root).parts):
+            yield from _of_code(path.relative_to(root).as_posix(), path.read_text())
     for path in sorted([*root.glob("pytest_tarl/**/*.html"), *root.glob("pytest_tarl/**/*.jinja")]):
         text = re.sub(
             r"<(script|style).*?</\1>|\{[{%#].*?[}%#]\}|<[^>]*>", "\n", path.read_text(), flags=re.DOTALL
         )
         yield from _of("page", path.relative_to(root).as_posix(), text.split("\n"))
-    for path in sorted(root.glob("tests/**/test_*.py")):
+    for path in sorted([*root.glob("tests/**/test_*.py"), *root.glob("testing/**/test_*.py")]):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
                 yield "test name", path.relative_to(root).as_posix(), node.name
 
 
-def _of_code(place: str, text: str) -> Iterator[tuple[str, str, str]]:
+def _of_code(place: str, text: str) -> Iterator[Sentence]:
     tree = ast.parse(text)
     docstrings: set[int] = set()
     for node in ast.walk(tree):
@@ -113,7 +163,14 @@ def _prose(text: str) -> list[str]:
     return [cell for paragraph in text.split("\n\n") for cell in re.split(r" \| |^\||\|$", paragraph)]
 
 
-def _of(kind: str, place: str, paragraphs: list[str]) -> Iterator[tuple[str, str, str]]:
+def _prose_of_rst(text: str) -> list[str]:
+    """Return the paragraphs of a reStructuredText page, without directives, code blocks and headings."""
+    kept = [line for line in text.split("\n") if not line.startswith((" ", ".."))]
+    paragraphs = "\n".join(kept).split("\n\n")
+    return [one for one in paragraphs if not re.search(r"^([=~^#*+-])\1{3,}$", one, flags=re.MULTILINE)]
+
+
+def _of(kind: str, place: str, paragraphs: list[str]) -> Iterator[Sentence]:
     for paragraph in paragraphs:
         flat = " ".join(paragraph.split()).lstrip("->* ")
         for sentence in re.split(r"(?<=[.?!])\s+(?=[A-Z`*\[])", flat):

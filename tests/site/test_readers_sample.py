@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from benchmarks.readers_sample import sample
+from benchmarks.readers_sample import CODE, blind, pools_of, sample
 
 MODULE = '''"""A module with a first sentence. And with a second one."""
 
@@ -19,7 +19,8 @@ def f(path: str) -> None:
 '''
 
 
-def test_each_kind_of_text_is_drawn_once_and_equal_seeds_give_equal_samples(tmp_path: Path) -> None:
+def _project(tmp_path: Path) -> Path:
+    """Write a project with each kind of text."""
     for folder in ("docs/rules", "tarl_lint", "pytest_tarl", "tests"):
         (tmp_path / folder).mkdir(parents=True)
     (tmp_path / "docs" / "a.md").write_text(
@@ -31,6 +32,11 @@ def test_each_kind_of_text_is_drawn_once_and_equal_seeds_give_equal_samples(tmp_
         "<p>The page shows a figure.</p><style>a b c d e {}</style>"
     )
     (tmp_path / "tests" / "test_a.py").write_text("def test_it_has_a_long_name() -> None: ...\n")
+    return tmp_path
+
+
+def test_each_kind_of_text_is_drawn_once_and_equal_seeds_give_equal_samples(tmp_path: Path) -> None:
+    _project(tmp_path)
     drawn = sample(tmp_path, 100, seed=1)
     assert sorted(drawn) == [
         ("comment", "tarl_lint/a.py", "A comment of two lines is one sentence."),
@@ -46,3 +52,29 @@ def test_each_kind_of_text_is_drawn_once_and_equal_seeds_give_equal_samples(tmp_
     ]
     assert sample(tmp_path, 100, seed=1) == drawn
     assert sample(tmp_path, 3, seed=1) == drawn[:3]
+
+
+def test_samples_of_other_projects_have_the_shared_kinds_and_hide_their_places(tmp_path: Path) -> None:
+    other = tmp_path / "other-1.0"
+    (other / "doc" / "en").mkdir(parents=True)
+    (other / "src" / "other").mkdir(parents=True)
+    (other / "testing").mkdir()
+    (other / "doc" / "en" / "a.rst").write_text(
+        "A title of four words\n=====================\n\nThis is a sentence\nof two lines.\n\n"
+        ".. note::\n\n    A note that is not drawn.\n"
+    )
+    (other / "src" / "other" / "a.py").write_text(MODULE)
+    (other / "testing" / "test_a.py").write_text(
+        "def test_it_has_a_long_name() -> None:\n    'Not drawn at all.'\n"
+    )
+    (tmp_path / "ours").mkdir()
+    projects = {"ours": pools_of(_project(tmp_path / "ours"), CODE), "other": pools_of(other, ("**",))}
+    drawn = blind(projects, 10, seed=1)
+    theirs = sorted(kind for project, (kind, _, _) in drawn if project == "other")
+    assert theirs == ["comment"] * 3 + ["docs"] + ["docstring"] * 2 + ["message", "test name"]
+    assert ("other", ("docs", "doc/en/a.rst", "This is a sentence of two lines.")) in drawn
+    ours = sorted(kind for project, (kind, _, _) in drawn if project == "ours")
+    assert ours == theirs, "a rule page or a page of a report is drawn, although the other project has none"
+    assert drawn == blind(projects, 10, seed=1)
+    order = [project for project, _ in drawn]
+    assert order not in (sorted(order), sorted(order, reverse=True))
