@@ -62,7 +62,10 @@ def clustered(
 def of(
     maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell], alpha: float, left_out: int = 0
 ) -> Clusters:
-    """Return the clusters of maps; `recorded` is the variance of the recording's own mean residual in each cell."""
+    """Return the clusters of maps.
+
+    `recorded`, of shape (cells,), is the variance of the recording's own mean residual in each cell.
+    """
     # use sorted order, because the last bits of sums depend on the order
     ordered = sorted(maps, key=lambda one: one.robot)
     clear = [one for one in ordered if _standing_out(one.mean, one.variance + recorded, alpha).size]

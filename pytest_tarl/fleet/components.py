@@ -141,7 +141,7 @@ class _Design:
         self.reward = np.bincount(totals.robot, totals.reward, robots)
 
     def fit(self, weights: Floats) -> _Fit:
-        """Return the components for a sample that contains each robot `weights` times."""
+        """Return the components for a sample that contains robot i `weights[i]` times; shape (robots,)."""
         x, n, s = self.visits, self.missions, self.reward
         products, sums = self._products(weights), self._sums(weights * 1.0)
         squares = float(weights @ self.totals.squares)

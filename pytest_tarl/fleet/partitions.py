@@ -36,7 +36,7 @@ class Wanted:
     numbers: Ints
 
     def only(self, chosen: NDArray[np.bool_]) -> Wanted:
-        """Return a selection of these missions."""
+        """Return those of these missions for which `chosen`, of shape (missions,), is true."""
         return replace(self, identities=self.identities[chosen], numbers=self.numbers[chosen])
 
 
@@ -54,7 +54,7 @@ class Transitions:
     reward: Floats
 
     def chain(self, numbers: Ints) -> Chain:
-        """Return the transitions as a chain; the index of a mission is its place in the sorted `numbers`."""
+        """Return the transitions as a chain; a mission's index is its place in `numbers`: (missions,), ascending."""
         episode: Ints = np.asarray(np.searchsorted(numbers, self.number), np.int64)
         return Chain(
             episode, self.cell, self.next_cell, self.count, self.reward, np.zeros((self.cell.size, 0))
@@ -184,7 +184,7 @@ def watched_chain(chain: Chain, recorded: int) -> Chain:
 
 
 def bare(cells: int, passed: Any, total: Floats, steps: Ints, chain: Chain) -> Sample:
-    """Return missions as a sample whose cells have no names."""
+    """Return missions as a sample whose cells have no names; all arrays have shape (missions,)."""
     return Sample(((),) * cells, tuple(range(len(passed))), passed, total, steps, (), chain, ())
 
 

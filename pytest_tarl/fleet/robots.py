@@ -100,6 +100,8 @@ def _chosen(every: Sequence[Robot], evidence: Sequence[float], q: float) -> tupl
 def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], q: float) -> list[Robot]:
     """Judge robots, whose missions are numbered from `ends[n - 1]` to `ends[n]` - 1; return them in order.
 
+    `ends` has shape (robots,).
+
     Robots with enough evidence for a status are judged a second time to find their onsets.
     """
     found: dict[int, Robot] = {}
@@ -123,7 +125,10 @@ def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], 
 
 
 def portions(ends: Ints) -> Iterator[Ints]:
-    """Divide robots into portions of about PORTION missions; the missions of robot n end before number `ends[n]`."""
+    """Divide robots into portions of about PORTION missions, and yield the `ends` of each portion.
+
+    The missions of robot n end before number `ends[n]`; `ends` has shape (robots,).
+    """
     which = (ends - 1) // PORTION
     for one in np.unique(which).tolist():
         yield ends[which == one]
@@ -138,7 +143,8 @@ def fresh(first: Monitor) -> Monitor:
 def evidence(monitor: Monitor, peak: Floats, latest: Floats) -> tuple[float, float]:
     """Return the evidence that missions differ, and that they violate a bound, as log2 of e-values.
 
-    `peak` and `latest` are log2 of the largest and the last evidence of each of a monitor's processes.
+    `peak` and `latest`, of shape (processes,), are log2 of the largest and the last evidence of each process of a
+    monitor.
     """
     stated = len(monitor.bounds)
     each = np.logaddexp2(e_bh.adjusted(peak), latest) - 1.0

@@ -51,7 +51,7 @@ class Scores:
         )
 
     def ordered(self, order: Ints) -> Scores:
-        """Return the missions in another order; `order` is a permutation."""
+        """Return the missions in another order; `order` is a permutation of 0 … missions - 1, of shape (missions,)."""
         place = np.empty_like(order)
         place[order] = np.arange(order.size)
         moved = place[self.new_mission]
@@ -99,7 +99,7 @@ def scored(database: Database, where: Store, scale: Scale, engine: Engine) -> Sc
 def transitions(
     database: Database, where: Store, cells: Sequence[Cell], engine: Engine, missions: Ints
 ) -> partitions.Transitions:
-    """Return the transitions of some missions, given by their numbers."""
+    """Return the transitions of the missions with the numbers `missions`, an array of shape (chosen,)."""
     chosen = np.zeros(database.missions, bool)
     chosen[missions] = True
     wanted = [one.only(chosen[one.numbers]) for one in database.wanted]

@@ -48,7 +48,7 @@ class Watched:
         return np.concatenate((stated.reshape(-1, size).T, scored.reshape(size, -1)), axis=1)
 
     def state(self, place: int) -> tuple[Processes, Ints]:
-        """Return the processes and the pool of one robot."""
+        """Return the processes of one robot and its pool, of shape (scores, bins)."""
         mine = judging.columns(self.bounds, self.scores, len(self.robots), place)
         values = {one.name: getattr(self.processes, one.name)[..., mine] for one in fields(Processes)}
         return Processes(**values), self.pool[place * self.scores : (place + 1) * self.scores]
@@ -59,9 +59,9 @@ def watched(
 ) -> Iterator[Watched]:
     """Judge the missions of robots, and yield robots with similar numbers of missions together.
 
-    The missions of robot n end before `ends[n]`. `first` is a monitor that has not seen any mission. `some` are the
-    indices of the robots to judge (default: all). Without `onsets`, the start of a difference is not tracked, which is
-    faster.
+    The missions of robot n end before `ends[n]`; `ends` has shape (robots,). `first` is a monitor that has not seen any
+    mission. `some`, of shape (chosen,), are the indices of the robots to judge (default: all). Without `onsets`, the
+    start of a difference is not tracked, which is faster.
     """
     begins = np.append(0, ends[:-1])
     counts = ends - begins

@@ -82,7 +82,7 @@ class _Sums:
     deployed_value: Floats  # Σx·d
 
     def around(self, mean: float, shift: float) -> tuple[Floats, Floats]:
-        """Return Σ(x + t·d - m) and Σ(x + t·d - m)² for the mean m and the shift t."""
+        """Return Σ(x + t·d - m) and Σ(x + t·d - m)² for the mean m and the shift t, in the shape of the sums."""
         value = self.value + shift * self.deployed
         square = self.square + shift * (2.0 * self.deployed_value + shift * self.deployed)
         return value - mean * self.rows, square - 2.0 * mean * value + mean * mean * self.rows

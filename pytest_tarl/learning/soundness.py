@@ -14,7 +14,10 @@ from pytest_tarl.learning.tables import END, START, Chain, Floats, ListSample, S
 
 
 def check(sample: Sample, sensors: int, tables: Sequence[Floats]) -> None:
-    """Raise DamagedError if columns refer to missing episodes, cells or states, or contain invalid values."""
+    """Raise DamagedError if columns refer to missing episodes, cells or states, or contain invalid values.
+
+    `sensors` is the length of a cell. `tables` holds a learned table per taint list, of shape (cells, sites).
+    """
     if not sample.episodes or len(set(sample.seeds)) < sample.episodes:
         raise DamagedError("it does not have one seed per episode")
     whole = all(type(bin_) is int for cell in sample.cells for bin_ in cell)

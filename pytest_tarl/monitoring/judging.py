@@ -54,14 +54,17 @@ def judged(
 
 
 def begun(threshold: Floats, bounds: int, robots: int) -> Processes:
-    """Return the processes of several robots before the first mission; `threshold` holds the values of one robot."""
+    """Return the processes of several robots before the first mission.
+
+    `threshold`, of shape (bounds + scores,), holds the values of one robot.
+    """
     return restarts.begun(
         np.append(np.repeat(threshold[:bounds], robots), np.tile(threshold[bounds:], robots))
     )
 
 
 def columns(bounds: int, scores: int, robots: int, robot: int) -> Ints:
-    """Return the columns of one of several robots, in the order that a single robot's columns have."""
+    """Return the columns of one of several robots, of shape (bounds + scores,), in the order of a single robot."""
     rows = np.append(np.arange(bounds) * robots + robot, bounds * robots + robot * scores + np.arange(scores))
     return rows.astype(np.int64)
 

@@ -66,7 +66,7 @@ class Monitor:
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
-        """Update with missions in order; an unknown total is NaN.
+        """Update with missions in order; an unknown total is NaN, and `time`, of shape (missions,), is in seconds.
 
         Cells are numbered as in the scale. All other cells share the next number and are listed in `new`.
         """
@@ -91,7 +91,10 @@ class Monitor:
         self.counts.passed += int(passed.sum())
 
     def draws(self, first: int, count: int) -> Floats:
-        """Return numbers in (0, 1] that break ties; they depend only on the seed and the index of the mission."""
+        """Return a number in (0, 1] that breaks ties for each of `count` missions from `first` on, shape (count,).
+
+        The numbers depend only on the seed and the index of the mission.
+        """
         found = []
         for which in range(first // DRAWS, (first + count - 1) // DRAWS + 1):
             drawn = self.drawn  # read once, because threads may share a monitor
@@ -109,7 +112,7 @@ class Monitor:
         time: Floats,
         new: Sequence[Cell] = (),
     ) -> None:
-        """Count missions whose processes judging.py has already updated."""
+        """Count missions whose processes judging.py has already updated; all arrays have shape (missions,)."""
         self.moments.add(self.counts.missions, time.tolist())
         self.counts.missions += len(passed)
         self.counts.passed += int(passed.sum())

@@ -76,7 +76,10 @@ def begun(threshold: Floats) -> Processes:
 
 
 def reserve(age: NDArray[np.int64]) -> Floats:
-    """Return the total weight of future restarts after `age` observations: 1 for age 0, then ½·age^(-1/8)."""
+    """Return the total weight of future restarts after `age` observations: 1 for age 0, then ½·age^(-1/8).
+
+    The result has the shape of `age`.
+    """
     root = np.sqrt(np.sqrt(np.sqrt(np.maximum(age, 1).astype(np.float64))))
     return np.where(age > 0, 0.5 / root, 1.0)
 

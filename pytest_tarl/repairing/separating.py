@@ -17,9 +17,9 @@ MARGIN = 1.25  # factor from the outermost value to a threshold beyond it
 def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
     """Return the factor of a threshold that leaves the designed share of values above it, or None if it does already.
 
-    `pairs` are the values of designed and drifted missions. In each pair, the share must differ in the same direction.
-    The new threshold lies halfway between two drifted values, on a log scale, or beyond all of them. Values whose sign
-    differs from that of the threshold say nothing about its size.
+    `pairs` are the values of designed and drifted missions, of shape (values,) each. In each pair, the share must
+    differ in the same direction. The new threshold lies halfway between two drifted values, on a log scale, or beyond
+    all of them. Values whose sign differs from that of the threshold say nothing about its size.
     """
     sign, size = (1.0 if threshold > 0.0 else -1.0), abs(threshold)
     if not pairs or not all(one.size and other.size for one, other in pairs):

@@ -113,7 +113,10 @@ def quaternion_inverse(quaternion: Numbers) -> Any:
 def quaternion_slerp(
     quat0: Numbers, quat1: Numbers, fraction: float, spin: int = 0, shortestpath: bool = True
 ) -> Any:
-    """Interpolate between two rotations (slerp) at `fraction` from 0 to 1; no extra turns, shorter arc only."""
+    """Interpolate between two rotations (slerp) at `fraction` from 0 to 1, along the shorter arc.
+
+    Raise an error that names the missing feature if extra turns or the longer arc are wanted.
+    """
     if spin or not shortestpath:
         raise refuse("tf.transformations", "quaternion_slerp(spin=…, shortestpath=False)")
     start, end = (unit_vector(quaternion) for quaternion in (quat0, quat1))

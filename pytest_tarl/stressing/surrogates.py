@@ -93,7 +93,7 @@ def _smooth(column: Vector, against: Vector) -> Matrix:
 
 
 def inverted(lower: NDArray[np.floating[Any]]) -> Matrix:
-    """Return the inverse of a lower triangular matrix, by halves: most of the work are products of matrices."""
+    """Return the inverse of a lower triangular matrix of shape (n, n), by halves, so that most work is in products."""
     size = len(lower)
     if size <= BLOCK:
         small: Matrix = np.linalg.inv(lower)

@@ -160,7 +160,10 @@ def _new(kind: Class, args: list[Any], keywords: dict[str, Any]) -> Any:
 
 
 def blank(kind: Class, args: list[Any], keywords: dict[str, Any]) -> Made:
-    """Return a new object; if its class is derived from list, int or the like, with the value of that type."""
+    """Return a new object; if its class is derived from list, int or the like, with the value of that type.
+
+    Raise OpaqueError if a text or number would be made of values that are not constants.
+    """
     container = kind.container()
     if container is None or kind.unpacked:
         return Made(kind, {})
@@ -250,14 +253,17 @@ def _member(run: Evaluation, kind: Class, args: list[Any], node: ast.Call) -> An
 
 
 def as_mapping(value: Any, **keywords: Any) -> Any:
-    """Return the result of `dataclasses.asdict`: a new dict of the fields, with nested data classes as dicts."""
+    """Return the result of `dataclasses.asdict`: a new dict of the fields, with nested data classes as dicts.
+
+    Raise OpaqueError if a `dict_factory` is given.
+    """
     if keywords:
         raise OpaqueError("a function makes the dict")
     return _converted(value, dict, 0)
 
 
 def as_values(value: Any, **keywords: Any) -> Any:
-    """Return the result of `dataclasses.astuple`."""
+    """Return the result of `dataclasses.astuple`. Raise OpaqueError if a `tuple_factory` is given."""
     if keywords:
         raise OpaqueError("a function makes the tuple")
     return _converted(value, tuple, 0)
@@ -282,7 +288,10 @@ def _converted(value: Any, make: Any, depth: int) -> Any:
 
 
 def replaced(value: Any, **changes: Any) -> Any:
-    """Return the result of `dataclasses.replace`: a copy of an object in which some fields have new values."""
+    """Return the result of `dataclasses.replace`: a copy of an object in which some fields have new values.
+
+    Raise OpaqueError for anything but an object of a data class.
+    """
     if not isinstance(value, Made) or value.kind.all_fields() is None:
         raise OpaqueError("no data class")
     made = Made(
@@ -295,7 +304,10 @@ def replaced(value: Any, **changes: Any) -> Any:
 
 
 def field_names(value: Any) -> list[Made]:
-    """Return the result of `dataclasses.fields`: objects with the names of the fields."""
+    """Return the result of `dataclasses.fields`: objects with the names of the fields.
+
+    Raise OpaqueError for anything but a data class or an object of one.
+    """
     kind = value.kind if isinstance(value, Made) else value
     if not isinstance(kind, Class):
         raise OpaqueError("no data class")

@@ -66,7 +66,7 @@ def make_queue(values: Any = (), maxlen: int | None = None) -> deque[Any]:
 
 
 def make_chain(*maps: Any) -> ChainMap[Any, Any]:
-    """Return `ChainMap(…)`."""
+    """Return `ChainMap(…)`. Raise OpaqueError if a mapping is not known."""
     if not all(isinstance(one, dict | ChainMap) for one in maps):
         raise OpaqueError("unknown mappings")
     return ChainMap(*maps)
