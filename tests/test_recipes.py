@@ -10,11 +10,18 @@ from types import SimpleNamespace
 import pytest
 
 from pytest_tarl.patching.document import apply_edits, document
+from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.patching.structures import Form, form_edits
 from pytest_tarl.patching.templates import contents, template
 from pytest_tarl.ros import install
+from pytest_tarl.ros.messages import definitions, find_class, known
+from pytest_tarl.ros.messages.packages import could_be_package
 from pytest_tarl.ros.rospy import node as rospy_node
 from pytest_tarl.ros.standins import STANDINS
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.ask_tell import Asking
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint import engine
 from tarl_lint.evidence import Evidence
 from tarl_lint.flows.reachability import Tracer
@@ -31,10 +38,11 @@ from tarl_lint.settings.config import Config, Options, resolve
 from tests.lint.analysing import analysed
 from tests.plugin.patching.test_structures import span
 from tests.plugin.ros.conftest import start  # noqa: F401 - a fixture
+from tests.plugin.searching.test_search import BIAS, GAIN, GOAL, LIMIT, reward
 
 ROOT = Path(__file__).parent.parent
 PAGES = sorted((ROOT / "docs" / "contributing").glob("*.md"))
-FOLDERS = ("docs", "pytest_tarl", "tarl_lint", "tests", "website")
+FOLDERS = ("benchmarks", "docs", "pytest_tarl", "tarl_lint", "tests", "website")
 NODE = """
 import rospy
 from std_msgs.msg import Float64
@@ -129,3 +137,33 @@ def test_the_recipe_of_a_template_writes_its_example(tmp_path: Path) -> None:
     place = source.find(span(example["before"], example["at"]))
     edits = form_edits(source, place, Form(template(path)), example["values"], "", "")
     assert apply_edits(source, edits) == example["after"]
+
+
+def test_the_message_type_of_the_recipe_passes_its_own_test(monkeypatch: pytest.MonkeyPatch) -> None:
+    (definition,) = snippets("message.md", "text")
+    (test,) = snippets("message.md", "python")
+    assert could_be_package("depth_msgs")
+    types = {**known.known_types("ros1", "msg"), **known._split(definition)}
+    monkeypatch.setattr(definitions, "known_types", lambda kind, part: types)
+    made(test, find_class=find_class, pytest=pytest).test_the_new_type_has_its_fields_and_constants()
+
+
+def test_the_search_of_the_recipe_finds_the_constant_that_gains() -> None:
+    (code,) = snippets("search.md", "python")
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        gain = next((m for m in candidate.mutations if m.operand == GAIN), None)
+        return Outcome(reward(gain, seed), passed=True)
+
+    search = Asking(
+        "recipe:Search",
+        made(code).Search,
+        (LIMIT, GAIN, BIAS),
+        mutations,
+        (ALWAYS,),
+        Trials(run, 300),
+        GOAL,
+        7,
+    )
+    repair = next(search.candidates())
+    assert [mutation.operand for mutation in repair.mutations] == [GAIN]
