@@ -2,9 +2,9 @@
 
     python benchmarks/fleet_cost.py [--missions 1e9] [--core-hour 0.05] [--gb-month 0.023]
 
-The measurements are those of docs/benchmarks/fleet.md, section "A fleet". `--measured 100000:20.1:500
-1000000:80.2:1300` replaces them with others: number of missions, CPU seconds and peak memory (MB) of a query. Prices
-are assumptions in dollars; replace them with those of your provider.
+The measurements are those of docs/benchmarks/fleet.md, section "A fleet". To use other measurements, pass
+them as `--measured 100000:20.1:500 1000000:80.2:1300`: for each, the number of missions, and the CPU seconds and peak
+memory (MB) of a query. Prices are assumptions in dollars; replace them with those of your provider.
 """
 
 from __future__ import annotations

@@ -221,7 +221,7 @@ def _parameters(arguments):
     found = {}
     for text, is_file in arguments or ():
         if ABSENT in str(text):
-            found["*"] = ABSENT  # a module that is not installed gives some of the parameters
+            found["*"] = ABSENT  # some parameters come from a module that is not installed
         elif is_file and os.path.isfile(text):
             with open(text) as file:
                 for content in (yaml.load(file, _Loader) or {}).values():
