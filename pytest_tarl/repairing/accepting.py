@@ -31,6 +31,9 @@ OLD_WORLD = 8  # number of episodes in the old world, to display the reward ther
 MOST = 5  # maximum number of candidates to test per search
 SHARE = 2  # maximum number of tests for the same operands while candidates of other operands are untested
 WORSE: Reason = "nominal gets worse"
+# Minimum number of search episodes for finding a confirmed candidate's guard: three missions in each world for about six
+# guards. Without them, all episodes that led to the candidate are lost.
+EXAMINED = 40
 SCREENED = 20  # maximum number of candidates that are run on fresh seeds per search
 
 
@@ -76,7 +79,8 @@ class Examiner:
         trials.loses = lambda candidate: self._missed.again(candidate, trials, self.order.goal)
         try:
             for candidate in confirmed:
-                accepted = self._under_guards(candidate, trials)
+                with trials.granting(EXAMINED):
+                    accepted = self._under_guards(candidate, trials)
                 if accepted is not None or self._exhausted():
                     return accepted
         except BudgetSpentError:

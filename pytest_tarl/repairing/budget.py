@@ -55,6 +55,7 @@ class Purse:
             design=lambda seed: mutants.run(ORIGINAL, seed, None),
             unchanged=lambda seed: mutants.run(ORIGINAL, seed, order.drift),
             in_time=in_time,
+            limit=self.episodes - self.spent,
         )
         return trials
 

@@ -59,9 +59,8 @@ class Early:
         if self._recorded and best < HALF * self.order.goal.wanted:
             yield from self.corrected()
         partly = best >= PARTLY * self.order.goal.wanted
-        if self._recorded and not self._surest and self.trials.spent >= SOON:
-            self._surest = Structures(self.order, self.guards, self.trials, signs=self.signs(self.trials))
-            yield from self._counted(self._surest.surest(FEW, symptoms=not partly))
+        if self._recorded and self.trials.spent >= SOON:
+            yield from self._surely(symptoms=not partly)
         begin = LATER if partly else FROM
         if self._structures is not None or self.trials.spent < begin:
             return
@@ -70,6 +69,21 @@ class Early:
         self.spent += self.trials.spent - begun
         self._structures = Structures(self.order, self.guards, self.trials, signs=found)
         yield from self._counted(self._structures.early(MOST, once=not partly))
+
+    def before_extreme(self) -> Iterator[Candidate]:
+        """Yield what is likelier than an extreme change of a constant: corrected readings and scaled commands.
+
+        A sensor that reads wrongly or an actuator that became weaker can also be hidden by a far too large constant,
+        which then fits only some missions.
+        """
+        yield from self.corrected()
+        yield from self._surely(symptoms=False)
+
+    def _surely(self, symptoms: bool) -> Iterator[Candidate]:
+        """Yield factors on published fields and, with `symptoms`, the changes with the clearest symptoms, once."""
+        if self._surest is None:
+            self._surest = Structures(self.order, self.guards, self.trials, signs=self.signs(self.trials))
+            yield from self._counted(self._surest.surest(FEW, symptoms=symptoms))
 
     def _counted(self, changes: Iterator[Candidate]) -> Iterator[Candidate]:
         """Yield structural changes and count their episodes."""

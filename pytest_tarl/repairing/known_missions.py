@@ -24,7 +24,7 @@ def known_to_fail(mutants: Mutants, candidate: Candidate, trials: Trials, missed
     slack = order.reference.mean - goal.near
     trials.expect((candidate, pair.seed) for pair in goal.pairs[:QUICK])
     for pair in goal.pairs[:QUICK]:
-        if not goal.reached(trials(candidate, pair.seed), pair.seed):
+        if not trials.reaches(candidate, pair.seed, goal):
             trials.misses[pair.seed] += 1
             return "gain too small"
     if missed.again(candidate, trials, goal):

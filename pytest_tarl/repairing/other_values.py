@@ -155,7 +155,7 @@ class Others:
         goal = self.mutants.order.goal
         hardest = sorted(goal.pairs, key=lambda pair: -trials.misses[pair.seed])[:KNOWN]
         try:
-            return all(goal.reached(trials(candidate, pair.seed), pair.seed) for pair in hardest)
+            return all(trials.reaches(candidate, pair.seed, goal) for pair in hardest)
         except RepairError:
             return False
 
@@ -163,7 +163,7 @@ class Others:
         goal = self.mutants.order.goal
         seed = goal.pairs[0].seed
         try:
-            return goal.reached(trials(candidate, seed), seed)
+            return trials.reaches(candidate, seed, goal)
         except RepairError:
             return False
 

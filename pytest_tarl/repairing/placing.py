@@ -77,7 +77,7 @@ class Placing:
         if trials(moved, first) == trials(candidate, first):
             trials.equate(candidate, moved)
             return moved  # the rewards are equal, so nothing else in this test depends on the definition
-        if all(self.order.goal.reached(trials(moved, pair.seed), pair.seed) for pair in pairs):
+        if all(trials.reaches(moved, pair.seed, self.order.goal) for pair in pairs):
             return moved
         for mutation in mutations:
             if mutation.place is not None:

@@ -132,7 +132,7 @@ def _search(
         trials,
         early.candidates if share < 1.0 else lambda _: iter(()),
         early.measured,
-        early.corrected if share < 1.0 else lambda: iter(()),
+        early.before_extreme if share < 1.0 else lambda: iter(()),
     )
     try:
         if found.accepted is None:

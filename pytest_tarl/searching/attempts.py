@@ -214,7 +214,7 @@ class Attempts:
         """Run a candidate once; return whether it reached the goal, or None if it cannot be written into the source."""
         try:
             seed = self.goal.pairs[pair].seed
-            return self.goal.reached(self.trials(candidate, seed), seed)
+            return self.trials.reaches(candidate, seed, self.goal)
         except RepairError:
             return None
 

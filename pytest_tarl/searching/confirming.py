@@ -38,7 +38,7 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
     for seed in seeds:
         outcome = trials(candidate, seed)
         ran.append(seed)
-        if not goal.reached(outcome, seed):
+        if not trials.reaches(candidate, seed, goal):
             missed += 1
             trials.misses[seed] += 1
         if missed > 1 or (goal.lost(outcome) and not goal.ranged):

@@ -330,4 +330,4 @@ class ForwardSelection:
 
     def _reached(self, candidate: Candidate) -> bool:
         seed = self.goal.pairs[0].seed
-        return self.goal.reached(self.trials(candidate, seed), seed)
+        return self.trials.reaches(candidate, seed, self.goal)

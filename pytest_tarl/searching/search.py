@@ -8,7 +8,8 @@ fresh seeds.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from statistics import fmean
 
@@ -25,6 +26,9 @@ Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)
 FAR = 0.6  # minimum gain of a candidate that releases the reserve of episodes, as a share of the wanted gain
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
+# A mission is compared with the designed one of its seed if it lacks at most this share of what separates the drifted
+# missions from `near`.
+LACKS = 0.1
 
 
 @dataclass(frozen=True)
@@ -129,6 +133,7 @@ class Trials:
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
     # extra episodes, added to the budget once a candidate has gained the share `FAR` of the wanted gain
     reserve: int = 0
+    limit: int | None = None  # most episodes of all phases together, which `granting` may use
     worth: Goal | None = None  # goal whose wanted gain decides when `reserve` is released
     # returns whether a candidate loses missions that were lost by rejected candidates
     loses: Callable[[Candidate], bool] = lost_nothing
@@ -191,6 +196,22 @@ class Trials:
         if design is None or not seeds:
             return None
         return fmean(self._as_designed(seed, design).total - self(candidate, seed).total for seed in seeds)
+
+    def reaches(self, candidate: Candidate, seed: int, goal: Goal) -> bool:
+        """Return whether a candidate's mission earns about as much as the designed mission of its seed.
+
+        The mean designed mission is only an estimate of that. If a mission that does not fail lacks little of it, the
+        designed mission of the same seed runs, too: its start may be so bad that no program earns more. Raise
+        BudgetSpentError and RepairError.
+        """
+        outcome = self(candidate, seed)
+        if goal.reached(outcome, seed):
+            return True
+        least = goal.near - LACKS * max(goal.near - goal.online, 0.0)
+        if goal.margin is None or goal.harder or goal.lost(outcome) or outcome.total < least:
+            return False
+        lost = self.lost(candidate, [seed])
+        return lost is not None and lost <= goal.margin
 
     def _as_designed(self, seed: int, design: Callable[[int], Outcome]) -> Outcome:
         if seed not in self._designed:
@@ -280,6 +301,17 @@ class Trials:
         """Return the total rewards of a candidate by seed, for the seeds on which it has run."""
         known = ((pair.seed, self._known.get((candidate, pair.seed))) for pair in pairs)
         return {seed: outcome.total for seed, outcome in known if outcome is not None}
+
+    @contextmanager
+    def granting(self, episodes: int) -> Iterator[None]:
+        """Extend the budget meanwhile, so that at least some episodes are left, but not beyond `limit`."""
+        most = self.budget if self.limit is None else self.limit
+        extra = max(min(self.spent + episodes, most) - self.budget, 0)
+        self.budget += extra
+        try:
+            yield
+        finally:
+            self.budget -= extra
 
     @property
     def spent(self) -> int:

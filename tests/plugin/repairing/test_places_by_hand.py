@@ -68,6 +68,9 @@ class Scripted:
         self.ran.append((moved, seed))
         return Outcome(self.script(moved, seed), passed=True)
 
+    def reaches(self, candidate: Candidate, seed: int, goal: Goal) -> bool:
+        return goal.reached(self(candidate, seed), seed)
+
     def equate(self, candidate: Candidate, other: Candidate) -> None:
         self.equated.append((candidate, other))
 

@@ -52,7 +52,7 @@ def test_without_a_margin_or_with_known_designed_rewards_nothing_else_runs(goal:
 
 
 def test_missions_that_fail_or_fall_far_short_are_not_compared() -> None:
-    failing, short = trials(0.0, passed=False), trials(0.0, designed=7.9)
+    failing, short = trials(0.0, passed=False), trials(0.0, designed=6.5)
     assert not confirmed(CANDIDATE, failing, GOAL, 0)
     assert not confirmed(CANDIDATE, short, GOAL, 0)
     assert failing.beside == short.beside == 0
