@@ -21,7 +21,18 @@ else:  # pragma: no cover
 
 SHIPPED = Path(__file__).parent.parent / "templates"
 OWN = "tarl_templates"  # folder below pytest's rootdir with the project's own templates
-KINDS = ("value", "input", "number", "comparison", "pair", "sent", "field", "sensor", "sent by sensor")
+KINDS = (
+    "value",
+    "input",
+    "number",
+    "comparison",
+    "pair",
+    "sent",
+    "field",
+    "sensor",
+    "sent by sensor",
+    "constant",
+)
 FIELD = "field"  # a field of a published message that several statements build
 OF_SENSORS = ("sensor", "sent by sensor")  # kinds that are tried with each numeric sensor
 SCALES = (  # units of a parameter's default

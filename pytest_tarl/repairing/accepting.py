@@ -31,8 +31,8 @@ OLD_WORLD = 8  # number of episodes in the old world, to display the reward ther
 MOST = 5  # maximum number of candidates to test per search
 SHARE = 2  # maximum number of tests for the same operands while candidates of other operands are untested
 WORSE: Reason = "nominal gets worse"
-# Minimum number of search episodes for finding a confirmed candidate's guard: three missions in each world for about six
-# guards. Without them, all episodes that led to the candidate are lost.
+# Minimum number of search episodes for finding a confirmed candidate's guard: three missions in each world for about
+# six guards. Without them, all episodes that led to the candidate are lost.
 EXAMINED = 40
 SCREENED = 20  # maximum number of candidates that are run on fresh seeds per search
 
@@ -122,11 +122,18 @@ class Examiner:
                 for guard in dict.fromkeys((candidates.ALWAYS, candidate.guard))
             ),
             self.others.beside(trials),
+            *(self.others.following(one) for one in self._harmful(candidate)),
         ):
             accepted = self._followed(others, trials)
             if accepted is not None or self._exhausted():
                 return accepted
         return None
+
+    def _harmful(self, candidate: Candidate) -> Iterator[Candidate]:
+        """Yield the candidate without its condition if that restores the drifted world and harms the designed one."""
+        known = self.ledger.alike(replace(candidate, guard=candidates.ALWAYS))
+        if known is not None and known.reason in STRONG:
+            yield known.candidate
 
     def _other_values(
         self, candidate: Candidate, examined: Tried, weak: list[Guard], trials: Trials
@@ -135,6 +142,8 @@ class Examiner:
         guard = examined.candidate.guard
         if guard == candidates.ALWAYS and examined.reason in (*WEAK, *STRONG):
             yield self.others.unguarded(candidate, examined.reason, trials)
+        if examined.fresh and examined.reason in WEAK:
+            yield self.others.following(examined.candidate)
         if examined.fresh and self._missed.nearly_right(examined.candidate):
             weak.append(guard)
             yield self.others.improved(examined.candidate, trials)
@@ -207,6 +216,8 @@ class Examiner:
         same = self._acting_alike(candidate, trials)
         if same is not None:
             return self.ledger.enter(Tried(candidate, same.reason, ()))
+        if self._missed.again(candidate, trials, self.order.goal):
+            return candidate  # no neighbour is worth its missions before those that rejected values lost
         better = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
         # if the centred value was examined before, examine the value that was not centred
         return candidate if self.ledger.alike(better) else better

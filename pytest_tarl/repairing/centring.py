@@ -40,7 +40,9 @@ def centred(
     enough = reference.mean - THIN * reference.margin - harder
     try:
         if all(trials.reaches(candidate, pair.seed, goal) for pair in pairs):
-            if _loses_little(candidate, trials, goal, [pair.seed for pair in pairs], enough, reference.margin):
+            if _loses_little(
+                candidate, trials, goal, [pair.seed for pair in pairs], enough, reference.margin
+            ):
                 return candidate
             return _climbed(candidate, trials, mutate, replace(goal, pairs=tuple(pairs)), enough)
     except RepairError:

@@ -13,6 +13,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import STRONG, WEAK, Between, common_factor, stronger
 from pytest_tarl.repairing.centring import in_place, moved, neighbours
+from pytest_tarl.repairing.following import following
 from pytest_tarl.repairing.ledger import Ledger, Tried, operands
 from pytest_tarl.repairing.missed import Lost, Missed
 from pytest_tarl.repairing.mutants import Mutants
@@ -43,6 +44,7 @@ class Others:
         self.missed = missed
         self._pushed: set[Place] = set()
         self._unguarded: set[frozenset[Operand]] = set()
+        self._following: set[frozenset[Operand]] = set()
         self._bisected: set[Place] = set()
         self._inward: set[Place] = set()
         self._nearer: set[Place] = set()
@@ -67,6 +69,13 @@ class Others:
             examined = yield moved
             if not examined.fresh or examined.reason not in (*WEAK, *TOO_LITTLE):
                 return
+
+    def following(self, candidate: Candidate) -> OtherValues:
+        """Propose that the constant follows a sensor, because its value fits only some missions or one world."""
+        if operands(candidate) in self._following:
+            return
+        self._following.add(operands(candidate))
+        yield from following(self.mutants.order, in_place(candidate))
 
     def unguarded(self, candidate: Candidate, reason: Reason, trials: Trials) -> OtherValues:
         """Propose smaller changes that may work in both worlds without the condition of a candidate.

@@ -34,6 +34,9 @@ FIRST = 2  # number of expressions tried first: the one ranked first, and the on
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
 LEAST = 50
+# A power is a multiple of a half in most laws of physics. If one nearly earns enough, the law holds only roughly, and
+# multiples of a twentieth are tried.
+FINER = 0.1
 # if the candidates of a group need more than the group's own episodes, they leave this share of the remaining
 # episodes to later groups
 KEPT = 0.6
@@ -77,6 +80,9 @@ class Structures:
         self.trials = trials
         self._sweeps: list[Sweep] = []
         self._found: dict[Operand, Form] = {}
+        self._fine: set[Operand] = (
+            set()
+        )  # operands whose values nearly earned enough, so that their grid is finer
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield confirmed candidates: first those with symptoms, then cheap templates. Raise BudgetSpentError."""
@@ -148,6 +154,7 @@ class Structures:
                 proposed=True,
                 weaker=self.weaker,
                 given=self.given,
+                finer=self._fine.add,
                 responding=self.responding,
                 brief=brief,
             )
@@ -194,6 +201,8 @@ class Structures:
             return None  # factor 1 is the same change for all parameters, so only the first one proposes it
         mine = next((one for one in form.template.parameters if one.name == form.parameter), None)
         grid = mine.grid if mine is not None else 0.0
+        if operand in self._fine and grid < 1.0:  # counts stay integers
+            grid *= FINER
         if grid:  # only the first parameter of a template has a grid
             start = dict(form.defaults)[form.parameter]
             factor = round(start * factor / grid) * grid / start

@@ -26,6 +26,7 @@ MOST = {
     "field": 4,
     "sensor": 3,
     "sent by sensor": 2,
+    "constant": 0,  # tried only at a constant whose value was found (see `following`)
 }  # maximum number of expressions at which to try a template, by the template's kind
 NUMBERS = ("value", "input", "stored", "sent")  # kinds of expressions to which templates for any number apply
 CLAMPS = ("clamp", "clip", "saturate", "constrain")

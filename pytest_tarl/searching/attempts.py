@@ -17,6 +17,7 @@ from pytest_tarl.searching.combining import Combining
 from pytest_tarl.searching.constants_first import constants_first
 from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
 from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.polishing import ALMOST, KNOWN
 from pytest_tarl.searching.preferring import Preferences
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.twins import twin_of
@@ -58,6 +59,7 @@ class Attempts:
         proposed: bool = False,
         weaker: Callable[[Operand, float], bool] = lambda _, __: False,
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
+        finer: Callable[[Operand], object] = lambda _: None,
         scope: Scope = everywhere,
         interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
         corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
@@ -72,6 +74,7 @@ class Attempts:
         self.proposed = proposed
         self.weaker = weaker
         self.given = given
+        self.finer = finer
         self.scope = scope
         self._structures = interlude
         self.corrections = corrections
@@ -91,6 +94,7 @@ class Attempts:
         self._easy = easy(goal)
         self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # change → pair of its first run
         self._tried: set[Candidate] = set()
+        self._adjusted: set[tuple[Unit, Guard]] = set()  # units that nearly earned enough and were adjusted
         self._settled = Settled()
 
     def interlude(self, gain: float) -> Iterator[Candidate]:
@@ -162,9 +166,24 @@ class Attempts:
             yield candidate
             yield from self.preferences.after()
         elif near:
+            yield from self._nearly(unit, candidate, factor, pair)
             yield from self.uses.alone(unit, guard, factor, pair)
         if holds or (near and self.trials.loses(candidate)):
             self.refused.add((unit, guard))
+
+    def _nearly(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
+        """Adjust the value of a change that passes its missions and earns nearly enough, before others are tried.
+
+        Such a change is of the right kind, and only its value is not exact.
+        """
+        key, ran = (unit, candidate.guard), self.trials.ran(candidate, self.goal.pairs)
+        gained = self.trials.gain(candidate, self.goal.pairs) >= ALMOST * self.goal.wanted
+        if key in self._adjusted or not gained or len(ran) < KNOWN or any(map(self.goal.lost, ran)):
+            return
+        self._adjusted.add(key)
+        self.finer(unit.operands[0])
+        better = self.joining({}).sharper(unit, factor, candidate.guard)
+        yield from self.attempt(unit, candidate.guard, better, pair)
 
     def _learn(self, unit: Unit, candidate: Candidate, factor: float) -> None:
         pairs = self.goal.pairs

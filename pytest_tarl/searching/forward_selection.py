@@ -277,6 +277,13 @@ class ForwardSelection:
                 return
 
     def sharpened(self, unit: Unit, factor: float, guard: Guard) -> Iterator[Candidate]:
+        """Yield a single unit that gains much with an adjusted factor, if it is then confirmed."""
+        better = self.sharper(unit, factor, guard)
+        candidate = Joint(((unit, better),), guard).candidate(self.mutate)
+        if better != factor and self.settled.holds(candidate, self.trials, self.goal, 0):
+            yield candidate
+
+    def sharper(self, unit: Unit, factor: float, guard: Guard) -> float:
         """Adjust the factor of a single unit that gains much on average, on the seeds where it earns least.
 
         Unlike in a combination, a failed mission counts with its reward, because some missions fail near a
@@ -286,7 +293,7 @@ class ForwardSelection:
         begin, pairs = base.candidate(self.mutate), self.goal.pairs
         ran = self.trials.totals_of(begin, pairs)
         if len(ran) < KNOWN or self.trials.gain(begin, pairs) < MUCH * self.goal.wanted:
-            return
+            return factor
 
         def earned(factors: Factors, seed: int) -> float | None:
             try:
@@ -296,9 +303,7 @@ class ForwardSelection:
 
         hardest = sorted(ran, key=ran.__getitem__)
         (better,) = polished((factor,), earned, hardest, self.goal.wanted, SHARP_STEPS)
-        candidate = base.with_part(unit, better).candidate(self.mutate)
-        if better != factor and self.settled.holds(candidate, self.trials, self.goal, 0):
-            yield candidate
+        return better
 
     def _with_another(self, base: Joint, turn: int) -> Iterator[Joint]:
         """Yield combinations with one more part; the first turn has the better of its two near factors."""

@@ -58,7 +58,8 @@ class Sweep:
     `BRIEFLY`. `responding` contains the ids of statements whose constants increased the reward. `interlude` is called
     with the largest gain before each step and each long phase, and may yield candidates of another search. `measured`
     returns changes that recorded missions suggest (see `FirstSteps`), and `corrections` yields confirmed corrections of
-    sensor readings, which come before extreme changes.
+    sensor readings, which come before extreme changes. `finer` is called with an operand that nearly earned
+    enough, so that `mutate` may allow values between those of its grid.
     """
 
     def __init__(
@@ -77,6 +78,7 @@ class Sweep:
         brief: bool = False,
         charts: Mapping[Operand, Chart] = MappingProxyType({}),
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
+        finer: Callable[[Operand], object] = lambda _: None,
         responding: Collection[str] = (),
         scope: Scope = everywhere,
         interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
@@ -103,6 +105,7 @@ class Sweep:
             proposed=proposed,
             weaker=weaker,
             given=given,
+            finer=finer,
             scope=scope,
             interlude=interlude,
             corrections=corrections,

@@ -154,3 +154,27 @@ def test_a_correction_that_cannot_be_written_is_left_out(monkeypatch: pytest.Mon
         return 10.0
 
     assert tried(monkeypatch, total, (3.0, 2.0))[0] == [2.0]
+
+
+def test_factors_on_published_fields_come_before_an_extreme_change_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(early, "corrections", lambda *_: ())
+    monkeypatch.setattr(early, "mission_pairs", lambda *_: ())
+    monkeypatch.setattr(early, "signs", lambda *_: None)
+    built: list[Any] = []
+
+    class Fields:
+        def __init__(self, *_: Any, **__: Any) -> None:
+            built.append(self)
+
+        def surest(self, most: int, symptoms: bool = True) -> Any:
+            assert not symptoms
+            yield from [Candidate((Mutation(operand(9, "msg.data", 1.0), 2.0),), ALWAYS)]
+
+    monkeypatch.setattr(early, "Structures", Fields)
+    order: Any = SimpleNamespace(goal=GOAL)
+    found = Early(order, (ALWAYS,), Trials(lambda *_: Outcome(0.0, False), 50))
+    assert [one.mutations[0].operand.code for one in found.before_extreme()] == ["msg.data"]
+    assert list(found.before_extreme()) == []
+    assert len(built) == 1

@@ -1,0 +1,72 @@
+"""Let a constant follow a sensor, if one value of it is right in some missions and another value in others.
+
+A robot that drives faster has to look further ahead, but how far depends on its speed. A single value found for all
+fast missions fits only those of about their mean speed. Where the sensor has its designed value, the constant is known
+to be right; where it has the mean value of the drifted missions, the value found is about right. A power law leads
+through both points. Beyond the designed value, on the other side of it, the constant stays as it is, because the
+designed missions go there, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import log
+
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.structures import Form
+from pytest_tarl.patching.templates import Template, templates
+from pytest_tarl.repairing.between import factor
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.telling_sensors import continuous, usual
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate
+from pytest_tarl.sensors import Sensor
+
+ABOVE, BELOW = "above", "below"
+APART = 1.25  # minimum ratio of a sensor's usual values in the two worlds
+LEAST, MOST = (
+    0.2,
+    4.0,
+)  # powers beyond these say that the sensor hardly matters, or that it changes too little
+SENSORS = 2  # maximum number of sensors that are tried
+
+
+def following(order: Order, candidate: Candidate) -> Iterator[Candidate]:
+    """Yield unconditional candidates that scale the changed constant by a power of a sensor.
+
+    The sensors of the candidate's condition come first. They must not be negative, and their usual values must differ
+    clearly between the worlds. The candidate must change one constant by a positive factor, at one or all of its uses.
+    """
+    factors = {factor(one) for one in candidate.mutations}
+    by = factors.pop() if len(factors) == 1 else None
+    plain = all(
+        one.form is None and one.chart is None and one.operand.value != 0 for one in candidate.mutations
+    )
+    if by is None or by <= 0.0 or by == 1.0 or not plain or order.permanent:
+        return
+    known = {one.name: one for one in templates(order.root)}
+    found = [
+        form for sensor in _sensors(order, candidate) if (form := _form(order, sensor, by, known)) is not None
+    ]
+    for form in found[:SENSORS]:
+        yield Candidate(tuple(Mutation(one.operand, 1.0, form=form) for one in candidate.mutations), ALWAYS)
+
+
+def _sensors(order: Order, candidate: Candidate) -> Sequence[Sensor]:
+    """Return the sensors that a power can be taken of, those of the condition first."""
+    asked = [conjunct.sensor for conjunct in candidate.guard.conjuncts]
+    usable = [one for one in order.comparison.sensors if continuous(one) and (one.low or 0.0) >= 0.0]
+    return sorted((one for one in usable if one.low is not None), key=lambda one: one not in asked)
+
+
+def _form(order: Order, sensor: Sensor, by: float, known: dict[str, Template]) -> Form | None:
+    designed, drifted = usual(order, sensor, order.fixture.sample), usual(order, sensor)
+    ratio = drifted / designed
+    name = ABOVE if ratio > 1.0 else BELOW
+    if name not in known or max(ratio, 1.0 / ratio) < APART:
+        return None
+    power = log(by) / log(ratio)
+    if not LEAST <= abs(power) <= MOST:
+        return None
+    defaults = (("power", float(f"{power:.2g}")), ("usual", float(f"{designed:.3g}")))
+    return Form(known[name], parameter=defaults[0][0], defaults=defaults, sensor=sensor)

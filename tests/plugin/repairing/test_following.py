@@ -1,0 +1,103 @@
+"""A constant follows a sensor by a power law through its old value and the value that was found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.mutate import Mutation, form_values
+from pytest_tarl.repairing.following import following
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate
+from pytest_tarl.sensors import Sensor
+from tests.plugin.searching.test_search import operand
+
+SPEED = Sensor("speed", topic="/odom", field="data", low=0, high=10, bins=10)
+LOAD = Sensor("load", topic="/load", field="data", low=0, high=10, bins=10)
+NAMED = replace(operand(4, "AHEAD", 1.1), definition=operand(1, "1.1", 1.1).span)
+FAST = Guard((Conjunct(SPEED, 3.0, inf),))
+FOUR_TIMES = Candidate((Mutation(NAMED, 4.0),), FAST)
+
+
+def order(designed: tuple[int, ...], drifted: tuple[int, ...], *sensors: Sensor) -> Any:
+    """Return an order in which each sensor is always in one bin of each world."""
+
+    def world(cell: tuple[int, ...]) -> Any:
+        chain = SimpleNamespace(cell=np.zeros(3, int), count=np.full(3, 5.0))
+        return SimpleNamespace(cells=[cell], chain=chain)
+
+    return SimpleNamespace(
+        root=Path("nowhere"),
+        permanent=False,
+        comparison=SimpleNamespace(sensors=sensors),
+        fixture=SimpleNamespace(sample=world(designed)),
+        online=SimpleNamespace(recorded=SimpleNamespace(sample=world(drifted))),
+    )
+
+
+def forms(found: list[Candidate]) -> list[tuple[str, str, dict[str, float]]]:
+    made = [(one.mutations[0].form, one.mutations[0]) for one in found]
+    return [
+        (form.template.name, form.sensor.name, form_values(mutation))
+        for form, mutation in made
+        if form is not None and form.sensor is not None
+    ]
+
+
+def test_the_power_leads_from_the_old_value_to_the_value_found() -> None:
+    # designed 1.5, drifted 6: four times the sensor and four times the constant
+    found = list(following(order((1,), (6,), SPEED), FOUR_TIMES))
+    assert forms(found) == [("above", "speed", {"power": pytest.approx(0.945, abs=0.01), "usual": 1.5})]
+    assert found[0].guard == ALWAYS
+
+
+def test_a_smaller_value_at_a_larger_sensor_has_a_negative_power() -> None:
+    smaller = Candidate((Mutation(NAMED, 0.25),), FAST)
+    assert forms(list(following(order((1,), (6,), SPEED), smaller)))[0][2]["power"] < 0.0
+
+
+def test_a_sensor_that_falls_scales_the_constant_only_below_its_designed_value() -> None:
+    (found,) = forms(list(following(order((6,), (1,), SPEED), FOUR_TIMES)))
+    assert found[0] == "below"
+    assert found[2]["power"] == pytest.approx(-0.945, abs=0.01)
+
+
+def test_the_sensor_of_the_condition_comes_first() -> None:
+    found = forms(list(following(order((1, 1), (6, 6), LOAD, SPEED), FOUR_TIMES)))
+    assert [name for _, name, _ in found] == ["speed", "load"]
+
+
+@pytest.mark.parametrize("mutation", [Mutation(NAMED, 1.2), Mutation(NAMED, 1000.0)])
+def test_a_power_that_says_little_or_needs_much_is_left_out(mutation: Mutation) -> None:
+    assert list(following(order((1,), (6,), SPEED), Candidate((mutation,), FAST))) == []
+
+
+@pytest.mark.parametrize(
+    "candidate",
+    [
+        Candidate((Mutation(NAMED, 4.0), Mutation(operand(5, "2.0", 2.0), 3.0)), FAST),
+        Candidate((Mutation(operand(5, "0.0", 0.0), 1.2),), FAST),
+        Candidate((Mutation(operand(5, "True", True), value=False),), FAST),
+    ],
+)
+def test_several_constants_zeros_and_booleans_follow_nothing(candidate: Candidate) -> None:
+    assert list(following(order((1,), (6,), SPEED), candidate)) == []
+
+
+def test_a_sensor_with_negative_values_or_the_same_values_in_both_worlds_is_not_followed() -> None:
+    signed = replace(SPEED, low=-10, high=10)
+    assert list(following(order((6,), (9,), signed), FOUR_TIMES)) == []
+    assert list(following(order((6,), (6,), SPEED), FOUR_TIMES)) == []
+
+
+def test_after_a_permanent_change_one_value_suffices() -> None:
+    asked = order((1,), (6,), SPEED)
+    asked.permanent = True
+    assert list(following(asked, FOUR_TIMES)) == []
