@@ -6,6 +6,7 @@ Before a confirmed change is yielded, the changes that a maintainer would prefer
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from statistics import fmean
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from pytest_tarl.searching.combining import Combining
 from pytest_tarl.searching.constants_first import constants_first
 from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
 from pytest_tarl.searching.gains import Gains
-from pytest_tarl.searching.polishing import ALMOST, KNOWN
+from pytest_tarl.searching.polishing import ALMOST, EPISODES, FINE_STEPS, KNOWN
 from pytest_tarl.searching.preferring import Preferences
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.twins import twin_of
@@ -176,14 +177,20 @@ class Attempts:
 
         Such a change is of the right kind, and only its value is not exact.
         """
-        key, ran = (unit, candidate.guard), self.trials.ran(candidate, self.goal.pairs)
-        gained = self.trials.gain(candidate, self.goal.pairs) >= ALMOST * self.goal.wanted
-        if key in self._adjusted or not gained or len(ran) < KNOWN or any(map(self.goal.lost, ran)):
+        goal, key = self.goal, (unit, candidate.guard)
+        ran, totals = self.trials.ran(candidate, goal.pairs), self.trials.totals_of(candidate, goal.pairs)
+        if key in self._adjusted or len(ran) < KNOWN or any(map(goal.lost, ran)):
+            return
+        if fmean(totals.values()) < goal.enough_on(list(totals)) - (1.0 - ALMOST) * goal.wanted:
             return
         self._adjusted.add(key)
+        form = candidate.mutations[0].form
+        if form is not None and form.parameter:
+            factor = float(candidate.mutations[0].value)  # `factor` rounded to the grid of the parameter
         self.finer(unit.operands[0])
-        better = self.joining({}).sharper(unit, factor, candidate.guard)
-        yield from self.attempt(unit, candidate.guard, better, pair)
+        with self.trials.granting(EPISODES):
+            better = self.joining({}).sharper(unit, factor, candidate.guard, FINE_STEPS)
+            yield from self.attempt(unit, candidate.guard, better, pair)
 
     def _learn(self, unit: Unit, candidate: Candidate, factor: float) -> None:
         pairs = self.goal.pairs

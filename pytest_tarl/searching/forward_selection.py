@@ -283,7 +283,7 @@ class ForwardSelection:
         if better != factor and self.settled.holds(candidate, self.trials, self.goal, 0):
             yield candidate
 
-    def sharper(self, unit: Unit, factor: float, guard: Guard) -> float:
+    def sharper(self, unit: Unit, factor: float, guard: Guard, steps: Sequence[float] = SHARP_STEPS) -> float:
         """Adjust the factor of a single unit that gains much on average, on the seeds where it earns least.
 
         Unlike in a combination, a failed mission counts with its reward, because some missions fail near a
@@ -302,7 +302,7 @@ class ForwardSelection:
                 return None
 
         hardest = sorted(ran, key=ran.__getitem__)
-        (better,) = polished((factor,), earned, hardest, self.goal.wanted, SHARP_STEPS)
+        (better,) = polished((factor,), earned, hardest, self.goal.wanted, steps)
         return better
 
     def _with_another(self, base: Joint, turn: int) -> Iterator[Joint]:
