@@ -51,7 +51,11 @@ def rewrite(
     for source, node, form, values, site in _formed(analysis, mutations):
         statement = source.statement(node)
         condition = conditions.at(source, site, statement)
-        sensor = conditions.value(form.sensor, source, site, statement) if form.sensor is not None else ""
+        sensor = (
+            conditions.value(form.sensor, source, site, statement)
+            if form.sensor is not None
+            else form.variable
+        )
         edits.setdefault(source.path, []).extend(form_edits(source, node, form, values, condition, sensor))
     for path, added in conditions.subscriptions.edits().items():
         edits[path] = [*added, *edits.get(path, [])]

@@ -28,6 +28,7 @@ class Form:
     partner: Span | None = None  # the other expression of a pair to swap
     sensor: Sensor | None = None
     field: str = ""  # for a published message: the field to change, such as `linear.x`
+    variable: str = ""  # a variable of the program that takes the place of the sensor
 
     def target(self, code: str) -> str:
         """Return the code of what the form changes at an expression: the expression, or a field of it."""

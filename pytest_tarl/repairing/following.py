@@ -9,7 +9,8 @@ designed missions go there, too.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import log
 
 from pytest_tarl.patching.mutate import Mutation
@@ -18,6 +19,7 @@ from pytest_tarl.patching.templates import Template, templates
 from pytest_tarl.repairing.between import factor
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.telling_sensors import continuous, usual
+from pytest_tarl.repairing.variables_in_scope import variables
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.sensors import Sensor
@@ -28,14 +30,15 @@ LEAST, MOST = (
     0.2,
     4.0,
 )  # powers beyond these say that the sensor hardly matters, or that it changes too little
-SENSORS = 2  # maximum number of sensors that are tried
+SENSORS, VARIABLES = 2, 1  # maximum number of sensors and of variables that are tried
 
 
 def following(order: Order, candidate: Candidate) -> Iterator[Candidate]:
-    """Yield unconditional candidates that scale the changed constant by a power of a sensor.
+    """Yield unconditional candidates that scale the changed constant by a power of a sensor or a variable.
 
-    The sensors of the candidate's condition come first. They must not be negative, and their usual values must differ
-    clearly between the worlds. The candidate must change one constant by a positive factor, at one or all of its uses.
+    The sensors of the candidate's condition come first, then the other sensors, then the variables that the node has
+    where it uses the constant: a speed need not be declared as a sensor. Their usual values must differ clearly between
+    the worlds. The candidate must change one constant by a positive factor, at one or all of its uses.
     """
     factors = {factor(one) for one in candidate.mutations}
     by = factors.pop() if len(factors) == 1 else None
@@ -45,10 +48,20 @@ def following(order: Order, candidate: Candidate) -> Iterator[Candidate]:
     if by is None or by <= 0.0 or by == 1.0 or not plain or order.permanent:
         return
     known = {one.name: one for one in templates(order.root)}
+    if not {ABOVE, BELOW} <= known.keys():
+        return
     found = [
         form for sensor in _sensors(order, candidate) if (form := _form(order, sensor, by, known)) is not None
     ]
-    for form in found[:SENSORS]:
+    found = (
+        found[:SENSORS]
+        + [
+            form
+            for name, designed, drifted in variables(order, [one.operand for one in candidate.mutations])
+            if (form := _law(Form(known[ABOVE], variable=name), designed, drifted, by)) is not None
+        ][:VARIABLES]
+    )
+    for form in found:
         yield Candidate(tuple(Mutation(one.operand, 1.0, form=form) for one in candidate.mutations), ALWAYS)
 
 
@@ -59,14 +72,22 @@ def _sensors(order: Order, candidate: Candidate) -> Sequence[Sensor]:
     return sorted((one for one in usable if one.low is not None), key=lambda one: one not in asked)
 
 
-def _form(order: Order, sensor: Sensor, by: float, known: dict[str, Template]) -> Form | None:
+def _form(order: Order, sensor: Sensor, by: float, known: Mapping[str, Template]) -> Form | None:
     designed, drifted = usual(order, sensor, order.fixture.sample), usual(order, sensor)
+    return _law(Form(known[ABOVE if drifted > designed else BELOW], sensor=sensor), designed, drifted, by)
+
+
+def _law(form: Form, designed: float, drifted: float, by: float) -> Form | None:
+    """Return a form with the power that multiplies a constant by `by`, or None if that power means little.
+
+    `designed` and `drifted` are the usual values of what the constant follows.
+    """
     ratio = drifted / designed
-    name = ABOVE if ratio > 1.0 else BELOW
-    if name not in known or max(ratio, 1.0 / ratio) < APART:
+    rises = form.template.name == ABOVE
+    if (ratio if rises else 1.0 / ratio) < APART:
         return None
     power = log(by) / log(ratio)
     if not LEAST <= abs(power) <= MOST:
         return None
     defaults = (("power", float(f"{power:.2g}")), ("usual", float(f"{designed:.3g}")))
-    return Form(known[name], parameter=defaults[0][0], defaults=defaults, sensor=sensor)
+    return replace(form, parameter=defaults[0][0], defaults=defaults)

@@ -35,8 +35,8 @@ FIRST = 2  # number of expressions tried first: the one ranked first, and the on
 # of the episodes left
 LEAST = 50
 # A power is a multiple of a half in most laws of physics. If one nearly earns enough, the law holds only roughly, and
-# multiples of a twentieth are tried.
-FINER = 0.1
+# the power is moved in hundredths.
+FINER = 0.02
 # if the candidates of a group need more than the group's own episodes, they leave this share of the remaining
 # episodes to later groups
 KEPT = 0.6

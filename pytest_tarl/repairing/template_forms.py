@@ -39,7 +39,7 @@ def form_words(order: Order, mutation: Mutation) -> str:
     source = document(mutation.operand.span.path, order.analysis.sources[mutation.operand.span.path])
     x = form.target(_folded(source, source.find(mutation.operand.span)))
     y = _folded(source, source.find(form.partner)) if form.partner is not None else ""
-    return described(form, x, y, form_values(mutation), form.sensor.name if form.sensor else "")
+    return described(form, x, y, form_values(mutation), form.sensor.name if form.sensor else form.variable)
 
 
 def forms(order: Order, template: Template, among: Sequence[Spot]) -> Iterator[list[tuple[Operand, Form]]]:

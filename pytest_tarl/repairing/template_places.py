@@ -21,6 +21,14 @@ _CHAINS: Mapping[str, tuple[type[ast.operator], ...]] = {
     "factor": (ast.Mult, ast.Div),
     "term": (ast.Add, ast.Sub),
 }
+CLOCKS = (
+    "now",
+    "time",
+    "get_time",
+    "get_rostime",
+    "monotonic",
+    "perf_counter",
+)  # functions that return the time
 _AXES = (("x", "y"), ("y", "z"), ("x", "z"), ("left", "right"), ("roll", "pitch"))
 
 
@@ -172,8 +180,13 @@ def _sent(call: ast.Call) -> Iterator[ast.expr]:
 
 
 def _computes(node: ast.expr) -> bool:
-    """Return whether an expression may yield a number: a function call or a conditional expression."""
-    return isinstance(node, ast.IfExp) or (isinstance(node, ast.Call) and not _makes_an_object(node))
+    """Return whether an expression may yield a number: a function call or a conditional expression.
+
+    The time is left out: it is no signal that a template could change.
+    """
+    if isinstance(node, ast.Call):
+        return not _makes_an_object(node) and called(node) not in CLOCKS
+    return isinstance(node, ast.IfExp)
 
 
 def _makes_an_object(call: ast.Call) -> bool:

@@ -13,6 +13,7 @@ import pytest
 
 from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.mutate import Mutation, form_values
+from pytest_tarl.repairing import following as module
 from pytest_tarl.repairing.following import following
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate
@@ -24,6 +25,11 @@ LOAD = Sensor("load", topic="/load", field="data", low=0, high=10, bins=10)
 NAMED = replace(operand(4, "AHEAD", 1.1), definition=operand(1, "1.1", 1.1).span)
 FAST = Guard((Conjunct(SPEED, 3.0, inf),))
 FOUR_TIMES = Candidate((Mutation(NAMED, 4.0),), FAST)
+
+
+@pytest.fixture(autouse=True)
+def no_variables(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "variables", lambda *_: ())
 
 
 def order(designed: tuple[int, ...], drifted: tuple[int, ...], *sensors: Sensor) -> Any:
@@ -101,3 +107,21 @@ def test_after_a_permanent_change_one_value_suffices() -> None:
     asked = order((1,), (6,), SPEED)
     asked.permanent = True
     assert list(following(asked, FOUR_TIMES)) == []
+
+
+def test_a_variable_of_the_node_serves_as_well_as_a_sensor(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "variables", lambda *_: [("self.speed", 1.0, 4.0), ("self.way", 1.0, 9.0)])
+    (found,) = following(order((6,), (6,), SPEED), FOUR_TIMES)
+    form = found.mutations[0].form
+    assert form is not None
+    assert (form.template.name, form.variable, form_values(found.mutations[0])["power"]) == (
+        "above",
+        "self.speed",
+        1.0,
+    )
+
+
+def test_a_variable_that_becomes_smaller_is_not_followed(monkeypatch: pytest.MonkeyPatch) -> None:
+    # its sign is unknown, and a negative number has no power
+    monkeypatch.setattr(module, "variables", lambda *_: [("self.speed", 4.0, 1.0)])
+    assert list(following(order((6,), (6,), SPEED), FOUR_TIMES)) == []
