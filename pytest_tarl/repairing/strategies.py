@@ -37,11 +37,13 @@ def strategy(
     interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
     measured: Callable[[Sequence[Operand]], Sequence[Hint]] = lambda _: (),
     corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
+    following: Callable[[Candidate], Iterator[Candidate]] = lambda _: iter(()),
 ) -> Strategy:
     """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
 
     The sweep calls `interlude` before each of its steps, with the largest gain so far, and `measured` for changes that
-    recorded missions suggest, and `corrections` before it yields an extreme change.
+    recorded missions suggest, and `corrections` before it yields an extreme change. `following` returns candidates in
+    which a changed constant follows a sensor or a variable.
     """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
@@ -62,6 +64,7 @@ def strategy(
             interlude=interlude,
             measured=lambda: measured(moved),
             corrections=corrections,
+            following=following,
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

@@ -16,6 +16,7 @@ from pytest_tarl.searching.acting import Acting
 from pytest_tarl.searching.adjusting import Adjusting
 from pytest_tarl.searching.combining import Combining
 from pytest_tarl.searching.constants_first import constants_first
+from pytest_tarl.searching.divided import divided, stronger_and_weaker
 from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.polishing import ALMOST, EPISODES, FINE_STEPS, KNOWN
@@ -61,6 +62,7 @@ class Attempts:
         weaker: Callable[[Operand, float], bool] = lambda _, __: False,
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
         finer: Callable[[Operand], object] = lambda _: None,
+        following: Callable[[Candidate], Iterator[Candidate]] = lambda _: iter(()),
         scope: Scope = everywhere,
         interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
         corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
@@ -76,6 +78,7 @@ class Attempts:
         self.weaker = weaker
         self.given = given
         self.finer = finer
+        self.following = following
         self.scope = scope
         self._structures = interlude
         self.corrections = corrections
@@ -95,6 +98,7 @@ class Attempts:
         self._easy = easy(goal)
         self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # change → pair of its first run
         self._tried: set[Candidate] = set()
+        self._divided: set[Unit] = set()  # units of which no single value suits all missions
         self._adjusted: set[tuple[Unit, Guard]] = set()  # units that nearly earned enough and were adjusted
         self._settled = Settled()
 
@@ -168,6 +172,7 @@ class Attempts:
             yield from self.preferences.after()
         elif near:
             yield from self._nearly(unit, candidate, factor, pair)
+            yield from self._following(unit, candidate, factor, pair)
             yield from self.uses.alone(unit, guard, factor, pair)
         if holds or (near and self.trials.loses(candidate)):
             self.refused.add((unit, guard))
@@ -191,6 +196,21 @@ class Attempts:
         with self.trials.granting(EPISODES):
             better = self.joining({}).sharper(unit, factor, candidate.guard, FINE_STEPS)
             yield from self.attempt(unit, candidate.guard, better, pair)
+
+    def _following(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
+        """Let a constant that needs different values in different missions follow what differs between them, once."""
+        guard, gains = candidate.guard, self.gains.of(unit, candidate.guard)
+        if self.proposed or unit in self._divided or factor <= 0.0:
+            return
+        middle = divided(unit, guard, factor, gains, self.mutate, self.trials, self.goal)
+        if middle is None:
+            return
+        self._divided.add(unit)
+        for law in self.following(Candidate(unit.mutations(self.mutate, middle), guard)):
+            for one in stronger_and_weaker(law):
+                if self._near(one, pair) and self._settled.holds(one, self.trials, self.goal, pair):
+                    yield one
+                    break
 
     def _learn(self, unit: Unit, candidate: Candidate, factor: float) -> None:
         pairs = self.goal.pairs

@@ -59,7 +59,8 @@ class Sweep:
     with the largest gain before each step and each long phase, and may yield candidates of another search. `measured`
     returns changes that recorded missions suggest (see `FirstSteps`), and `corrections` yields confirmed corrections of
     sensor readings, which come before extreme changes. `finer` is called with an operand that nearly earned
-    enough, so that `mutate` may allow values between those of its grid.
+    enough, so that `mutate` may allow values between those of its grid. `following` returns, for a changed constant,
+    candidates in which the constant follows a sensor or a variable instead.
     """
 
     def __init__(
@@ -79,6 +80,7 @@ class Sweep:
         charts: Mapping[Operand, Chart] = MappingProxyType({}),
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
         finer: Callable[[Operand], object] = lambda _: None,
+        following: Callable[[Candidate], Iterator[Candidate]] = lambda _: iter(()),
         responding: Collection[str] = (),
         scope: Scope = everywhere,
         interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
@@ -106,6 +108,7 @@ class Sweep:
             weaker=weaker,
             given=given,
             finer=finer,
+            following=following,
             scope=scope,
             interlude=interlude,
             corrections=corrections,

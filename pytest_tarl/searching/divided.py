@@ -1,0 +1,61 @@
+"""Recognise a constant that needs different values in different missions.
+
+One value reaches the goal in some missions and fails in others, in which another value reaches it. Then no single value
+restores the reward, and refining either value costs episodes for nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from math import sqrt
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
+from pytest_tarl.searching.units import Unit
+
+POWERS = (1.0, 1.3, 0.77)  # factors on the power with which the constant follows something
+
+
+def divided(
+    unit: Unit,
+    guard: Guard,
+    factor: float,
+    tried: Mapping[float, float],
+    mutate: Mutate,
+    trials: Trials,
+    goal: Goal,
+) -> float | None:
+    """Return a factor between two that each reach the goal where the other one fails, or None.
+
+    `tried` has the factors that ran so far. Both factors must change the constant in the same direction. If another
+    factor reached the goal, too, each of the two runs where the other one did. Raise BudgetSpentError and RepairError.
+    """
+    mine = Candidate(unit.mutations(mutate, factor), guard)
+    here = _reached(mine, trials, goal)
+    for other in tried if here else ():
+        if other <= 0.0 or other in (1.0, factor) or (other > 1.0) != (factor > 1.0):
+            continue
+        its = Candidate(unit.mutations(mutate, other), guard)
+        there = [seed for seed in _reached(its, trials, goal) if seed not in here]
+        if not there or goal.reached(trials(mine, there[0]), there[0]):
+            continue
+        if not any(goal.reached(trials(its, seed), seed) for seed in here[:1]):
+            return sqrt(factor * other)
+    return None
+
+
+def stronger_and_weaker(candidate: Candidate) -> Iterator[Candidate]:
+    """Yield a candidate that follows something with the power proposed, a larger one and a smaller one."""
+    for power in POWERS:
+        yield replace(candidate, mutations=tuple(replace(one, value=power) for one in candidate.mutations))
+
+
+def _reached(candidate: Candidate, trials: Trials, goal: Goal) -> list[int]:
+    """Return the seeds on which a candidate ran and reached the goal."""
+    return [
+        pair.seed
+        for pair in goal.pairs
+        for outcome in trials.ran(candidate, [pair])
+        if goal.reached(outcome, pair.seed)
+    ]
