@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -92,10 +93,14 @@ class Field:
         pairs = tuple(Pair(seed, DRIFTED) for seed in KNOWN)
         self.order: Any = SimpleNamespace(
             goal=Goal(pairs, near=9.0, enough=9.5, online=DRIFTED),
-            comparison=SimpleNamespace(totals={"online": [DRIFTED] * 10}, sensors=(), sizes={}),
+            root=Path("nowhere"),
+            analysis=SimpleNamespace(sites=()),
+            comparison=SimpleNamespace(totals={"online": [DRIFTED] * 10}, sensors=(), sizes={}, culprits=()),
             fixture=SimpleNamespace(
-                sample=SimpleNamespace(seeds=tuple(range(100, 140)), total=totals, episodes=40)
+                sample=SimpleNamespace(seeds=tuple(range(100, 140)), total=totals, episodes=40, lists=()),
+                lists=(),
             ),
+            online=SimpleNamespace(recorded=SimpleNamespace(sample=SimpleNamespace(lists=()))),
             reference=Reference(totals.tolist(), 1.0, 0.5, -10.0),
             options=SimpleNamespace(seed=0, alpha=0.05, edit="use"),
             drift="mud",

@@ -13,7 +13,7 @@ from pytest_tarl.drifts import Drift
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import Mutation
-from pytest_tarl.repairing import accepting, repair, request
+from pytest_tarl.repairing import accepting, other_values, repair, request
 from pytest_tarl.repairing.accepting import OLD_WORLD, Accepted, Examiner
 from pytest_tarl.repairing.ledger import Tried
 from pytest_tarl.repairing.missed import Missed
@@ -152,6 +152,43 @@ def test_a_smoother_form_of_a_candidate_is_accepted_in_its_place(monkeypatch: py
     assert isinstance(found, Accepted)
     assert found.candidate == first
     assert [each.candidate for each in one.tried] == [nicer, first]
+
+
+@pytest.mark.parametrize("kind", ["lucky on known seeds", "bad as designed"])
+def test_a_constant_whose_value_fits_only_some_missions_or_one_world_follows_a_sensor(
+    monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    one, field, trials = examiner([kind, "good"], monkeypatch)
+    asked: list[Candidate] = []
+
+    def following(_: object, candidate: Candidate) -> list[Candidate]:
+        asked.append(candidate)
+        return [field.candidates[1]]
+
+    monkeypatch.setattr(other_values, "following", following)
+    found = one.first(iter(field.candidates[:1]), trials)
+    assert found is not None
+    assert found.candidate == field.candidates[1]
+    assert asked == field.candidates[:1]
+
+
+def test_a_candidate_that_loses_missions_of_a_rejected_one_gets_no_better_value(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    one, field, trials = examiner(["good"], monkeypatch)
+    centred: list[Candidate] = []
+
+    def better(candidate: Candidate, *_: object) -> Candidate:
+        centred.append(candidate)
+        return candidate
+
+    monkeypatch.setattr(accepting, "centred", better)
+    one._missed.seeds.append((3, 11.0))
+    assert one._centred(field.candidates[0], trials) == field.candidates[0]
+    assert centred == []
+    one._missed.seeds.clear()
+    assert one._centred(field.candidates[0], trials) == field.candidates[0]
+    assert centred == field.candidates
 
 
 def test_a_candidate_is_refused_if_another_test_gets_worse(monkeypatch: pytest.MonkeyPatch) -> None:
