@@ -146,3 +146,16 @@ def test_a_value_stays_one_step_from_those_that_fail() -> None:
     value = factor(found.mutations[0])
     assert value is not None
     assert 2.8 * 1.03 < value < 4.2
+
+
+@pytest.mark.parametrize(("designed", "kept"), [(9.5, True), (9.9, False)])
+def test_a_value_that_earns_what_the_designed_missions_of_its_seeds_do_is_not_fitted_to_them(
+    designed: float, kept: bool
+) -> None:
+    trials = world(2.0, 0.3)
+    trials.design = lambda seed: Outcome(designed, True)
+    mutation = mutations(LITERAL, 2.5)
+    assert mutation is not None
+    found = Candidate((mutation,), ALWAYS)  # earns 9.45
+    assert (centred(found, trials, mutations, GOAL, REFERENCE) == found) is kept
+    assert trials.beside == SEEDS

@@ -347,6 +347,17 @@ def test_a_parameter_on_a_grid_takes_only_its_multiples(
     assert (None if found is None else found.value) == expected
 
 
+@pytest.mark.parametrize(("grid", "expected"), [(0.5, 0.94), (1.0, 1.0)])
+def test_a_power_that_nearly_earns_enough_is_moved_in_hundredths_and_a_count_is_not(
+    tmp_path: Path, grid: float, expected: float
+) -> None:
+    of = structures(order_of(tmp_path))
+    moved = formed(of, Parameter("k", 1.0, grid=grid))
+    assert moved(0.94).value == 1.0
+    of._fine.add(operand(1, "x", 2.0))
+    assert moved(0.94).value == pytest.approx(expected)
+
+
 def test_a_template_without_parameters_has_one_mutation(tmp_path: Path) -> None:
     of = structures(order_of(tmp_path))
     of._found[operand(1, "x", 2.0)] = Form(template("made"))

@@ -38,6 +38,8 @@ def found(
         ("x = math.sin(a)", False, [("math.sin(a)", "value")]),
         ("x = np.clip(a, 0, 1)", False, [("np.clip(a, 0, 1)", "value")]),
         ("x = 'a%s' % b", False, []),
+        ("x = rospy.Time.now()", True, []),
+        ("x = self.distance()", True, [("self.distance()", "value")]),
         ("x = 2 * b", False, [("2 * b", "value")]),
         ("x = f(a)", True, [("f(a)", "value")]),
         ("x = f(a)", False, []),
