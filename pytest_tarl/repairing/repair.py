@@ -40,6 +40,9 @@ from pytest_tarl.searching.sweep import Sweep
 
 CONSTANTS = 2 / 3  # share of the budget for the search of constants; structural changes get the rest
 RESERVE = 1 / 6  # share of the budget that is added to the search of constants if a candidate has gained much
+# share of the last phase's episodes that only examinations of confirmed candidates may use: a candidate found without
+# any episode left for its condition cannot be accepted
+EXAMINING = 0.1
 NAMED_FROM = 3  # minimum number of episodes for the note that a candidate works in a part of a range
 
 
@@ -166,6 +169,7 @@ def _restructure(
 ) -> None:
     """Spend the remaining episodes on structural changes, because no change of constants was accepted."""
     trials = purse.phase(mutants, "structure", watch)
+    trials.budget -= round(EXAMINING * trials.budget)
     signs = NO_SIGNS
     if found.early is not None:
         trials.know(found.early.trials)

@@ -444,3 +444,29 @@ def test_all_sites_are_listed_with_those_of_the_slices_first() -> None:
     ]
     assert (found[1][0].path, found[1][0].line, found[1][0].code) == ("node.py", 4, "a")
     assert [place.id for place, _ in repair._ranked(of, {})] == [ranked.site.id, str(a.site)]
+
+
+def test_a_tenth_of_the_last_phase_is_left_for_examinations(monkeypatch: pytest.MonkeyPatch) -> None:
+    budgets: list[int] = []
+    trials = Trials(lambda *_: Outcome(1.0, passed=True), 60, limit=60)
+
+    class Search:
+        def __init__(self, *_: object) -> None:
+            budgets.append(trials.budget)
+
+        def candidates(self) -> Any:
+            return iter(())
+
+        def effects(self) -> dict[str, Any]:
+            return {}
+
+    def first(_: object, trials: Trials) -> None:
+        with trials.granting(90):
+            budgets.append(trials.budget)
+
+    monkeypatch.setattr(repair, "Structures", Search)
+    purse: Any = SimpleNamespace(phase=lambda *_: trials, settle=lambda _: None)
+    mutants: Any = SimpleNamespace(order=SimpleNamespace(goal=None))
+    one: Any = SimpleNamespace(first=first, turns=1)
+    repair._restructure(mutants, one, repair._Findings(), None, (ALWAYS,), purse)  # type: ignore[arg-type]
+    assert budgets == [54, 60]
