@@ -180,11 +180,15 @@ class Attempts:
     def _nearly(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
         """Adjust the value of a change that passes its missions and earns nearly enough, before others are tried.
 
-        Such a change is of the right kind, and only its value is not exact.
+        Such a change is of the right kind, and only its value is not exact. A constant is adjusted in such small steps
+        only between values that were tried on both sides; beyond them, the larger steps of `adjusting` come first.
         """
         goal, key = self.goal, (unit, candidate.guard)
         ran, totals = self.trials.ran(candidate, goal.pairs), self.trials.totals_of(candidate, goal.pairs)
         if key in self._adjusted or len(ran) < KNOWN or any(map(goal.lost, ran)):
+            return
+        tried = self.gains.of(unit, candidate.guard)
+        if not self.proposed and not min(tried) < factor < max(tried):
             return
         if fmean(totals.values()) < goal.enough_on(list(totals)) - (1.0 - ALMOST) * goal.wanted:
             return

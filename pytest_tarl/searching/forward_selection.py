@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
 from pytest_tarl.searching.confirming import confirmed
-from pytest_tarl.searching.polishing import ALMOST, KNOWN, MUCH, SHARP_STEPS, Factors, polished
+from pytest_tarl.searching.polishing import ALMOST, KNOWN, MUCH, SEEDS, SHARP_STEPS, Factors, polished
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import NEAR, Unit
 
@@ -302,7 +302,8 @@ class ForwardSelection:
                 return None
 
         hardest = sorted(ran, key=ran.__getitem__)
-        (better,) = polished((factor,), earned, hardest, self.goal.wanted, steps)
+        enough = self.goal.enough_on(hardest[:SEEDS])
+        (better,) = polished((factor,), earned, hardest, self.goal.wanted, steps, enough)
         return better
 
     def _with_another(self, base: Joint, turn: int) -> Iterator[Joint]:

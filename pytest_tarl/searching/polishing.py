@@ -8,6 +8,7 @@ than any point elsewhere. The same is true for a single constant whose range of 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import inf
 from statistics import fmean
 
 ALMOST = 0.9  # minimum gain of a combination to adjust, as a share of the wanted gain
@@ -27,21 +28,26 @@ Earned = Callable[[Factors, int], float | None]
 
 
 def polished(
-    begin: Factors, earned: Earned, seeds: Sequence[int], wanted: float, steps: Sequence[float] = STEPS
+    begin: Factors,
+    earned: Earned,
+    seeds: Sequence[int],
+    wanted: float,
+    steps: Sequence[float] = STEPS,
+    enough: float = inf,
 ) -> Factors:
     """Return the factors with the highest mean total found by coordinate ascent, or `begin` if none is better.
 
     `earned` takes factors and a seed and returns the total reward of the episode, or None to reject the factors.
-    `wanted` is the gain that a repair must bring.
+    `wanted` is the gain that a repair must bring. The ascent ends at a mean total of `enough`.
     """
-    search = _Ascent(earned, seeds[:SEEDS], BEHIND * wanted)
-    first = search.mean(begin, -float("inf"))
+    search = _Ascent(earned, seeds[:SEEDS], BEHIND * wanted, enough)
+    first = search.mean(begin, -inf)
     if first is None:
         return begin
     best, most = begin, first
     for step in steps:
-        before = -float("inf")
-        while before < most:
+        before = -inf
+        while before < most < enough:
             before = most
             for at in range(len(begin)):
                 best, most = search.along(best, most, at, step)
@@ -49,7 +55,8 @@ def polished(
 
 
 class _Ascent:
-    def __init__(self, earned: Earned, seeds: Sequence[int], behind: float) -> None:
+    def __init__(self, earned: Earned, seeds: Sequence[int], behind: float, enough: float = inf) -> None:
+        self.enough = enough
         self.earned = earned
         self.seeds = seeds
         self.behind = behind
@@ -60,7 +67,7 @@ class _Ascent:
         """Move one factor up, or else down, while that increases the mean; return the best factors and their mean."""
         for ratio in (step, 1.0 / step):
             begun = most
-            while self.spent < EPISODES:
+            while self.spent < EPISODES and most < self.enough:
                 moved = (*best[:at], round(best[at] * ratio, 4), *best[at + 1 :])
                 found = self.mean(moved, most)
                 if found is None or found <= most:

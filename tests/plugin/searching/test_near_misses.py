@@ -21,7 +21,7 @@ GOAL = Goal(
 (UNIT,) = units([operand(3, "2.0", 2.0)])
 
 
-def tries(best: float, width: float, finer: list[Operand]) -> Attempts:
+def tries(best: float, width: float, finer: list[Operand], proposed: bool = True) -> Attempts:
     """Return attempts in a world in which the factor `best` earns 10, and all factors near it pass their missions."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
@@ -30,7 +30,7 @@ def tries(best: float, width: float, finer: list[Operand]) -> Attempts:
         return Outcome(max(total, -5.0), total > 7.0)
 
     trials = Trials(run, 200, design=lambda seed: Outcome(10.0, True))
-    return Attempts((UNIT,), mutations, (ALWAYS,), trials, GOAL, proposed=True, finer=finer.append)
+    return Attempts((UNIT,), mutations, (ALWAYS,), trials, GOAL, proposed=proposed, finer=finer.append)
 
 
 def test_a_value_that_earns_nearly_enough_is_adjusted_at_once() -> None:
@@ -63,3 +63,12 @@ def test_a_unit_is_adjusted_once() -> None:
     assert list(search.attempt(UNIT, ALWAYS, 2.21, 0)) == []
     assert search.trials.spent - spent <= 12  # six missions, and the designed ones of their seeds
     assert len(finer) == 1
+
+
+@pytest.mark.parametrize("beyond", [False, True])
+def test_a_constant_is_adjusted_only_between_values_on_both_sides(beyond: bool) -> None:
+    finer: list[Operand] = []
+    search = tries(2.5, 0.15, finer, proposed=False)
+    for factor in (5.0, 2.2) if beyond else (2.2,):
+        list(search.attempt(UNIT, ALWAYS, factor, 0))
+    assert bool(finer) is beyond

@@ -39,6 +39,20 @@ def test_polishing_keeps_the_best_factors_and_those_that_always_fail() -> None:
     assert polished((6.0, 1.5), earned, range(8), 17.0) == (6.0, 1.5)
 
 
+def test_adjusting_ends_as_soon_as_the_mean_is_enough() -> None:
+    ran: list[Factors] = []
+
+    def recorded(factors: Factors, seed: int) -> float | None:
+        ran.append(factors)
+        return earned(factors, seed)
+
+    found = polished((0.3, 1.5), recorded, range(8), 17.0, enough=8.5)
+    assert 8.5 <= mean(found) < 10.0
+    few = len(ran)
+    polished((0.3, 1.5), recorded, range(8), 17.0)
+    assert few < len(ran) - few
+
+
 def test_adjusting_ends_after_a_number_of_episodes() -> None:
     ran: list[Factors] = []
 
