@@ -19,6 +19,7 @@ from pytest_tarl.searching.constants_first import constants_first
 from pytest_tarl.searching.divided import divided, stronger_and_weaker
 from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
 from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.plainness import Oddness, writing
 from pytest_tarl.searching.polishing import ALMOST, EPISODES, FINE_STEPS, KNOWN
 from pytest_tarl.searching.preferring import Preferences
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
@@ -190,6 +191,8 @@ class Attempts:
         tried = self.gains.of(unit, candidate.guard)
         if not self.proposed and not min(tried) < factor < max(tried):
             return
+        if not self.proposed and writing(unit.operands[0]) is Oddness.OFFSET:
+            return  # an offset on a literal zero is hardly ever the repair that a maintainer would write
         if fmean(totals.values()) < goal.enough_on(list(totals)) - (1.0 - ALMOST) * goal.wanted:
             return
         self._adjusted.add(key)
