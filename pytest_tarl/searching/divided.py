@@ -29,16 +29,17 @@ def divided(
     """Return a factor between two that each reach the goal where the other one fails, or None.
 
     `tried` has the factors that ran so far. Both factors must change the constant in the same direction. If another
-    factor reached the goal, too, each of the two runs where the other one did. Raise BudgetSpentError and RepairError.
+    factor reached the goal and failed, too, each of the two runs where the other one reached it. Raise BudgetSpentError
+    and RepairError.
     """
     mine = Candidate(unit.mutations(mutate, factor), guard)
     here = _reached(mine, trials, goal)
-    for other in tried if here else ():
+    for other in tried if here and _failed(mine, trials, goal) else ():
         if other <= 0.0 or other in (1.0, factor) or (other > 1.0) != (factor > 1.0):
             continue
         its = Candidate(unit.mutations(mutate, other), guard)
         there = [seed for seed in _reached(its, trials, goal) if seed not in here]
-        if not there or goal.reached(trials(mine, there[0]), there[0]):
+        if not there or not _failed(its, trials, goal) or goal.reached(trials(mine, there[0]), there[0]):
             continue
         if not any(goal.reached(trials(its, seed), seed) for seed in here[:1]):
             return sqrt(factor * other)
@@ -59,3 +60,8 @@ def _reached(candidate: Candidate, trials: Trials, goal: Goal) -> list[int]:
         for outcome in trials.ran(candidate, [pair])
         if goal.reached(outcome, pair.seed)
     ]
+
+
+def _failed(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
+    """Return whether a candidate ran on a seed on which it did not reach the goal."""
+    return len(_reached(candidate, trials, goal)) < len(trials.ran(candidate, goal.pairs))
