@@ -29,17 +29,20 @@ def divided(
     """Return a factor between two that each reach the goal where the other one fails, or None.
 
     `tried` has the factors that ran so far. Both factors must change the constant in the same direction. If another
-    factor reached the goal and failed, too, each of the two runs where the other one reached it. Raise BudgetSpentError
-    and RepairError.
+    factor reached the goal, too, and one of the two failed, each runs where the other one reached it. Raise
+    BudgetSpentError and RepairError.
     """
     mine = Candidate(unit.mutations(mutate, factor), guard)
     here = _reached(mine, trials, goal)
-    for other in tried if here and _failed(mine, trials, goal) else ():
+    failed = _failed(mine, trials, goal)
+    for other in tried if here else ():
         if other <= 0.0 or other in (1.0, factor) or (other > 1.0) != (factor > 1.0):
             continue
         its = Candidate(unit.mutations(mutate, other), guard)
         there = [seed for seed in _reached(its, trials, goal) if seed not in here]
-        if not there or not _failed(its, trials, goal) or goal.reached(trials(mine, there[0]), there[0]):
+        if not there or not (failed or _failed(its, trials, goal)):
+            continue  # both may reach the goal everywhere
+        if goal.reached(trials(mine, there[0]), there[0]):
             continue
         if not any(goal.reached(trials(its, seed), seed) for seed in here[:1]):
             return sqrt(factor * other)

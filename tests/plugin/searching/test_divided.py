@@ -44,8 +44,9 @@ def candidate(factor: float) -> Candidate:
         ({2.2: [0, 1], 5.0: [0, 1]}, sqrt(2.2 * 5.0), 0),
         ({2.2: [0, 1], 5.0: [1, 2]}, sqrt(2.2 * 5.0), 1),
         ({2.2: [0, 3], 5.0: [1, 2]}, sqrt(2.2 * 5.0), 2),
-        ({2.2: [0, 1], 5.0: [1]}, None, 0),  # 5 has not failed yet
-        ({2.2: [0], 5.0: [0, 1]}, None, 0),
+        ({2.2: [0, 1], 5.0: [1]}, sqrt(2.2 * 5.0), 1),
+        ({2.2: [0], 5.0: [0, 1]}, sqrt(2.2 * 5.0), 1),
+        ({2.2: [0], 5.0: [1]}, None, 0),  # neither has failed yet
         ({2.2: [0, 1], 3.0: [0, 1]}, None, 0),  # 3 reaches the goal nowhere
         ({2.2: [0, 1], 2.21: [2, 1]}, None, 1),  # both reach it in the same missions
         ({2.2: [1], 5.0: [1]}, None, 0),
