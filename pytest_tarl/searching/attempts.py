@@ -22,6 +22,7 @@ from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.plainness import Oddness, writing
 from pytest_tarl.searching.polishing import ALMOST, EPISODES, FINE_STEPS, KNOWN
 from pytest_tarl.searching.preferring import Preferences
+from pytest_tarl.searching.refining import bracket
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.twins import twin_of
 from pytest_tarl.searching.units import Scope, Unit, everywhere
@@ -38,6 +39,7 @@ SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noi
 EASY = 3  # maximum number of easy pairs; changes run on their seeds until one gains
 # a gain below this share of the wanted gain is hollow if it comes from missions that fail sooner
 PARTLY = 0.3
+NARROW = 1.6  # maximum ratio of the values on both sides of a constant that is adjusted in small steps
 LOST = 0.5  # a pair can be easy if its loss is at least this share of the wanted gain
 
 
@@ -182,14 +184,15 @@ class Attempts:
         """Adjust the value of a change that passes its missions and earns nearly enough, before others are tried.
 
         Such a change is of the right kind, and only its value is not exact. A constant is adjusted in such small steps
-        only between values that were tried on both sides; beyond them, the larger steps of `adjusting` come first.
+        only between two close values that earn much less; otherwise the larger steps of `adjusting` reach farther.
         """
         goal, key = self.goal, (unit, candidate.guard)
         ran, totals = self.trials.ran(candidate, goal.pairs), self.trials.totals_of(candidate, goal.pairs)
         if key in self._adjusted or len(ran) < KNOWN or any(map(goal.lost, ran)):
             return
         tried = self.gains.of(unit, candidate.guard)
-        if not self.proposed and not min(tried) < factor < max(tried):
+        peak = max(tried, key=tried.__getitem__)
+        if not self.proposed and not (peak == factor and 1.0 < bracket(tried) <= NARROW):
             return
         if not self.proposed and writing(unit.operands[0]) is Oddness.OFFSET:
             return  # an offset on a literal zero is hardly ever the repair that a maintainer would write

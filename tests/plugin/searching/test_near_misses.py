@@ -65,10 +65,21 @@ def test_a_unit_is_adjusted_once() -> None:
     assert len(finer) == 1
 
 
-@pytest.mark.parametrize("beyond", [False, True])
-def test_a_constant_is_adjusted_only_between_values_on_both_sides(beyond: bool) -> None:
+@pytest.mark.parametrize(
+    ("known", "adjusted"),
+    [
+        ({}, False),
+        ({1.9: 0.0, 2.6: 0.0}, True),
+        ({1.9: 0.0, 5.0: 0.0}, False),  # larger steps reach the values up to 5
+        ({1.9: 0.0, 2.6: 13.0}, False),  # 2.6 is about as good
+    ],
+)
+def test_a_constant_is_adjusted_only_between_two_close_values_that_earn_less(
+    known: dict[float, float], adjusted: bool
+) -> None:
     finer: list[Operand] = []
     search = tries(2.5, 0.15, finer, proposed=False)
-    for factor in (5.0, 2.2) if beyond else (2.2,):
-        list(search.attempt(UNIT, ALWAYS, factor, 0))
-    assert bool(finer) is beyond
+    for factor, gain in known.items():
+        search.gains.enter((UNIT, ALWAYS), factor, gain)
+    list(search.attempt(UNIT, ALWAYS, 2.2, 0))
+    assert bool(finer) is adjusted
