@@ -99,8 +99,8 @@ def tram(
     """Stop a tram at six platforms, with a brake that starts at a point for dry rails.
 
     `leaves` is how slippery the rails are, from 0 to 1; `slope` is the slope of the line in percent, positive downhill;
-    `crowd` is the load in t; `sanding` is the delay in s until sand lies on the rails. A stop passes within 4 m of the sign; the run
-    passes with at most one bad stop. The reward falls with the mean error.
+    `crowd` is the load in t; `sanding` is the delay in s until sand lies on the rails. A stop passes within 4 m of the
+    sign; the run passes with at most one bad stop. The reward falls with the mean error.
     """
     speeds = rng.normal(11.0, 0.25, 6)
     patches = np.clip(rng.normal(1.0, 0.25, 6), 0.0, 1.8)

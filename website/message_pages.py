@@ -25,7 +25,7 @@ class Message(NamedTuple):
 
 
 def slug(words: str) -> str:
-    """Return words in the form of a part of an address."""
+    """Return words as a part of a URL: in lower case, joined by hyphens."""
     return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")
 
 

@@ -23,7 +23,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Setup:
-    """The checked arguments of `tarl.external`, which documents them."""
+    """The arguments of `tarl.external` after they were checked. That function documents them."""
 
     command: tuple[str, ...]
     folder: Path

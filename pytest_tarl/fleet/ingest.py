@@ -38,7 +38,7 @@ class Order:
     version: str = "unknown"
     site: str = "unknown"
     salt: str = ""  # if given, names of robots are replaced by salted hashes
-    repair: str = ""  # the repair in the robots' software: a name, or a patch file of .tarl/patches
+    repair: str = ""  # the repair that the robots run: its name, or a patch file in .tarl/patches
     replay: Replay | None = None  # replays bags
 
 

@@ -65,7 +65,7 @@ class Mission(NamedTuple):
 
     @property
     def progress(self) -> Progress:
-        """Return the progress in the log after this mission."""
+        """Return how far the log has been read once this mission is included."""
         return advanced(self.begun, self.last, self.missions, self.unfinished)
 
 

@@ -71,7 +71,7 @@ class Observer:
         self.running = False  # whether a mission is in progress
         self.problem = ""  # the first error of the observer; errors must not reach the node
         self._lock = threading.RLock()  # keeps the records of several threads in order
-        # locked until `close`; waiting for an Event would cost the node more time
+        # locked until `close`; an Event would cost the node more time
         self._over = threading.Lock()
         self._over.acquire()
         self._thread = threading.Thread(target=self._look, name="tarl-observer", daemon=True)

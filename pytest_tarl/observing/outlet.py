@@ -103,7 +103,7 @@ class Outlet:
             sleep(_PAUSE)
             self.pump()
         if self._process.stdin is not None:
-            # closing the pipe ends the writer even if it cannot read the end mark
+            # the writer ends when the pipe is closed, even if it has not read the mark of the end
             self._process.stdin.close()
             self._process.stdin = None
         last = self._said()

@@ -46,7 +46,7 @@ class RclpyNetwork:
         self.kept: Counter[Any] = Counter()  # number of messages that publishers keep for late subscribers
         self.for_world: deque[Any] = (
             deque()
-        )  # for each message in transit to the world, the world's subscription
+        )  # the world's subscription for each message that is on its way to the world
         self.node_publishes: Callable[[str, Any, Any], None] | None = None
         self.node_subscribes: Callable[[str], None] | None = None
         self._state: dict[Process, dict[str, Any]] = {}

@@ -1,4 +1,4 @@
-"""Missions in which refused candidates lost reward. Later candidates run on these missions first, before their own test."""
+"""Missions in which refused candidates lost reward. Later candidates run on them first, before their own test."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ from pytest_tarl.searching.smaller import (
 from pytest_tarl.searching.units import NEAR, Unit, change_size
 
 PLAINER_ROUNDS = 2  # number of refinements of each constant whose change a maintainer would prefer
-FUNCTIONS = 2  # maximum number of functions whose constants are compared by the course of their missions
+FUNCTIONS = 2  # maximum number of functions; their constants are compared by how their missions proceed
 PLAINER = 12  # maximum number of episodes for trying constants whose change a maintainer would prefer
 
 

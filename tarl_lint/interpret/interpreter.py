@@ -178,7 +178,7 @@ class Interpreter:
             self.work.owners.clear()
 
     def count(self, looks: int = 0) -> None:
-        """Convert object reads and graph operations to statements, and add them to the work."""
+        """Add object reads and graph operations to the work, as a number of statements."""
         self.work.spent += (looks + self.graph.asked) // READS_PER_STATEMENT
         self.graph.asked %= READS_PER_STATEMENT
 

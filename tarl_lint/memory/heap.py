@@ -152,7 +152,7 @@ def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
             return held_method(ctx, obj, name)
         holder = recency.intern(ctx, "lib", ("inherited", obj.key, name), name)
         return pointer(holder)
-    # `content` covers the elements, and the attributes that are set under computed names
+    # `content` covers the elements, and the attributes whose names are computed
     result = content(ctx, obj)
     for attributes in replaced_attributes(ctx, obj):
         result = join(result, read_field(ctx, attributes, item_field(name)))

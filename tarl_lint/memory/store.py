@@ -57,7 +57,7 @@ class Store:
     split: dict[frozenset[Obj], Split] = field(default_factory=dict)
     versions: dict[Obj, int] = field(
         default_factory=dict
-    )  # outermost object → `tick` of the last change inside
+    )  # outermost object → `tick` of the last change to it or to an object inside it
     contents: dict[Obj, Contents] = field(default_factory=dict)
     elsewhere: dict[Key, Value | None] = field(
         default_factory=dict

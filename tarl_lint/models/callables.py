@@ -82,7 +82,7 @@ def make_instances(
 
 
 def answering(ctx: Interpreter, arguments: Arguments) -> list[Obj]:
-    """Return the callables in arguments, also nested in containers, that return a value."""
+    """Return those callables among the arguments, and in containers among them, that return a value."""
     plain, named = arguments
     return [o for o in _callables(ctx, (*plain, *named.values()), MAX_INSIDE) if _answers(ctx, o)]
 

@@ -16,7 +16,7 @@ _OFFERS: Final[Mapping[Role, str]] = {"serves": "serves", "calls": "calls", "per
 
 
 def details(instance: Instance, glyphs: Glyphs) -> str:
-    """Return the launched names of a node's remappings, services and actions and the number of its parameters.
+    """Return the remappings, services and actions of a node, with names as launched, and its number of parameters.
 
     Returns "" if it has none.
     """

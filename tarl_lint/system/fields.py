@@ -137,7 +137,9 @@ class _Types:
 
     def __init__(self, tree: ast.Module) -> None:
         self._classes: dict[str, str] = {}  # local name → type
-        self._modules: dict[str, str] = {}  # dotted name of a module of messages in the code → package
+        self._modules: dict[
+            str, str
+        ] = {}  # dotted name that the code uses for a module of messages → package
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 package, _, rest = node.module.partition(".")
