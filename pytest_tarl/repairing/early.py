@@ -14,6 +14,7 @@ from pytest_tarl.repairing.measured import hints
 from pytest_tarl.repairing.mission_pairs import Recorded, Signs, mission_pairs, signs
 from pytest_tarl.repairing.readings import corrections
 from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.rescaled_messages import rescaled
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.confirming import confirmed
@@ -104,8 +105,10 @@ class Early:
         self._corrected = True
         goal, trials = self.order.goal, self.trials
         begun, before = trials.spent, self.spent
-        for mutation in corrections(self.order, self._pairs(trials)):
-            candidate, seeds = Candidate((mutation,), ALWAYS), [pair.seed for pair in goal.pairs[:SEEDS]]
+        pairs = self._pairs(trials)
+        found = [*rescaled(self.order, pairs), *((one,) for one in corrections(self.order, pairs))]
+        for mutations in dict.fromkeys(found):
+            candidate, seeds = Candidate(mutations, ALWAYS), [pair.seed for pair in goal.pairs[:SEEDS]]
             try:
                 reached = [at for at, seed in enumerate(seeds) if goal.reached(trials(candidate, seed), seed)]
                 holds = bool(reached) and confirmed(candidate, trials, goal, reached[0])

@@ -56,7 +56,9 @@ def _wrong(order: Order, recorded: Sequence[Recorded]) -> Mapping[str, Correctio
     """Return the corrections of the statements whose first values differ, by site id."""
     found: dict[str, Correction] = {}
     for number, place in enumerate(plan(order.analysis).places):
-        firsts = [(_first(series(one, number)), _first(series(other, number))) for one, other in recorded]
+        firsts = [
+            (first_value(series(one, number)), first_value(series(other, number))) for one, other in recorded
+        ]
         known = [(one, other) for one, other in firsts if one is not None and other is not None]
         if len(known) == len(recorded) > 1 and place.role != "publish":
             correction = _correction(known)
@@ -64,7 +66,7 @@ def _wrong(order: Order, recorded: Sequence[Recorded]) -> Mapping[str, Correctio
     return found
 
 
-def _first(values: Series) -> float | None:
+def first_value(values: Series) -> float | None:
     """Return the first value if it comes before any command can have had an effect, else None."""
     early = values.values.size and values.step[0] < FIRST
     return float(values.values[0]) if early else None
@@ -76,15 +78,16 @@ def _correction(firsts: Sequence[tuple[float, float]]) -> Correction | None:
     offsets = [designed - drifted for designed, drifted in firsts]
     explained: list[tuple[float, Correction | None]] = []
     if min(map(abs, offsets)) > LEAST * size:
-        explained.append((_spread(offsets), Correction(OFFSET, _rounded(offsets))))
+        explained.append((spread(offsets), Correction(OFFSET, _rounded(offsets))))
         factors = [designed / drifted for designed, drifted in firsts if drifted]
         if len(factors) == len(firsts) and min(factors) > 0.0:
-            explained.append((_spread([one - 1.0 for one in factors]), Correction(GAIN, _rounded(factors))))
-    spread, best = min(explained, key=lambda one: one[0], default=(1.0, None))
-    return best if spread <= AGREE else None
+            explained.append((spread([one - 1.0 for one in factors]), Correction(GAIN, _rounded(factors))))
+    least, best = min(explained, key=lambda one: one[0], default=(1.0, None))
+    return best if least <= AGREE else None
 
 
-def _spread(changes: Sequence[float]) -> float:
+def spread(changes: Sequence[float]) -> float:
+    """Return the range of changes as a share of their mean, or 1 if the mean is 0."""
     mean = sum(changes) / len(changes)
     return (max(changes) - min(changes)) / abs(mean) if mean else 1.0
 
