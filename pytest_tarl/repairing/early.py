@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from pytest_tarl.errors import RepairError
+from pytest_tarl.errors import RepairError, TarlError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.repairing.measured import hints
-from pytest_tarl.repairing.mission_pairs import Recorded, Signs, mission_pairs, signs
+from pytest_tarl.repairing.mission_pairs import Recorded, Signs, mission_pairs, recorded, signs
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.reached_limits import reached_limits
 from pytest_tarl.repairing.readings import corrections
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.rescaled_messages import rescaled
@@ -19,6 +21,7 @@ from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.confirming import confirmed
 from pytest_tarl.searching.first_steps import Hint
+from pytest_tarl.searching.limits_in_turn import Limit
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
@@ -129,6 +132,23 @@ class Early:
     def measured(self, operands: Sequence[Operand]) -> list[Hint]:
         """Return the changes of constants that the mission pairs suggest."""
         return hints(self.order, self._pairs(self.trials), operands)
+
+    def reached(self, mutants: Mutants, candidate: Candidate) -> Sequence[Limit]:
+        """Return the limits that only the drifted missions reach, with the change of a candidate if it has any.
+
+        A changed mission is recorded with the seed of the first pair and charged.
+        """
+        pairs, order = self._pairs(self.trials), self.order
+        if not candidate.mutations or not pairs:
+            return reached_limits(order, pairs)
+        (designed, drifted), *_ = pairs
+        try:
+            overlay = mutants.source(candidate)
+            self.trials.charge()
+            trace = recorded(order, order.goal.pairs[0].seed, order.drift, overlay)
+        except TarlError:
+            return []
+        return reached_limits(order, [(designed, trace)], drifted)
 
     def _pairs(self, trials: Trials) -> tuple[Recorded, ...]:
         if self._recorded is None:

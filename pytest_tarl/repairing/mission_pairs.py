@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -19,6 +21,7 @@ from pytest_tarl.sensors import Cell, Sensor
 from pytest_tarl.symptoms.series import Pair, Series
 from pytest_tarl.symptoms.symptoms import SYMPTOMS
 
+NOTHING: Mapping[Path, str] = MappingProxyType({})
 PAIRS = 2  # number of seeds; each costs an episode in both worlds
 
 Recorded = tuple[Trace, Trace]  # the designed and the drifted mission of a seed
@@ -61,22 +64,27 @@ def mission_pairs(order: Order, trials: Trials) -> tuple[Recorded, ...]:
         return ()
     seeds = [pair.seed for pair in order.goal.pairs[:PAIRS]]
     try:
-        return tuple(_recorded(order, trials, seed) for seed in seeds)
+        return tuple(_pair(order, trials, seed) for seed in seeds)
     except (BudgetSpentError, TarlError):
         return ()
 
 
-def signs(order: Order, recorded: Sequence[Recorded]) -> Signs:
+def signs(order: Order, pairs: Sequence[Recorded]) -> Signs:
     """Return the symptoms of mission pairs."""
-    return Signs(dict(_strengths(order, recorded)), tuple(map(_cells, recorded))) if recorded else NO_SIGNS
+    return Signs(dict(_strengths(order, pairs)), tuple(map(_cells, pairs))) if pairs else NO_SIGNS
 
 
-def _recorded(order: Order, trials: Trials, seed: int) -> Recorded:
+def recorded(order: Order, seed: int, drift: str | None, overlay: Mapping[Path, str] = NOTHING) -> Trace:
+    """Run a mission, perhaps with changed files, and return the values of its statements. Raise TarlError."""
+    return sound(order.rollout(EpisodePlan(seed, drift, overlay, record=True, signed=True))).trace
+
+
+def _pair(order: Order, trials: Trials, seed: int) -> Recorded:
     """Run both missions of a seed; charge them to the budget. Raise BudgetSpentError and TarlError."""
     found = []
     for drift in (None, order.drift):
         trials.charge()
-        found.append(sound(order.rollout(EpisodePlan(seed, drift, record=True, signed=True))).trace)
+        found.append(recorded(order, seed, drift))
     return found[0], found[1]
 
 

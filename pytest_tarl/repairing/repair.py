@@ -138,6 +138,7 @@ def _search(
         early.measured,
         early.before_extreme if share < 1.0 else lambda: iter(()),
         lambda one: following(mutants.order, one) if share < 1.0 else iter(()),
+        early.reached,
     )
     try:
         if found.accepted is None:

@@ -28,12 +28,13 @@ from tarl_lint.model import SiteId, Step
 
 MOST = 2  # maximum number of messages that are corrected
 # ratios of units in use: degrees, turns and rpm per rad (and per second), parts of a metre, km/h and knots per m/s,
-# feet and inches per metre, seconds per minute and hour, N per kilogram-force and pound-force, kPa and bar per psi, pounds
+# feet and inches per metre, seconds per minute and hour, N per kilogram-force and pound-force, kPa and bar per psi,
+# pounds per kilogram
 RATIOS = (
     180 / pi, 2 * pi, 30 / pi, 10.0, 100.0, 1e3, 1e6, 3.6, 1.9438, 3.2808, 39.37, 60.0, 3600.0, 9.80665, 4.4482,
     6.8948, 14.504, 2.2046,
 )  # fmt: skip
-EXACT = 0.02  # maximum |log| between a factor of first values and a ratio of units that replaces it
+EXACT = 0.01  # maximum |log| between a factor of first values and a ratio of units that replaces it
 CLOSE = 0.25  # the same for a factor of usual sizes, which also differ because the missions do
 # minimum |log| of a factor of first values, and of usual sizes: what a node does changes sizes by less than five times
 LEAST, LARGE = 0.05, log(5.0)

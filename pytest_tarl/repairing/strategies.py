@@ -18,6 +18,7 @@ from pytest_tarl.searching.ask_tell import Asking, factory
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
 from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.halving import Halving
+from pytest_tarl.searching.limits_in_turn import Limit
 from pytest_tarl.searching.plainness import writing
 from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import Candidate, Trials
@@ -38,12 +39,14 @@ def strategy(
     measured: Callable[[Sequence[Operand]], Sequence[Hint]] = lambda _: (),
     corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
     following: Callable[[Candidate], Iterator[Candidate]] = lambda _: iter(()),
+    reached: Callable[[Mutants, Candidate], Sequence[Limit]] = lambda *_: (),
 ) -> Strategy:
     """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
 
     The sweep calls `interlude` before each of its steps, with the largest gain so far, and `measured` for changes that
-    recorded missions suggest, and `corrections` before it yields an extreme change. `following` returns candidates in
-    which a changed constant follows a sensor or a variable.
+    recorded missions suggest, `reached` for limits that the missions of a change reach, and `corrections` before it
+    yields an extreme change. `following` returns candidates in which a changed constant follows a sensor or a
+    variable.
     """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
@@ -65,6 +68,7 @@ def strategy(
             measured=lambda: measured(moved),
             corrections=corrections,
             following=following,
+            reached=lambda candidate: reached(mutants, candidate),
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

@@ -11,11 +11,13 @@ from pytest_tarl.searching.attempts import FLIP, Attempts
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.crossing import Crossing
 from pytest_tarl.searching.forward_selection import Joint
+from pytest_tarl.searching.limits_in_turn import LimitsInTurn, Reached
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.refining import FURTHER
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.twins import assigned_alone
 from pytest_tarl.searching.units import NEAR, Unit
+from pytest_tarl.searching.unmasking import LONGER, lasting
 from tarl_lint.model import Operand
 
 Hint = tuple[tuple[Operand, float], ...]  # constants that change together, each with its factor
@@ -28,6 +30,7 @@ FINER = (1.22, 0.82)
 SENSITIVE = ((1.1, 0.91), (1.05, 0.95), (1.025, 0.975))
 # if a change gains at least this share of the wanted gain, other constants get no `FINER` steps
 HALF = 0.5
+LONGEST = 2  # maximum number of changes that made missions last longer under which limits are relaxed
 
 
 _DECIDING = re.compile(r"[<>]|[!=]=|\b(?:if|while|min|max|clip|clamp|int|round)\b")
@@ -42,7 +45,8 @@ class FirstSteps:
     """Try the first steps of one search.
 
     `responding` contains ids of statements whose constants raised the reward. `measured` returns changes that recorded
-    missions suggest; it is called once, when the first steps on named constants gained less than `HALF`.
+    missions suggest; it is called once, when the first steps on named constants gained less than `HALF`. `reached`
+    returns the limits that only the drifted missions of a change reach (see `limits_in_turn`).
     """
 
     def __init__(
@@ -51,11 +55,13 @@ class FirstSteps:
         crossing: Crossing,
         responding: Collection[str] = (),
         measured: Callable[[], Sequence[Hint]] = tuple,
+        reached: Reached = lambda _: (),
     ) -> None:
         self.attempts = attempts
         self.crossing = crossing
         self.responding = responding
         self._measured: Callable[[], Sequence[Hint]] | None = measured
+        self._reached: Reached | None = reached
 
     def everywhere(self, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Increase, then decrease the named constants without a condition, before they are tried under the best one.
@@ -69,6 +75,7 @@ class FirstSteps:
             if tries.gains.anything(HALF * tries.goal.wanted):
                 return
             yield from self._as_measured(ALWAYS)
+        yield from self._limits(ALWAYS)
 
     def near(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
         """Increase and decrease each unit, then try smaller steps if both lose, and combine the best units.
@@ -120,6 +127,31 @@ class FirstSteps:
             tries.turn += 1
             yield from tries.sweep(NEAR[1], guard, among)
             yield from self.crossing.across(guard, plateau.STEPS[:2])
+        if among and not idle and not tries.gains.anything(HALF * tries.goal.wanted):
+            yield from self._limits(ALWAYS if ALWAYS in tries.guards else guard)
+
+    def _limits(self, guard: Guard) -> Iterator[Candidate]:
+        """Relax the limits that missions reach, once; start also from the changes after which they last longest."""
+        tries, reached = self.attempts, self._reached
+        self._reached = None
+        if reached is None:
+            return
+        joining = tries.joining({})
+        parts = [
+            Joint(((unit, factor),), guard)
+            for unit, by_factor in tries.gains.under(guard).items()
+            for factor in by_factor
+            if factor > 0.0 and unit in self._whole.values()
+        ]
+        longest = sorted(parts, key=lambda one: -lasting(one, joining))[:LONGEST]
+        bases = [one for one in longest if lasting(one, joining) >= LONGER]
+        yield from LimitsInTurn(joining, self._whole, reached, guard).candidates(bases)
+
+    @property
+    def _whole(self) -> dict[Operand, Unit]:
+        """Return the unit of each constant."""
+        units = reversed(self.attempts.units)
+        return {operand: unit for unit in units if unit.chart is None for operand in unit.operands}
 
     def _as_measured(self, guard: Guard) -> Iterator[Candidate]:
         """Try the changes that recorded missions suggest, once, then refine the best constant.
@@ -128,10 +160,7 @@ class FirstSteps:
         """
         tries, measured = self.attempts, self._measured
         self._measured = None
-        whole = {
-            operand: unit for unit in reversed(tries.units) if unit.chart is None for operand in unit.operands
-        }
-        tried = False
+        whole, tried = self._whole, False
         for hint in measured() if measured is not None else ():
             parts = tuple({whole[operand]: factor for operand, factor in hint if operand in whole}.items())
             tried = tried or bool(parts)

@@ -25,10 +25,18 @@ ROUNDS = 2  # number of times that the best factor of a constant is refined unde
 
 def longer(base: Joint, selection: ForwardSelection) -> bool:
     """Return whether the missions of a combination that ran last longer than those of the unrepaired program."""
-    candidate, pairs = base.candidate(selection.mutate), selection.goal.pairs
-    before = [pair.steps for pair in pairs if pair.steps is not None]
-    after = selection.trials.steps(candidate, pairs)
-    return bool(before) and bool(after) and fmean(after) >= LONGER * fmean(before)
+    return lasting(base, selection) >= LONGER
+
+
+def lasting(base: Joint, selection: ForwardSelection) -> float:
+    """Return the ratio of the length of a combination's missions to that of the unrepaired ones, or 0 if unknown.
+
+    Only missions of the same seeds are compared, since seeds differ in length.
+    """
+    candidate, trials = base.candidate(selection.mutate), selection.trials
+    known = [(trials.steps(candidate, [pair]), pair.steps) for pair in selection.goal.pairs]
+    ran = [(after[0], before) for after, before in known if after and before]
+    return fmean(after for after, _ in ran) / fmean(before for _, before in ran) if ran else 0.0
 
 
 def unmasked(base: Joint, hidden: Sequence[Unit], selection: ForwardSelection) -> Iterator[Candidate]:

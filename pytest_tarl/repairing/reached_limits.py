@@ -1,0 +1,168 @@
+"""Limits that a mission reaches and its designed mission does not: what ends it, or keeps it from going on.
+
+A capper gives up a bottle when its spindle has made two turns or has turned for a second. No cap of the design takes
+that much, so neither limit is ever reached. In the drifted world the first one is, and once it is relaxed, the second
+one. Recorded missions show both: a comparison takes a result that it rarely has as designed, more often than with the
+same seed, or a value stays at a bound that it rarely has.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.instrumentation.sites import plan
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.patching.document import Document, document
+from pytest_tarl.repairing.mission_pairs import Recorded, series
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.searching.limits_in_turn import Limit
+from pytest_tarl.searching.units import NEAR
+from pytest_tarl.symptoms.series import Pair, Series
+from tarl_lint.model import Operand, Step
+
+UP, DOWN = NEAR  # factors of a limit
+BOUNDS = ("min", "max", "clip", "clamp", "constrain", "saturate")
+# a value stays at a bound if at least the share `OFTEN` of it equals the bound; a result of a comparison, or a bound, is
+# rare as designed up to the share `RARELY`
+OFTEN, RARELY = 0.3, 0.05
+SAME = 1e-9  # maximum relative difference between equal values
+
+Bools = NDArray[np.bool_]
+Ints = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class _Reached:
+    """A limit, whether the mission without the change reached it as well, and the step at which it was reached."""
+
+    limit: Limit
+    before: bool
+    step: int
+
+
+def reached_limits(order: Order, pairs: Sequence[Recorded], before: Trace | None = None) -> list[Limit]:
+    """Return the constants of limits that only the second mission of a pair reaches, each with a relaxing factor.
+
+    The limits that are new since `before`, a drifted mission of the first pair's seed, come first; among these, the
+    ones that are reached first, because what follows may be their effect.
+    """
+    found: list[_Reached] = []
+    steps = {str(step.site): step for step in order.analysis.sites}
+    for number, place in enumerate(plan(order.analysis).places):
+        step = steps.get(place.id)
+        for designed, drifted in pairs if step is not None else ():
+            pair = Pair(series(designed, number), series(drifted, number))
+            known = series(before, number) if before is not None else None
+            if step is not None and pair.designed.values.size and pair.drifted.values.size:
+                found += _reached(order, step, pair, known)
+    found.sort(key=lambda one: (one.before, one.step))
+    limits: dict[Operand, float] = {}
+    for one in found:
+        limits.setdefault(*one.limit)
+    return list(limits.items())
+
+
+def _reached(order: Order, step: Step, pair: Pair, before: Series | None) -> Iterator[_Reached]:
+    """Yield the limits of one statement."""
+    try:
+        source = document(step.span.path, order.analysis.sources[step.span.path])
+    except (RepairError, KeyError):
+        return
+    test = _test(source, step.span.line)
+    for operand in order.analysis.operands(step.site):
+        node = source.at(operand.span)
+        if node is None or not operand.value or isinstance(operand.value, bool):
+            continue
+        if test is not None:
+            side = _side(source, node, test)
+            for outcome in (1.0, 0.0) if side else ():
+                at = _newly(pair, outcome)
+                if at is not None:
+                    known = before is not None and bool(np.any(before.values == outcome))
+                    larger = (side > 0.0) == (outcome == 0.0)
+                    factor = UP if larger == (operand.value > 0.0) else DOWN
+                    yield _Reached((operand, factor), known, at)
+        elif _is_bound(source, node):
+            bound = abs(float(operand.value))
+            at = _stays(pair, bound)
+            if at is not None:
+                upper = float(np.abs(pair.drifted.values).max()) <= bound * (1.0 + SAME)
+                known = before is not None and before.values.size > 0 and _at(before, bound).mean() >= OFTEN
+                yield _Reached((operand, UP if upper else DOWN), bool(known), at)
+
+
+def _newly(pair: Pair, outcome: float) -> int | None:
+    """Return the step at which a comparison takes a result for one time more than as designed, or None.
+
+    The result must be rare as designed. Only times until the end of the drifted mission count.
+    """
+    together = pair.together()
+    designed, drifted = (_times(one.values == outcome) for one in (together.designed, together.drifted))
+    rare = float((pair.designed.values == outcome).mean()) <= RARELY
+    return (
+        int(together.drifted.step[drifted[designed.size]]) if rare and drifted.size > designed.size else None
+    )
+
+
+def _times(holds: Bools) -> Ints:
+    """Return the indices at which something begins to hold."""
+    return np.flatnonzero(holds & ~np.concatenate([[False], holds[:-1]]))
+
+
+def _stays(pair: Pair, bound: float) -> int | None:
+    """Return the first step at which a value is at a bound, if it often is, and rarely as designed, or else None."""
+    at = _at(pair.drifted, bound)
+    often = at.mean() >= OFTEN and _at(pair.designed, bound).mean() <= RARELY
+    return int(pair.drifted.step[np.flatnonzero(at)[0]]) if often else None
+
+
+def _at(values: Series, bound: float) -> Bools:
+    return np.isclose(np.abs(values.values), bound, rtol=SAME, atol=0.0)
+
+
+def _test(source: Document, line: int) -> ast.expr | None:
+    """Return what the statement at a line decides: its condition, or the comparison that it stores or returns."""
+    for node in ast.walk(source.tree):
+        if isinstance(node, ast.If | ast.While) and node.lineno == line:
+            return node.test
+        if isinstance(node, ast.Assign | ast.Return) and node.lineno == line:
+            return node.value if isinstance(node.value, ast.Compare | ast.BoolOp) else None
+    return None
+
+
+def _side(source: Document, node: ast.expr, test: ast.expr) -> float:
+    """Return 1 if a larger constant makes a test true, -1 if it makes it false, and 0 if neither is known.
+
+    Only sums and products around the constant are followed; a constant that is subtracted acts the other way.
+    """
+    sign, inner = 1.0, node
+    for around in source.ancestors(node):
+        if isinstance(around, ast.Compare):
+            if len(around.ops) != 1 or not isinstance(around.ops[0], ast.Lt | ast.LtE | ast.Gt | ast.GtE):
+                return 0.0
+            right = around.comparators[0] is inner
+            sign *= 1.0 if right == isinstance(around.ops[0], ast.Lt | ast.LtE) else -1.0
+        elif isinstance(around, ast.UnaryOp) and isinstance(around.op, ast.USub | ast.Not):
+            sign = -sign
+        elif isinstance(around, ast.BinOp) and isinstance(around.op, ast.Sub | ast.Div):
+            sign *= -1.0 if around.right is inner else 1.0
+        elif not isinstance(around, ast.BoolOp | ast.BinOp):
+            return 0.0
+        if around is test:
+            return sign
+        inner = around
+    return 0.0
+
+
+def _is_bound(source: Document, node: ast.expr) -> bool:
+    """Return whether a constant is passed, perhaps negated, to a function that limits a value."""
+    around = source.parents.get(node)
+    if isinstance(around, ast.UnaryOp):
+        around = source.parents.get(around)
+    return isinstance(around, ast.Call) and ast.unparse(around.func).rpartition(".")[2] in BOUNDS

@@ -1,0 +1,89 @@
+"""Relax limits one after another: each hides the next, so that none of them gains anything alone.
+
+If two limits stop a mission, relaxing the first one only makes it stop at the second. The reward stays what it was, and
+no search that adds the changes that gained finds the pair. But the mission differs: it reaches a limit that neither
+the designed mission nor the unrepaired one reached. This limit, and no other constant, is the next to relax. Each step
+takes one episode with the change and one that is recorded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from math import log
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.forward_selection import MOST, PROMISING, ForwardSelection, Joint
+from pytest_tarl.searching.search import Candidate
+from pytest_tarl.searching.units import Unit
+from tarl_lint.model import Operand
+
+Limit = tuple[Operand, float]  # a constant, and the factor that relaxes the limit
+Reached = Callable[
+    [Candidate], Sequence[Limit]
+]  # the limits that only the drifted missions of a candidate reach
+
+FIRST = 3  # maximum number of limits to start from
+NEXT = 2  # maximum number of limits that are relaxed after another one
+EPISODES = 16  # number of episodes after which no further limit is relaxed
+FARTHEST = log(20.0)  # maximum |log| of a limit's factor
+
+
+class LimitsInTurn:
+    """Relax the limits that missions reach, under one guard.
+
+    `whole` maps the constants to the units that are searched. `reached` may run an episode.
+    """
+
+    def __init__(
+        self, selection: ForwardSelection, whole: Mapping[Operand, Unit], reached: Reached, guard: Guard
+    ) -> None:
+        self.selection = selection
+        self.whole = whole
+        self.reached = reached
+        self.guard = guard
+        self._begun = selection.trials.spent
+
+    def candidates(self, bases: Sequence[Joint] = ()) -> Iterator[Candidate]:
+        """Yield confirmed combinations of limits. Raise BudgetSpentError.
+
+        Start from the limits that the unrepaired program reaches, and from `bases`.
+        """
+        bare = Joint((), self.guard)
+        starts = [*self._wider(bare, self.reached(Candidate((), self.guard)))[:FIRST], *bases]
+        for start in dict.fromkeys(starts):
+            yield from self._from(start, bare)
+
+    def _from(self, base: Joint, parent: Joint) -> Iterator[Candidate]:
+        """Run a combination; while missions change but earn too little, relax the limits that they reach next."""
+        if self.selection.trials.spent - self._begun >= EPISODES:
+            return
+        gain = yield from self.selection.gain(base)
+        candidate = base.candidate(self.selection.mutate)
+        if gain is None or candidate in self.selection.settled.held or not self._differs(base, parent):
+            return
+        if gain > PROMISING * self.selection.goal.wanted:
+            yield from self.selection.candidates_of(base)
+        if self.selection.trials.spent - self._begun < EPISODES:
+            for wider in self._wider(base, self.reached(candidate))[:NEXT]:
+                yield from self._from(wider, base)
+
+    def _wider(self, base: Joint, limits: Sequence[Limit]) -> list[Joint]:
+        """Return the combination with each of the limits relaxed as well, or further if it is relaxed already."""
+        found: list[Joint] = []
+        for operand, factor in limits:
+            unit = self.whole.get(operand)
+            if unit is None:
+                continue
+            by = factor * dict(base.parts).get(unit, 1.0)
+            wider = base.with_part(unit, round(by, 3))
+            if len(wider.parts) <= MOST and 0.0 < abs(log(by)) <= FARTHEST and wider not in found:
+                found.append(wider)
+        return found
+
+    def _differs(self, one: Joint, other: Joint) -> bool:
+        """Return whether a combination changed a mission: its reward or its length."""
+        trials, mutate = self.selection.trials, self.selection.mutate
+        candidate = one.candidate(mutate)
+        if not other.parts:
+            return trials.moved(candidate, self.selection.goal.pairs)
+        return not trials.same_as(candidate, other.candidate(mutate))
