@@ -28,8 +28,8 @@ from tarl_lint.model import Operand, Step
 
 UP, DOWN = NEAR  # factors of a limit
 BOUNDS = ("min", "max", "clip", "clamp", "constrain", "saturate")
-# a value stays at a bound if at least the share `OFTEN` of it equals the bound; a result of a comparison, or a bound, is
-# rare as designed up to the share `RARELY`
+# a value stays at a bound if at least the share `OFTEN` of it equals the bound; a bound, or a result of a comparison,
+# is rare as designed up to the share `RARELY`
 OFTEN, RARELY = 0.3, 0.05
 SAME = 1e-9  # maximum relative difference between equal values
 
