@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Protocol
 from pytest_tarl.model import Guard
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.holding import held
 from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
+from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.refining import ALMOST
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 from pytest_tarl.searching.units import Scope, Unit, whole_constants
@@ -49,6 +51,7 @@ class Combining:
     def __init__(self, search: Search) -> None:
         self.search = search
         self._unmasked_under: set[tuple[Unit, Guard]] = set()
+        self._held: set[tuple[Unit, Guard]] = set()
 
     def best_with_others(self) -> Iterator[Candidate]:
         """Combine the best operand with others; combine a proposed operand only with parameters of the same change."""
@@ -94,6 +97,23 @@ class Combining:
         if leaders[0][0] > search.slack:
             hidden = [unit for unit in search.units if not search.gains.moves(unit)]
             yield from search.joining({}).unions([part for _, part in leaders], guard, hidden)
+
+    def held(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
+        """Hold the best unit under each guard once, and try the other named constants under it.
+
+        Constants that changed missions alone come first.
+        """
+        search = self.search
+        for guard in () if search.proposed else guards:
+            for gain, (unit, factor) in search.gains.leaders(guard)[:1]:
+                if not GAINED <= gain / search.goal.wanted < ALMOST or (unit, guard) in self._held:
+                    continue
+                self._held.add((unit, guard))
+                rest = [one for one in named(search.units) if not set(one.operands) & set(unit.operands)]
+                rest.sort(key=lambda one: not search.gains.moves(one))
+                joining = search.joining({})
+                for joint, _ in held(Joint(((unit, factor),), guard), rest, joining):
+                    yield from joining.candidates_of(joint)
 
     def sharpened(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
         """Adjust the best unit under each guard in small steps, before it is combined with others."""

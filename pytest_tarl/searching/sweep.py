@@ -194,6 +194,7 @@ class Sweep:
                 yield from self.first_steps.near(block, guard)
         if self._ends():
             return
+        yield from tries.combining.held(chief)
         for factor, before in FURTHER:
             for guard in chief:
                 leading = tries.leading(before, guard, -tries.slack)

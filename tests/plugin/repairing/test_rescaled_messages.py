@@ -83,8 +83,7 @@ def corrected(folder: Path, *missions: Missions, step: int = 0) -> list[list[tup
 
 def test_a_unit_is_converted_at_every_read_of_a_message(tmp_path: Path) -> None:
     degrees = {WIND: (1.0, 180 / pi)}, {WIND: (0.3, 0.3 * 180 / pi)}
-    back = pytest.approx(pi / 180, rel=1e-3)
-    assert corrected(tmp_path, *degrees) == [[(17, "msg.data", back), (17, "msg.data", back)]]
+    assert corrected(tmp_path, *degrees) == [[(17, "msg.data", 0.01745)] * 2]
 
 
 def test_a_stored_message_is_converted_where_it_is_read_later(tmp_path: Path) -> None:
@@ -99,7 +98,7 @@ def test_a_factor_that_is_no_unit_is_taken_as_it_is(tmp_path: Path) -> None:
 
 def test_usual_sizes_show_a_unit_if_messages_arrive_late(tmp_path: Path) -> None:
     late = corrected(tmp_path, {WIND: (1.0, 52.0)}, {WIND: (1.0, 55.0)}, step=4)
-    assert late == [[(17, "msg.data", pytest.approx(pi / 180, rel=1e-3))] * 2]
+    assert late == [[(17, "msg.data", 0.01745)] * 2]
 
 
 @pytest.mark.parametrize(

@@ -106,7 +106,7 @@ def test_limits_that_are_not_searched_are_left_out() -> None:
 def test_a_world_full_of_limits_costs_a_set_number_of_episodes() -> None:
     world, steps = Capper(TURNS), iter(range(20, 999))
     world.run = lambda *_: Outcome(0.0, False, steps=next(steps))  # type: ignore[method-assign]
-    world.reached = lambda _: [(one, 2.2) for one in LIMITS]  # type: ignore[method-assign]
+    world.reached = lambda candidate: [(one, 2.2) for one in LIMITS]  # type: ignore[method-assign]
     found, trials = relaxed(world)
     assert found is None
     assert trials.spent == EPISODES
