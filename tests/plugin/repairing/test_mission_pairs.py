@@ -176,6 +176,7 @@ def early(monkeypatch: pytest.MonkeyPatch) -> Early:
     monkeypatch.setattr(module, "mission_pairs", lambda order, trials: [trials.charge(), ("pair",)][1])
     monkeypatch.setattr(module, "signs", lambda order, recorded: Signs({"x": {}}) if recorded else NO_SIGNS)
     monkeypatch.setattr(module, "corrections", lambda order, recorded: [])
+    monkeypatch.setattr(module, "rescaled", lambda order, recorded: [])
     monkeypatch.setattr(module, "hints", lambda order, recorded, operands: [recorded, operands])
     order: Any = SimpleNamespace(goal=SimpleNamespace(wanted=10.0))
     return Early(order, (), Trials(lambda *_: Outcome(0.0, False), 1000))
