@@ -17,7 +17,7 @@ from pytest_tarl.searching.refining import FURTHER
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.twins import assigned_alone
 from pytest_tarl.searching.units import NEAR, Unit
-from pytest_tarl.searching.unmasking import LONGER, lasting
+from pytest_tarl.searching.unmasking import lasting, longer
 from tarl_lint.model import Operand
 
 Hint = tuple[tuple[Operand, float], ...]  # constants that change together, each with its factor
@@ -136,16 +136,16 @@ class FirstSteps:
         self._reached = None
         if reached is None:
             return
-        joining = tries.joining({})
+        joining, whole = tries.joining({}), self._whole
         parts = [
             Joint(((unit, factor),), guard)
             for unit, by_factor in tries.gains.under(guard).items()
             for factor in by_factor
-            if factor > 0.0 and unit in self._whole.values()
+            if factor > 0.0 and unit in whole.values()
         ]
         longest = sorted(parts, key=lambda one: -lasting(one, joining))[:LONGEST]
-        bases = [one for one in longest if lasting(one, joining) >= LONGER]
-        yield from LimitsInTurn(joining, self._whole, reached, guard).candidates(bases)
+        bases = [one for one in longest if longer(one, joining)]
+        yield from LimitsInTurn(joining, whole, reached, guard).candidates(bases)
 
     @property
     def _whole(self) -> dict[Operand, Unit]:
