@@ -131,11 +131,15 @@ class FirstSteps:
             yield from self._limits(ALWAYS if ALWAYS in tries.guards else guard)
 
     def _limits(self, guard: Guard) -> Iterator[Candidate]:
-        """Relax the limits that missions reach, once; start also from the changes after which they last longest."""
+        """Relax the limits that missions reach, once; start also from the changes after which they last longest.
+
+        What a wrong reading shows is corrected before.
+        """
         tries, reached = self.attempts, self._reached
         self._reached = None
         if reached is None:
             return
+        yield from tries.interlude(tries.gains.best())
         joining, whole = tries.joining({}), self._whole
         parts = [
             Joint(((unit, factor),), guard)

@@ -51,21 +51,28 @@ class LimitsInTurn:
         bare = Joint((), self.guard)
         starts = [*self._wider(bare, self.reached(Candidate((), self.guard)))[:FIRST], *bases]
         for start in dict.fromkeys(starts):
-            yield from self._from(start, bare)
+            yield from self._from(start, bare, 0.0)
 
-    def _from(self, base: Joint, parent: Joint) -> Iterator[Candidate]:
-        """Run a combination; while missions change but earn too little, relax the limits that they reach next."""
-        if self.selection.trials.spent - self._begun >= EPISODES:
+    def _from(self, base: Joint, parent: Joint, before: float) -> Iterator[Candidate]:
+        """Run a combination; while missions change but earn too little, relax the limits that they reach next.
+
+        A combination that clearly earns less than its parent (`before`), or that reaches the goal on this seed, is not
+        extended: the limit was no obstacle, or no further one shows on this seed.
+        """
+        selection = self.selection
+        if selection.trials.spent - self._begun >= EPISODES:
             return
-        gain = yield from self.selection.gain(base)
-        candidate = base.candidate(self.selection.mutate)
-        if gain is None or candidate in self.selection.settled.held or not self._differs(base, parent):
+        gain = yield from selection.gain(base)
+        candidate = base.candidate(selection.mutate)
+        if gain is None or candidate in selection.settled.tried or not self._differs(base, parent):
             return
-        if gain > PROMISING * self.selection.goal.wanted:
-            yield from self.selection.candidates_of(base)
-        if self.selection.trials.spent - self._begun < EPISODES:
+        if gain < before - selection.slack:
+            return
+        if gain > PROMISING * selection.goal.wanted:
+            yield from selection.candidates_of(base)
+        if selection.trials.spent - self._begun < EPISODES:
             for wider in self._wider(base, self.reached(candidate))[:NEXT]:
-                yield from self._from(wider, base)
+                yield from self._from(wider, base, gain)
 
     def _wider(self, base: Joint, limits: Sequence[Limit]) -> list[Joint]:
         """Return the combination with each of the limits relaxed as well, or further if it is relaxed already."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import pytest
+
 from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
@@ -75,6 +77,14 @@ def test_a_limit_that_changes_no_mission_ends_its_chain() -> None:
     world.reached = lambda candidate: world.asked.append(candidate) or [(TIME, 2.2)]  # type: ignore[method-assign, func-returns-value]
     assert relaxed(world)[0] is None
     assert len(world.asked) == 1
+
+
+@pytest.mark.parametrize("total", [-5.0, 9.5])
+def test_a_combination_that_clearly_loses_or_suffices_on_its_seed_is_not_extended(total: float) -> None:
+    world = Capper(TURNS, TIME)
+    world.run = lambda candidate, seed: Outcome(total if seed == PAIRS[0].seed else 0.0, True, steps=20)  # type: ignore[method-assign]
+    assert relaxed(world)[0] is None
+    assert [one.mutations for one in world.asked] == [()]
 
 
 def test_a_factor_has_a_largest_size_and_a_combination_a_largest_number_of_parts() -> None:
