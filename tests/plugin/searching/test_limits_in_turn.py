@@ -38,7 +38,7 @@ class Capper:
         by = {one.operand: float(one.value) for one in candidate.mutations}
         return next((one for one in self.limits if by.get(one, 1.0) < self.needed), None)
 
-    def run(self, candidate: Candidate, _: int) -> Outcome:
+    def run(self, candidate: Candidate, seed: int) -> Outcome:
         limit = self.stopped_by(candidate)
         if limit is None:
             return Outcome(10.0, True, steps=99)
