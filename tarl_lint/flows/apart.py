@@ -1,22 +1,25 @@
-"""Tells apart the sources at one line, which a helper class registers for others."""
+"""Tells apart the sources and sinks at one line, at which a helper class subscribes or publishes for others."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import reduce
+from typing import TypeVar
 
 from tarl_lint.model import Flow
-from tarl_lint.models.ros.endpoints import SourceRecord
+from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
+
+Record = TypeVar("Record", SourceRecord, SinkRecord)
 
 
-def told_apart(records: Iterable[SourceRecord]) -> list[SourceRecord]:
-    """Return one source for each line and its topics.
+def told_apart(records: Iterable[Record]) -> list[Record]:
+    """Return one source, or one sink, for each line and its topics.
 
     A record is merged into another one of its line if the other has all its topics and more: the analysis may have
     reached the line before it knew the names. If a record has no topic, both must be of one call context.
     """
-    found: list[SourceRecord] = []
+    found: list[Record] = []
     for same in by_line(records):
         heads = [one for one in same if not any(_outgrown(one, other) for other in same)]
         groups = [[one] for one in heads]
@@ -27,6 +30,17 @@ def told_apart(records: Iterable[SourceRecord]) -> list[SourceRecord]:
                         group.append(one)
         found += map(merged, groups)
     return found
+
+
+def sinks_told_apart(records: Iterable[SinkRecord]) -> list[SinkRecord]:
+    """Return one sink for each line and its topics; publishers that are sent to in the same contexts are one sink."""
+    alike: dict[object, list[SinkRecord]] = {}
+    for record in records:
+        alike.setdefault((record.path, record.pos, frozenset(record.contexts)), []).append(record)
+    groups: dict[object, list[SinkRecord]] = {}
+    for record in map(merged, alike.values()):
+        groups.setdefault((record.path, record.pos, frozenset(record.topics)), []).append(record)
+    return told_apart(map(merged, groups.values()))
 
 
 def named_first(flows: Iterable[Flow]) -> Iterator[Flow]:
@@ -45,25 +59,48 @@ def named_first(flows: Iterable[Flow]) -> Iterator[Flow]:
             yield flow
 
 
-def by_line(records: Iterable[SourceRecord]) -> Sequence[Sequence[SourceRecord]]:
-    """Return the records of each registration: those of one call, as one kind of source."""
-    groups: dict[object, list[SourceRecord]] = {}
+def named_sinks_first(flows: Iterable[Flow]) -> Iterator[Flow]:
+    """Yield flows, but of the sinks at one line those without topics only if no named one has a flow like theirs."""
+    found = list(flows)
+    kinds: dict[object, set[str]] = {}
+    for flow in found:
+        if flow.sink.topics:
+            kinds.setdefault((flow.sink.span, flow.source), set()).add(flow.kind)
+    for flow in found:
+        known = kinds.get((flow.sink.span, flow.source), set())
+        if flow.sink.topics or known.isdisjoint({flow.kind, "explicit"}):
+            yield flow
+
+
+def by_line(records: Iterable[Record]) -> Sequence[Sequence[Record]]:
+    """Return the records of each call; a registration may be several kinds of sources."""
+    groups: dict[object, list[Record]] = {}
     for record in records:
-        groups.setdefault((record.path, record.pos, record.api, record.kind), []).append(record)
+        kind = (record.api, record.kind) if isinstance(record, SourceRecord) else None
+        groups.setdefault((record.path, record.pos, kind), []).append(record)
     return list(groups.values())
 
 
-def _outgrown(record: SourceRecord, other: SourceRecord) -> bool:
+def _outgrown(record: Record, other: Record) -> bool:
     """Return whether another record has all topics of a record, and more."""
     return record.topics < other.topics and bool(record.topics or record.contexts & other.contexts)
 
 
-def merged(records: Sequence[SourceRecord]) -> SourceRecord:
-    """Return the records of one line as one source; it stands where the first of them stands."""
+def merged(records: Sequence[Record]) -> Record:
+    """Return the records of one line as one source or sink; it stands where the first of them stands."""
     return reduce(_merged, records)
 
 
-def _merged(one: SourceRecord, other: SourceRecord) -> SourceRecord:
+def _merged(one: Record, other: Record) -> Record:
+    if isinstance(one, SinkRecord):
+        return replace(
+            one,
+            topics=one.topics | other.topics,
+            types=one.types | other.types,
+            nodes=one.nodes | other.nodes,
+            publishers=one.publishers | other.publishers,
+            contexts=one.contexts | other.contexts,
+        )
     return replace(
         one,
         topics=one.topics | other.topics,

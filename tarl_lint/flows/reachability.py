@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from tarl_lint.flows.apart import named_first, told_apart
+from tarl_lint.flows.apart import named_first, named_sinks_first, sinks_told_apart, told_apart
 from tarl_lint.flows.choices import Choices, Made
 from tarl_lint.flows.ends import Ends
 from tarl_lint.flows.parts import Part, Parts
@@ -38,11 +38,12 @@ class Tracer:
         self.machine = machine
         self.graph = machine.graph
         self.texts = Texts(machine.modules)
-        self.ends = Ends(self.texts, machine.sinks.values())
         # for a launch file, every call context has its own source
         self.apart = not machine.launching
-        records = machine.sources.values()
+        records, sinks = machine.sources.values(), machine.sinks.values()
         self.sources = told_apart(records) if self.apart else list(records)
+        self.sinks = sinks_told_apart(sinks) if self.apart else list(sinks)
+        self.ends = Ends(self.texts, self.sinks)
         self.forward_data = _reversed(self.graph.data)
         self.forward_control = _reversed(self.graph.control)
         self.choices = Choices(self.graph)
@@ -53,10 +54,10 @@ class Tracer:
     def flows(self) -> tuple[Flow, ...]:
         """Return every flow, sorted by sink and source."""
         sources = [(self.ends.source(r), r, self.reach(r)) for r in self.sources]
-        sinks = self.machine.sinks.values()
-        into = (self.flows_into(sink, sources) for sink in sinks)
+        into = (self.flows_into(sink, sources) for sink in self.sinks)
         found = (flow for flows in into for flow in (named_first(flows) if self.apart else flows))
-        return tuple(sorted(found, key=lambda f: (f.sink.span, f.source.span, f.source.topics)))
+        kept = named_sinks_first(found) if self.apart else found
+        return tuple(sorted(kept, key=lambda f: (f.sink.span, f.source.span, f.source.topics, f.sink.topics)))
 
     def reach(self, record: SourceRecord) -> Reach:
         """Return the nodes that messages of a source reach."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarl_lint.interpret import dunder_methods, expressions, node_starts, operators
-from tarl_lint.interpret.budget import MAX_STATEMENTS
+from tarl_lint.interpret import dunder_methods, expressions, operators
+from tarl_lint.interpret.budget import MAX_NESTED_ROWS, MAX_ROWS, MAX_STATEMENTS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, joins
@@ -13,7 +13,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join
 from tarl_lint.models import context_managers as managers_of_generators
-from tarl_lint.models import sizes, unpacking
+from tarl_lint.models import rows, sizes, unpacking
 
 MAX_TURNS = 4  # maximum number of known elements over which a loop is unrolled
 MAX_EXACT_TURNS = 8  # value of MAX_TURNS in a run for one launched node
@@ -58,9 +58,19 @@ def if_statement(ctx: Interpreter, s: ir.If, frame: Frame) -> bool:
 
 def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
     """Repeat the body until the state at the loop head is stable. Return whether execution continues."""
-    source = expressions.evaluate(ctx, s.source, frame) if s.target is not None else BOTTOM
-    if s.target is not None and (elements := _told_apart(ctx, s, source)):
-        return _turns(ctx, s, s.target, source, elements, frame)
+    source = BOTTOM
+    if s.target is not None:
+        registers = ctx.registrations.inside(s, s.nodes)
+        way = "" if registers else ctx.registrations.publishes(s)
+        source = sizes.counted(ctx, s.source, frame, each=registers or way == "direct")
+        if elements := _told_apart(ctx, s, source, frame, each=registers or way != ""):
+            return _turns(ctx, s, s.target, source, elements, frame)
+        if registers and sizes.is_empty(ctx, source):
+            return _loop_end(ctx, s, [{}], [], frame)
+        elements = rows.of(ctx, source) if registers or way else []
+        if elements and len(elements) * frame.rows <= MAX_NESTED_ROWS:
+            passes = 1 if registers else MAX_PASSES
+            return _turns(ctx, s, s.target, source, elements, frame, passes)
     depth = len(ctx.store.layers)
     head = _first_head(ctx, s, frame)
     for _ in range(MAX_PASSES):
@@ -100,19 +110,23 @@ def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
     return {} if known is None else joins.joined(ctx, [{}, known])
 
 
-def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value) -> list[Value]:
+def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame, *, each: bool) -> list[Value]:
     """Return the elements to unroll a loop over; [] if they are unknown or too many.
 
-    A loop is only unrolled if its elements carry data, or if its body registers inputs, which have topics of their own.
+    A loop is only unrolled if its elements carry data, or if `each` iteration has topics of its own.
     """
     elements = sizes.unpacked(ctx, source) or []
     if any(o.name == heap.MEMBERS for o in source.pts):
         return elements
     plain = len(s.body) <= SHORT and all(isinstance(one, ir.Assign | ir.Evaluate) for one in s.body)
     limit = sizes.MAX_KNOWN if plain else MAX_EXACT_TURNS if ctx.exact else MAX_TURNS
-    if not 1 < len(elements) <= limit:
+    if not 1 < len(elements) <= max(limit, MAX_ROWS):
         return []
-    if ctx.exact or node_starts.registers_in(s):
+    if each and len(elements) * frame.rows <= MAX_NESTED_ROWS:
+        return elements
+    if len(elements) > limit:
+        return []
+    if ctx.exact:
         return elements  # such a loop iterates, for example, over groups of command-line arguments
     ctx.look(o for v in elements for o in v.pts)
     laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)
@@ -130,15 +144,32 @@ def _leaves(body: Sequence[ir.Stmt]) -> bool:
 
 
 def _turns(
-    ctx: Interpreter, s: ir.Loop, target: ir.Expr, source: Value, elements: Sequence[Value], frame: Frame
+    ctx: Interpreter,
+    s: ir.Loop,
+    target: ir.Expr,
+    source: Value,
+    elements: Sequence[Value],
+    frame: Frame,
+    passes: int = 0,
 ) -> bool:
-    """Unroll a loop: execute the body once for each element."""
+    """Unroll a loop: execute the body once for each element.
+
+    If `passes` is not 0, each element may be missing; then the loop is repeated until its state is stable, because
+    the order of the elements is unknown, up to this number of times.
+    """
     depth, before, outside = len(ctx.store.layers), frame.turn, frame.steps
-    frame.steps = frozenset() if _leaves(s.body) else frozenset(s.body)
+    frame.steps = frozenset(s.body) if not passes and not _leaves(s.body) else frozenset()
+    frame.rows *= len(elements)
     broken: list[Delta] = []
+    ends: list[Delta] = []
     _length(ctx, source, ctx.condition(frame, s))
-    done: Delta | None = {}
-    for number, element in enumerate(elements):
+    done: Delta = {}
+    before_pass: Delta | None = None
+    for number, element in [*enumerate(elements)] * max(passes, 1):
+        if not number:
+            if done == before_pass:
+                break
+            before_pass = done
         ctx.store.push(done)
         table: dict[str, list[Delta]] = {"break": broken, "continue": []}
         frame.jumps.append((depth, table))
@@ -149,11 +180,14 @@ def _turns(
         ends += table["continue"]
         frame.jumps.pop()
         ctx.store.cut(depth)
-        done = joins.joined(ctx, ends) if ends else None
-        if done is None:
+        if passes:
+            ends.append(done)
+        if not ends:
             break
+        done = joins.joined(ctx, ends)
+    frame.rows //= len(elements)
     frame.turn, frame.steps = before, outside
-    return _loop_end(ctx, s, [done] if done is not None else [], broken, frame)
+    return _loop_end(ctx, s, [done] if ends else [], broken, frame)
 
 
 def _loop_head(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame) -> tuple[bool, bool]:

@@ -36,4 +36,7 @@ LARGE_RUN = 500  # a root whose last run took at least this many statements is r
 MAX_GENERATIONS = 1  # maximum number of nested restarts of a thread or callback that starts itself
 # maximum number of objects of one class with separate roots for a method that a thread or framework runs
 MAX_ALIKE = 6
-MAX_APART = 24  # maximum number of sources at one call that are told apart by their topics
+# maximum number of elements over which a loop is unrolled that registers something or makes objects of analysed classes
+MAX_ROWS = 16
+MAX_NESTED_ROWS = 64  # maximum number of iterations of unrolled loops that are nested in one function
+MAX_APART = 24  # maximum number of sources, or of sinks, at one call that are told apart by their topics

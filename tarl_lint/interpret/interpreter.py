@@ -11,6 +11,7 @@ from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, S
 
 from tarl_lint.interpret.budget import MAX_APART, READS_PER_STATEMENT
 from tarl_lint.interpret.operations import Operations
+from tarl_lint.interpret.registrations import Registrations
 from tarl_lint.interpret.state import NullnessFacts, Work
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import Branch, Control, control_dependence
@@ -49,6 +50,7 @@ class Interpreter:
         self.thorough = True  # whether to follow every value, and not only values from a source
         self.modules = {m.path: m for m in modules}
         self.index = Index(modules)
+        self.registrations = Registrations([m.tree for m in modules], [w.name for w in config.wrappers])
         self.exception_types = exception_types(m.tree for m in modules)
         self.programs: dict[str, ir.Program] = {}
         self.module_objects: dict[str, Obj] = {}
@@ -75,6 +77,7 @@ class Interpreter:
         self.doubts: dict[int, dict[Root, None]] = {}
         # conditions inside the current expression (as in `a if b else c`) that decide what is evaluated
         self.guards: list[tuple[int, str]] = []
+        self.counting: ir.Stmt | None = None  # the statement in which numbers are followed one by one
         self.repeating = False  # whether the element of a comprehension is evaluated again
         self.work = Work()
         self.widened: set[Hashable] = set()  # call contexts that several calls share
@@ -85,7 +88,8 @@ class Interpreter:
         # sources by path, position and topics; for a launched node, by context instead of topics
         self.sources: dict[Hashable, SourceRecord] = {}
         self.apart: dict[tuple[str, ir.Pos], int] = {}  # registration → number of its sources
-        self.sinks: dict[Hashable, SinkRecord] = {}
+        self.sinks: dict[Hashable, SinkRecord] = {}  # by path, position and publisher or context
+        self.sent: dict[tuple[str, ir.Pos], int] = {}  # publish call → number of its sinks
         self.called: set[tuple[str, int]] = set()  # called functions: module, line
         # for each instance made by methods: allocation sites and objects, from the first maker to the instance itself
         self.chains: dict[Obj, tuple[tuple[Hashable, Obj], ...]] = {}
@@ -96,6 +100,8 @@ class Interpreter:
         self.wanted: set[Obj] = (
             set()
         )  # classes that annotate parameters of functions that code outside the files calls
+        # functions with a decorator that is not analysed, which may give them attributes
+        self.decorated: set[Obj] = set()
         self.handed_over: set[Obj] = set()  # functions with a decorator of a package that is not analysed
         # names of classes outside the analysed files whose methods receive data or callbacks
         self.ended: set[str] = set()
@@ -335,5 +341,5 @@ class Interpreter:
                 message.release()
         self.store = Store(self.shared, Root("none", "none"))
         self.graph.reads = self.store.reads
-        for table in (self.objects, self.module_objects, self.frames, self.roots, self.sources):
+        for table in (self.objects, self.module_objects, self.frames, self.roots, self.sources, self.sinks):
             table.clear()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tarl_lint.interpret import nullness
+from tarl_lint.interpret.budget import MAX_ROWS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.constant_expressions import computed
@@ -11,8 +12,8 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.shared import BORN
 from tarl_lint.memory.store import AGING
-from tarl_lint.memory.values import NONE, Value, pointer
-from tarl_lint.models import sizes
+from tarl_lint.memory.values import NONE, Nodes, Value, pointer
+from tarl_lint.models import rows, sizes
 
 MAX_EACH = 4  # maximum number of known elements over which a comprehension is unrolled
 # value of MAX_EACH in a thorough analysis; large enough for a list of all parameters of a node
@@ -68,16 +69,15 @@ def entry(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame, slot: obj
 def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Value:
     """Return the container that a comprehension makes."""
     kind = "mapping" if expr.key is not None else "sequence"
-    first = ctx.ops.evaluate(ctx, expr.loops[0][1], frame)
+    registers = len(expr.loops) == 1 and ctx.registrations.inside(expr, (expr.node,))
+    first = sizes.counted(ctx, expr.loops[0][1], frame, each=registers)
     known = sizes.unpacked(ctx, first)
-    single = (expr.key is None or ctx.thorough or ctx.exact) and len(expr.loops) == 1
-    if (
-        single
-        and not expr.loops[0][2]
-        and known
-        and len(known) <= (MAX_ENTRIES if ctx.thorough else MAX_EACH)
-    ):
+    single = len(expr.loops) == 1
+    limit = MAX_ENTRIES if ctx.thorough else MAX_ROWS if registers else MAX_EACH
+    if single and not expr.loops[0][2] and known and len(known) <= limit:
         return _one_by_one_of(ctx, expr, known, frame)
+    if registers and (different := rows.of(ctx, first)):
+        return _of_rows(ctx, expr, different, sizes.length(ctx, first), frame)
     if single and expr.key is None and ctx.exact and known and (chosen := _selected(ctx, expr, known, frame)):
         return _one_by_one_of(ctx, expr, chosen, frame)
     obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
@@ -126,6 +126,32 @@ def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value],
         else:
             updates.write_item(ctx, pointer(obj), ctx.ops.evaluate(ctx, expr.key, frame), element)
     frame.turn = turn
+    return pointer(obj)
+
+
+def _of_rows(
+    ctx: Interpreter, expr: ir.Comprehension, elements: list[Value], length: Nodes, frame: Frame
+) -> Value:
+    """Unroll a comprehension over elements whose order is unknown; its conditions may hold for each of them."""
+    kind = "mapping" if expr.key is not None else "sequence"
+    obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
+    turn, (target, _, conditions) = frame.turn, expr.loops[0]
+    for number, value in enumerate(elements):
+        frame.turn = (*turn, expr.slot, number)
+        ctx.ops.assign(ctx, target, value, frame)
+        tests = [ctx.ops.evaluate(ctx, condition, frame) for condition in conditions]
+        if any(test.constant() == (True, False) for test in tests):
+            continue
+        gate = ctx.ops.gate(ctx, NONE.union(*map(ctx.use, tests)), frame, expr.slot)
+        made = ctx.ops.evaluate(ctx, expr.element, frame)
+        made = Value(made.deps | gate, made.pts, made.consts)
+        if expr.key is None:
+            updates.add_element(ctx, pointer(obj), made)
+        else:
+            updates.write_item(ctx, pointer(obj), ctx.ops.evaluate(ctx, expr.key, frame), made)
+        length |= gate
+    frame.turn = turn
+    ctx.store.put((obj, LENGTH), Value(length))
     return pointer(obj)
 
 

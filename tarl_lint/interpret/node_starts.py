@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from tarl_lint import catalog
 from tarl_lint.ir import nodes as ir
-from tarl_lint.trees import last_name, walk
+from tarl_lint.trees import walk
 
 KINDS = frozenset(
     ["subscribe", "receive", "filter", "service", "action"]
@@ -66,14 +66,6 @@ def starts(function: ir.Function) -> bool:
             _starts(n.func) if isinstance(n, ast.Call) else _holds(n) for n in walk(function.node)
         )
     return function.starts
-
-
-def registers_in(loop: ir.Loop) -> bool:
-    """Return whether the body of a `for` contains a call that registers an input."""
-    if loop.registers is None:
-        calls = (n for n in walk(*loop.nodes) if isinstance(n, ast.Call))
-        loop.registers = any(last_name(call.func) in REGISTERING for call in calls)
-    return loop.registers
 
 
 def _holds(node: ast.AST) -> bool:

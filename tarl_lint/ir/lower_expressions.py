@@ -152,9 +152,10 @@ class Expressions:
                     scope.bound.add(f"{name.id}<{slot}>")
             loops.append((self.expr(generator.target, scope), source, self.all(generator.ifs, scope)))
         key = self.expr(node.key, scope) if isinstance(node, ast.DictComp) else None
-        element = self.expr(node.value if isinstance(node, ast.DictComp) else node.elt, scope)
+        made = node.value if isinstance(node, ast.DictComp) else node.elt
+        element = self.expr(made, scope)
         scope.renamed = before
-        return ir.Comprehension(loops, key, element, position(node), slot)
+        return ir.Comprehension(loops, key, element, position(node), slot, made)
 
     def _starred(self, node: ast.Starred, scope: Scope) -> ir.Expr:
         return ir.Starred(self.expr(node.value, scope), position(node))

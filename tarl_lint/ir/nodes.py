@@ -120,6 +120,7 @@ class Comprehension:
     element: Expr
     pos: Pos
     slot: int
+    node: ast.expr  # the syntax tree of the element
 
 
 @dataclass(slots=True, eq=False)
@@ -251,7 +252,6 @@ class Loop(Stmt):
     orelse: Sequence[Stmt]
     endless: bool = False
     nodes: Sequence[ast.stmt] = ()  # the syntax trees of the body of a `for`
-    registers: bool | None = None  # whether the body registers an input; None until computed
 
 
 @dataclass(slots=True, eq=False)

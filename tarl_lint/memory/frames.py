@@ -90,6 +90,7 @@ class Frame(Obj):
         "result",
         "returns",
         "root_waits",
+        "rows",
         "shared",
         "slot",
         "statement",
@@ -116,6 +117,7 @@ class Frame(Obj):
         self.turn: tuple[
             int, ...
         ] = ()  # numbers of the current elements of unrolled loops and comprehensions
+        self.rows = 1  # number of iterations of the unrolled loops around the current statement
         # statements executed exactly once in each iteration of an unrolled loop
         self.steps: frozenset[ir.Stmt] = frozenset()
         self.answer: object = None  # the object that receives the function's result if ROS calls the function

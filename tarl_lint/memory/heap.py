@@ -20,6 +20,7 @@ from tarl_lint.memory.values import (
     Nodes,
     Obj,
     Value,
+    const,
     join,
     lineage,
     pointer,
@@ -33,6 +34,8 @@ RESULT = "<result>"  # field of a future that holds its result
 SENT = "<sent>"  # field of a port, file or socket: data written to it
 # name of a sequence that holds the known attribute names of an object, or (name, value) pairs
 MEMBERS = "members"
+NAME = "<__name__>"  # field of a function: its name, unless `functools.wraps` gave it another one
+ATTRIBUTES = "<__dict__>"  # field of a function: the function, as the mapping of its attributes
 GENERATOR = "generator"  # name of a sequence that represents a generator
 METHODS_OF = {
     "publisher": frozenset(["publish"]),
@@ -113,6 +116,8 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
         return _part(ctx, obj, name)
     if kind in ("sequence", "mapping"):
         return content(ctx, obj) if name.startswith("[") else BOTTOM
+    if kind in ("bound", "closure"):
+        return _of_function(ctx, obj, name)
     if name == "__class__" and kind == "instance" and isinstance(obj.info, Obj):
         return pointer(obj.info)
     if name == "__dict__":
@@ -126,6 +131,18 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
     if kind == "module":
         return opened(ctx, obj, name)
     return BOTTOM
+
+
+def _of_function(ctx: Interpreter, obj: Obj, name: str) -> Value:
+    """Return an unset attribute of a function; a method has the attributes of its function."""
+    if obj.kind == "bound" and isinstance(obj.info, tuple):
+        closure, receiver, _ = obj.info
+        if name in ("__func__", "__self__"):
+            return pointer(closure if name == "__func__" else receiver)
+        return BOTTOM if name in PARTS else read_field(ctx, closure, name)
+    if name == ATTRIBUTES:
+        return pointer(obj)
+    return const(obj.name) if name == NAME else BOTTOM
 
 
 def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:
@@ -223,11 +240,21 @@ def method(ctx: Interpreter, closure: Obj, receiver: Obj, owner: Obj) -> Obj:
 
 
 def _class_field(ctx: Interpreter, cls: Obj, name: str) -> Value:
+    if name == "__mro__":
+        return bases(ctx, cls)
     for owner in lineage(cls)[1:]:
         value = ctx.store.get((owner, name))
         if value is not None:
             return bind_class(ctx, value, cls)
     return BOTTOM
+
+
+def bases(ctx: Interpreter, cls: Obj) -> Value:
+    """Return the sequence of a class and its base classes, over which a loop is executed element by element."""
+    listed = recency.intern(ctx, "sequence", ("bases", cls.key), MEMBERS)
+    for number, one in enumerate(lineage(cls)):
+        ctx.store.put((listed, item_field(number)), pointer(one))
+    return pointer(listed)
 
 
 def opened(ctx: Interpreter, module: Obj, name: str) -> Value:
@@ -328,6 +355,8 @@ def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:
 
 def attribute_of_item(obj: Obj, key: object) -> str:
     """Return the field that `vars(obj)[key]` accesses: an attribute, unless the object is a dictionary."""
+    if obj.kind == "closure" and isinstance(key, str):
+        return key
     if obj.kind == "instance" and isinstance(key, str) and isinstance(obj.info, Obj):
         infos = [c.info for c in lineage(obj.info)]
         external = {e for i in infos if isinstance(i, ClassInfo) for e in i.external}

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency
-from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.values import UNKNOWN, Value, const, pointer
+from tarl_lint.memory.heap import LENGTH, item_field
+from tarl_lint.memory.values import NONE, UNKNOWN, Value, const, pointer
 from tarl_lint.models import sizes
 
 
@@ -29,8 +29,9 @@ def own_arguments(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def counted(ctx: Interpreter, it: Invocation) -> Value:
-    """Return `range(...)`: its numbers one by one if they are few and the command line is known."""
-    found = [value.constant()[1] for value in it.arguments[0] if ctx.exact]
+    """Return `range(...)`: its numbers one by one if they are few, and known to matter."""
+    each = sizes.counts(ctx, it.frame)
+    found = [value.constant()[1] for value in it.arguments[0] if each]
     given = [one for one in found if isinstance(one, int)]
     exact = len(given) == len(found) and 0 < len(given) <= 3 and 0 not in given[2:]
     numbers = range(*given) if exact else range(0)
@@ -39,6 +40,7 @@ def counted(ctx: Interpreter, it: Invocation) -> Value:
     obj = recency.allocate(ctx, "sequence", it.frame, ("counted", it.call.slot))
     for number, value in enumerate(numbers):
         ctx.store.put((obj, item_field(number)), const(value))
+    ctx.store.put((obj, LENGTH), Value(NONE.union(*map(ctx.use, it.arguments[0]))))
     return pointer(obj)
 
 

@@ -26,7 +26,7 @@ from tarl_lint.memory.values import (
     join_all,
     pointer,
 )
-from tarl_lint.models import iterators, launched, removal, sizes
+from tarl_lint.models import iterators, launched, removal, rows, sizes
 
 QUEUES = frozenset(
     f"{module}.{name}"
@@ -115,7 +115,9 @@ def _prepare(
 def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> None:
     for obj in base.objects:
         for key in index.item_keys() or (None,):
-            updates.weaken(ctx, obj, ANY if key is None else item_field(key), news)
+            field = ANY if key is None else heap.attribute_of_item(obj, key)
+            held, field = heap.renamed(ctx, obj, field) if obj.kind in heap.RENAMING else (obj, field)
+            updates.weaken(ctx, held, field, news)
 
 
 def _next_place(ctx: Interpreter, base: Value, values: list[Value], frame: Frame) -> int | None:
@@ -278,15 +280,21 @@ def elements_of_any(ctx: Interpreter, base: Value) -> Value:
     return join_all(heap.arrive(ctx, heap.read_any(ctx, o), base.deps) for o in base.pts)
 
 
-def _read_values(ctx: Interpreter, it: Invocation) -> Value:
+def _known_entries(ctx: Interpreter, it: Invocation) -> Sequence[tuple[Value, Value]] | None:
+    """Return the keys and values of a mapping in order, if they are certain: parameters or the body of a class."""
     told = launched.entries(ctx, it.base)
+    return told if told is not None else rows.attributes(ctx, it.base)
+
+
+def _read_values(ctx: Interpreter, it: Invocation) -> Value:
+    told = _known_entries(ctx, it)
     if told is not None:
         return _in_turn(ctx, [value for _, value in told], it)
     return iterators.listed(ctx, elements_of_any(ctx, it.base), sizes.length(ctx, it.base), it)
 
 
 def _read_keys(ctx: Interpreter, it: Invocation) -> Value:
-    told = launched.entries(ctx, it.base)
+    told = _known_entries(ctx, it)
     if told is not None:
         return _in_turn(ctx, [key for key, _ in told], it)
     return iterators.listed(ctx, heap.elements(ctx, it.base), sizes.length(ctx, it.base), it)
@@ -297,13 +305,24 @@ def _in_turn(ctx: Interpreter, elements: Sequence[Value], it: Invocation) -> Val
     obj = recency.allocate(ctx, "sequence", it.frame, ("values", it.call.slot))
     for number, value in enumerate(elements):
         ctx.store.put((obj, item_field(number)), value)
+    return _of_class(it, obj)
+
+
+def _of_class(it: Invocation, obj: Obj) -> Value:
+    """Return a sequence of attributes; a loop over those of a class is executed element by element."""
+    if any(o.kind == "class" for o in it.base.pts):
+        obj.name = heap.MEMBERS
     return pointer(obj)
 
 
 def _read_pairs(ctx: Interpreter, it: Invocation) -> Value:
-    told = launched.entries(ctx, it.base)
+    told = _known_entries(ctx, it)
     if told is not None:
-        return iterators.rows_of(ctx, told, it)
+        (obj,) = iterators.rows_of(ctx, told, it).pts
+        return _of_class(it, obj)
+    known = rows.entries(ctx, it.base)
+    if known is not None:
+        return iterators.rows_in_any_order(ctx, known, it, sizes.length(ctx, it.base))
     keys = join_all(heap.elements(ctx, Value(it.base.deps, frozenset([o]))) for o in it.base.pts)
     return iterators.pairs(
         ctx, [keys, elements_of_any(ctx, it.base)], it.frame, it.call, sizes.length(ctx, it.base)
@@ -338,7 +357,9 @@ def counted_elements(ctx: Interpreter, it: Invocation) -> Value:
     ctx.graph.choice(sizes.placed(ctx, frozenset(ours)), node)
     if ctx.graph.control[node]:
         ctx.graph.counts.setdefault(node, set()).update(made_of(ctx, Value(pts=frozenset(ours))))
-    known = [sizes.constants(ctx, value) for value in it.arguments[0] if ctx.exact]
+    exact = sizes.counts(ctx, it.frame)
+    elements = sizes.constants if ctx.exact else sizes.unpacked
+    known = [elements(ctx, value) for value in it.arguments[0] if exact]
     numbers = [len(texts) for texts in known if texts is not None]
     return Value(deps | ctx.kept(node), consts=frozenset(numbers) if numbers and len(numbers) == 1 else None)
 

@@ -14,6 +14,7 @@ from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, join_all, pointer
+from tarl_lint.models import rows as possible_rows
 from tarl_lint.models import sizes
 
 MAX_ROWS = 8  # maximum number of elements to which `map` is applied one by one
@@ -42,15 +43,26 @@ def zipped_elements(ctx: Interpreter, it: Invocation) -> Value:
     """Return a sequence of tuples with elements of several sequences."""
     if it.name == "zip" and "*" in it.arguments[1] and not it.arguments[0]:
         return _transposed(ctx, it.arguments[1]["*"], it)
-    known = [sizes.unpacked(ctx, v) for v in it.arguments[0]]
-    if it.name == "enumerate" and known and known[0] is not None:
-        known.insert(0, [const(n) for n in range(len(known[0]))] if len(known) == 1 else None)
+    counting = it.name == "enumerate"
+    given = it.arguments[0][:1] if counting else it.arguments[0]
+    known = [sizes.unpacked(ctx, v) for v in given]
+    if counting and known and known[0] is not None:
+        known.insert(0, _numbers(it, len(known[0])))
     rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
     if rows and len(rows) <= sizes.MAX_KNOWN:
         return rows_of(ctx, rows, it)
-    parts = [heap.elements(ctx, v) for v in it.arguments[0]]
-    length = lengths(ctx, it.arguments[0])
-    return pairs(ctx, [UNKNOWN, *parts] if it.name == "enumerate" else parts, it.frame, it.call, length)
+    length = lengths(ctx, given)
+    if counting and given and (several := possible_rows.of(ctx, given[0])):
+        return rows_in_any_order(ctx, [(UNKNOWN, one) for one in several], it, length)
+    parts = [heap.elements(ctx, v) for v in given]
+    return pairs(ctx, [UNKNOWN, *parts] if counting else parts, it.frame, it.call, length)
+
+
+def _numbers(it: Invocation, count: int) -> list[Value] | None:
+    """Return the numbers of the elements of `enumerate`; None if the first one is not known."""
+    plain, named = it.arguments
+    known, first = plain[1].constant() if len(plain) > 1 else named.get("start", const(0)).constant()
+    return [const(first + n) for n in range(count)] if known and isinstance(first, int) else None
 
 
 def lengths(ctx: Interpreter, values: Sequence[Value]) -> Nodes:
@@ -80,6 +92,20 @@ def rows_of(ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation) -
         for place, part in enumerate(row):
             ctx.store.put((pair, item_field(place)), part)
         ctx.store.put((obj, item_field(number)), pointer(pair))
+    return pointer(obj)
+
+
+def rows_in_any_order(
+    ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation, length: Nodes
+) -> Value:
+    """Return a sequence of tuples of which neither the order nor the presence of each is certain."""
+    obj = recency.allocate(ctx, "sequence", it.frame, ("pairs", it.call.slot))
+    for number, row in enumerate(rows):
+        pair = recency.allocate(ctx, "sequence", it.frame, ("pair", it.call.slot, number))
+        for place, part in enumerate(row):
+            ctx.store.put((pair, item_field(place)), part)
+        updates.add_element(ctx, pointer(obj), pointer(pair))
+    ctx.store.put((obj, LENGTH), Value(length))
     return pointer(obj)
 
 

@@ -114,7 +114,7 @@ def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
     containers.mutate(ctx, it.base, it.name, it.arguments, it.frame, it.call)
     given_back = it.name == "setdefault" or (it.name == "send" and kind == "sequence")
     if given_back and target is not None:
-        if it.name == "setdefault" and kind == "mapping" and it.arguments[0]:
+        if it.name == "setdefault" and kind in ("mapping", "closure") and it.arguments[0]:
             return ctx.ops.read_item(ctx, it.base, it.arguments[0][0])
         return heap.read_any(ctx, target)
     if kind in ("lib", "") and not dropped(it.frame, it.call):

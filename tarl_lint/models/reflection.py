@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
+from dataclasses import replace
 
-from tarl_lint.interpret import call_contexts, descriptors, expressions
+from tarl_lint.interpret import call_contexts, calls, descriptors, expressions
 from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.values import BOTTOM, MAX_TEXTS, UNKNOWN, Obj, Value, const, join_all, lineage, pointer
-from tarl_lint.models import containers
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, const, join_all, lineage, pointer
+from tarl_lint.models import containers, type_queries
+from tarl_lint.models.rows import MAX_MEMBERS
 
 OURS = frozenset(["instance", "class", "closure", "module"])
 
@@ -28,6 +30,8 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
         ]  # `reduce(getattr, parts, message)` returns a part of the message; storing there fills it
     if not names and len(it.call.arguments) > 1:
         return _method_by_beginning(ctx, it) or ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    if len(plain) > 2 and names and all(type_queries.lacks(ctx, plain[0], name) for name in names):
+        return plain[2]
     found = [
         expressions.read_attribute(ctx, plain[0], _written(it, name, number), it.frame)
         for number, name in enumerate(names)
@@ -83,21 +87,30 @@ def member_names(ctx: Interpreter, it: Invocation) -> Value:
 
 def members(ctx: Interpreter, it: Invocation) -> Value:
     """Return `inspect.getmembers(obj)`: the names and values of the attributes; with a predicate, only the methods."""
-    found, filters = (
-        _members(ctx, it.arguments[0]),
-        len(it.arguments[0]) > 1 or "predicate" in it.arguments[1],
-    )
+    plain, named = it.arguments
+    found, predicate = _members(ctx, plain), named.get("predicate", plain[1] if len(plain) > 1 else None)
     if found is None:
         return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
     pairs: list[Value] = []
-    for name in found:
-        value = heap.read(ctx, it.arguments[0][0], name)
-        if not filters or any(o.kind in CALLABLE for o in value.pts):
+    for number, name in enumerate(found):
+        value = heap.read(ctx, plain[0], name)
+        if predicate is None or _fulfils(ctx, predicate, value, it, number):
             pair = recency.allocate(ctx, "sequence", it.frame, ("pair", it.call.slot, name))
             ctx.store.put((pair, item_field(0)), const(name))
             ctx.store.put((pair, item_field(1)), value)
             pairs.append(pointer(pair))
     return _listed(ctx, pairs, it)
+
+
+def _fulfils(ctx: Interpreter, predicate: Value, value: Value, it: Invocation, number: int) -> bool:
+    """Return whether a member may be selected: by a predicate of `inspect` if it is a method, else by its result."""
+    if any(o.kind == "ext" for o in predicate.pts):
+        return any(o.kind in CALLABLE for o in value.pts)
+    call = replace(it.call, slot=-1000 * (abs(it.call.slot) + 1) - number)
+    return calls.call_value(ctx, predicate, ([value], {}), it.frame, call).constant() not in (
+        (True, False),
+        (True, None),
+    )
 
 
 def _members(ctx: Interpreter, plain: Sequence[Value]) -> list[str] | None:
@@ -110,7 +123,7 @@ def _members(ctx: Interpreter, plain: Sequence[Value]) -> list[str] | None:
     for owner in {obj, *lineage(cls)}:
         ctx.store.reads.look(owner)
         found.update(n for n in owner.fields if n.isidentifier() and not n.startswith("__"))
-    return sorted(found) if 0 < len(found) <= MAX_TEXTS else None
+    return sorted(found) if 0 < len(found) <= MAX_MEMBERS else None
 
 
 def _listed(ctx: Interpreter, values: Sequence[Value], it: Invocation) -> Value:

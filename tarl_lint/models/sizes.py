@@ -149,6 +149,24 @@ def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:
     return found
 
 
+def counted(ctx: Interpreter, source: ir.Expr, frame: Frame, *, each: bool) -> Value:
+    """Evaluate what a loop iterates over; if `each`, the numbers of a `range` and the length of a list are known."""
+    outside, ctx.counting = ctx.counting, frame.statement if each else ctx.counting
+    value = ctx.ops.evaluate(ctx, source, frame)
+    ctx.counting = outside
+    return value
+
+
+def counts(ctx: Interpreter, frame: Frame) -> bool:
+    """Return whether numbers are followed one by one in the current statement."""
+    return ctx.exact or (ctx.counting is not None and frame.statement is ctx.counting)
+
+
+def is_empty(ctx: Interpreter, value: Value) -> bool:
+    """Return whether a value is a list or tuple without elements."""
+    return not value.deps and unpacked(ctx, value) == [] and length(ctx, value) == NONE
+
+
 def absorb(ctx: Interpreter, obj: Obj, value: Value, expr: ir.Expr | None = None) -> None:
     """Copy the elements of all objects of a value into an object.
 

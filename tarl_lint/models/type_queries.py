@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import deque
+from types import GeneratorType
+
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap
@@ -19,6 +22,12 @@ from tarl_lint.memory.values import (
 from tarl_lint.models import sizes
 
 MESSAGE_MODULE = ".msg."  # part of the name of every message class
+# kind of objects of Python's own and of ROS → names of their attributes
+BUILT_IN = {
+    "sequence": frozenset(name for kind in (list, tuple, set, deque, GeneratorType) for name in dir(kind)),
+    "mapping": frozenset(dir(dict)),
+    "publisher": frozenset(["publish", "get_num_connections", "unregister", "topic", "topic_name", "name"]),
+}
 NOT_CALLABLE = frozenset(["sequence", "mapping", "message", "publisher"])
 
 
@@ -66,24 +75,39 @@ def is_callable(ctx: Interpreter, it: Invocation) -> Value:
 def _never_called(ctx: Interpreter, obj: Obj) -> bool:
     if obj.kind != "instance" or not isinstance(obj.info, Obj):
         return obj.kind in NOT_CALLABLE
-    opaque = any(isinstance(one.info, ClassInfo) and one.info.opaque for one in lineage(obj.info))
-    return not opaque and not heap.read_field(ctx, obj, "__call__").pts
+    return not _opaque(obj.info) and not heap.read_field(ctx, obj, "__call__").pts
+
+
+def _opaque(cls: Obj) -> bool:
+    return any(isinstance(one.info, ClassInfo) and one.info.opaque for one in lineage(cls))
 
 
 def has_attribute(ctx: Interpreter, it: Invocation) -> Value:
-    """Return False if a function has no such attribute; other objects may have it."""
+    """Return False if no possible object has such an attribute; else it is unknown."""
     given = it.arguments[0]
     names = given[1].texts() if len(given) == 2 else ()
-    if not names or not given[0].pts or given[0].deps:
-        return UNKNOWN
-    for obj in given[0].objects:
-        closure = obj.info[0] if obj.kind == "bound" and isinstance(obj.info, tuple) else obj
-        function = function_of(closure)
-        if closure.kind != "closure" or function is None or function.decorators:
-            return UNKNOWN  # a decorator of a library may add attributes
-        if any(name.startswith("__") or heap.read_field(ctx, closure, name) != BOTTOM for name in names):
-            return UNKNOWN
-    return const(value=False)
+    return const(value=False) if names and all(lacks(ctx, given[0], name) for name in names) else UNKNOWN
+
+
+def lacks(ctx: Interpreter, value: Value, name: str) -> bool:
+    """Return whether all possible objects of a value certainly have no attribute of this name."""
+    if value.deps or name.startswith("__") or not (value.pts or value.keys()):
+        return False
+    return not any(hasattr(constant, name) for constant in value.keys() or ()) and all(
+        _lacks(ctx, obj, name) for obj in value.objects
+    )
+
+
+def _lacks(ctx: Interpreter, obj: Obj, name: str) -> bool:
+    if obj.kind in BUILT_IN:
+        return name not in BUILT_IN[obj.kind]
+    if obj.kind == "instance" and isinstance(obj.info, Obj):
+        dynamic = heap.read_field(ctx, obj, "__getattr__").pts or heap.replaced_attributes(ctx, obj)
+        return not dynamic and not _opaque(obj.info) and heap.read_field(ctx, obj, name) is BOTTOM
+    closure = obj.info[0] if obj.kind == "bound" and isinstance(obj.info, tuple) else obj
+    if function_of(closure) is None or closure in ctx.decorated:
+        return False
+    return heap.read_field(ctx, closure, name) == BOTTOM
 
 
 def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared signature

@@ -177,7 +177,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
         return
     found: dict[Span, tuple[set[Source], set[Sink]]] = {}
     ends = evidence.tracer.ends
-    calls = [(record, ends.sink(record)) for record in evidence.machine.sinks.values()]
+    calls = [(record, ends.sink(record)) for record in evidence.tracer.sinks]
     for origin in evidence.tracer.sources:
         source = ends.source(origin)
         records = [record for record, sink in calls if (source, sink) in pairs]

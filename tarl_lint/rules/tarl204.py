@@ -181,8 +181,8 @@ def _harmless(read: Read, path: str, pos: Pos, evidence: Evidence) -> bool:
 def _others(read: Read, call: ast.Call, path: str, pos: Pos, evidence: Evidence) -> bool:
     """Return whether a publish call on the same name uses only other publishers than this one."""
     place = (call.lineno, call.col_offset, call.end_lineno or 0, call.end_col_offset or 0)
-    record = evidence.machine.sinks.get((read.path, place))
-    if record is None or (path, pos) in record.publishers or read.path != path:
+    records = [one for one in evidence.machine.sinks.values() if (one.path, one.pos) == (read.path, place)]
+    if not records or read.path != path or any((path, pos) in one.publishers for one in records):
         return False
     outline = evidence.outline(path)
     made = outline.call(pos)

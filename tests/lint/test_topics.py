@@ -86,7 +86,10 @@ def test_remapped_topics_have_their_new_name():
 
 
 def test_all_names_from_a_loop_are_found():
-    assert topics('for side in NAMES:\n    subscribe(side + "/in", on_value)') == [("left/in", "right/in")]
+    assert topics('for side in NAMES:\n    subscribe(side + "/in", on_value)') == [
+        ("left/in",),
+        ("right/in",),
+    ]
 
 
 def test_names_in_nested_tables_are_found():

@@ -51,7 +51,10 @@ class SourceRecord:
 
 @dataclass(slots=True, eq=False)
 class SinkRecord:
-    """A publish call."""
+    """A publish call: its place and its topics.
+
+    `contexts` are the call contexts and iterations of unrolled loops in which the place is reached.
+    """
 
     path: str
     pos: ir.Pos
@@ -64,6 +67,7 @@ class SinkRecord:
     # (path, position) of each call that creates one of the publishers
     publishers: set[tuple[str, ir.Pos]] = field(default_factory=set)
     kind: Kind = "topic"
+    contexts: set[tuple[Hashable, ...]] = field(default_factory=set)
 
 
 @dataclass(slots=True, eq=False)

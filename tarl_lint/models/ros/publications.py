@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+
 from tarl_lint.interpret import call_contexts, shared_contexts
+from tarl_lint.interpret.budget import MAX_APART
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
@@ -11,6 +14,8 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import UNKNOWN, Value, pointer
 from tarl_lint.models.ros.endpoints import Acceptance, DefaultName, Publisher, SinkRecord
+
+NO_NAMES = frozenset([None, ""])  # values of a variable for a topic that is not set
 
 
 def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
@@ -40,6 +45,9 @@ def image_publisher(ctx: Interpreter, it: Invocation) -> Value:
 def topics(ctx: Interpreter, it: Invocation) -> list[str]:
     """Return the possible topic names of a registration, after remapping."""
     names, given = ctx.config.launched, it.argument(it.fact.topic)
+    # a variable for the topic that is not set yet: the call would fail
+    if named := (given.consts or NO_NAMES) - NO_NAMES:
+        given = Value(given.deps, given.pts, named)
     kind = DefaultName if given.replaceable() else str
     return [kind(names.get(text.lstrip("/"), text)) for text in given.names()]
 
@@ -53,7 +61,7 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
     """Record a sink, which depends on everything inside the message and on the conditions of the call."""
     frame, call = it.frame, it.call
     place = (frame.program.path, call.pos)
-    key = ctx.end_key(*place, frame)
+    key, slot = _keys(ctx, it, info)
     record = ctx.sinks.get(key)
     if record is None:
         record = SinkRecord(*place, _api(info, it), ctx.modules[place[0]].name, qualname(frame))
@@ -63,8 +71,9 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
     record.topics |= info.topics
     record.types |= info.types
     record.publishers.add((info.path, info.pos))
+    record.contexts.add((frame.id, *frame.turn))
     info.used = True
-    node = ctx.node(frame, ("publish", call.slot), "publish")
+    node = ctx.node(frame, slot, "publish")
     ctx.graph.flow(call_contexts.all_used(ctx, it.arguments), node)
     ctx.graph.choice(it.base.deps, node)
     ctx.graph.depend(node, it.base.deps)  # the conditions that choose the publisher decide what is published
@@ -73,6 +82,20 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
         under(ctx, frame, frame.statement, node)
     record.nodes.add(node)
     return UNKNOWN
+
+
+def _keys(ctx: Interpreter, it: Invocation, info: Publisher) -> tuple[Hashable, Hashable]:
+    """Return the keys of a publish call's record and node: of each publisher, up to MAX_APART for a call."""
+    place, slot = (it.frame.program.path, it.call.pos), ("publish", it.call.slot)
+    if ctx.launching:
+        return ctx.end_key(*place, it.frame), slot
+    key = (*place, info)
+    if key not in ctx.sinks:
+        known = ctx.sent.setdefault(place, 0)
+        if known >= MAX_APART:
+            return place, slot
+        ctx.sent[place] = known + 1
+    return key, (*slot, info)
 
 
 def accept(ctx: Interpreter, it: Invocation, value: Value, acceptance: Acceptance) -> None:

@@ -1,0 +1,141 @@
+"""Find code that registers something (an input, a publisher, a timer) or makes objects of the analysed files.
+
+A loop over such code is unrolled, so that each iteration has its own topics, callbacks and objects. So is a loop that
+publishes with a publisher that depends on the element. Functions and
+classes are told apart by their names only: code that calls one of two functions with the same name is assumed to call
+both, and is then unrolled without need.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Hashable, Iterable, Iterator, MutableMapping, Sequence, Set
+from typing import Any, Literal
+
+from tarl_lint.interpret.node_starts import MAKES, REGISTERING
+from tarl_lint.ir import nodes as ir
+from tarl_lint.trees import children, last_name, walk
+
+REGISTRATIONS = REGISTERING | MAKES
+SENDING = frozenset(["publish"])
+CONSTRUCTORS = frozenset(["__init__", "__new__", "__post_init__"])
+# endings of the names of base classes whose objects hold no data of their own
+VALUES = ("Error", "Exception", "Enum", "NamedTuple")
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+class Registrations:
+    """Answers whether code registers something or makes objects. The files are searched at the first question."""
+
+    def __init__(self, trees: Sequence[ast.Module], wrappers: Iterable[str]) -> None:
+        self.trees = trees
+        self.wanted = REGISTRATIONS.union(name.rpartition(".")[2] for name in wrappers)
+        self.bodies: dict[str, list[ast.AST]] | None = (
+            None  # name of a function or class → what its call runs
+        )
+        self.called: dict[str, frozenset[str]] = {}  # name → names that its code calls
+        self.known: dict[Hashable, bool] = {}  # loop, comprehension or name → the answer
+        self.sending: dict[str, bool] = {}  # name → whether a call of it publishes
+        self.rows: dict[ir.Loop, Literal["direct", "helper", ""]] = {}
+
+    def inside(self, code: Hashable, nodes: Sequence[ast.AST]) -> bool:
+        """Return whether syntax trees register something or make objects; `code` identifies the trees."""
+        found = self.known.get(code)
+        if found is None:
+            found = self.known[code] = self._search(_called(nodes), self.wanted, self.known)
+        return found
+
+    def publishes(self, loop: ir.Loop) -> Literal["direct", "helper", ""]:
+        """Return whether the element of a loop chooses a publisher: in its body, in a function that it calls, or not.
+
+        A loop over publishers, which all get the same message, does not count.
+        """
+        found = self.rows.get(loop)
+        if found is None:
+            found = self.rows[loop] = self._publishes(loop)
+        return found
+
+    def _publishes(self, loop: ir.Loop) -> Literal["direct", "helper", ""]:
+        targets = _names(loop.target)
+        helpers: list[str] = []
+        for one in walk(*loop.nodes):
+            name = last_name(one.func) if isinstance(one, ast.Call) else ""
+            if not isinstance(one, ast.Call) or not name:
+                continue
+            receiver = one.func.value if isinstance(one.func, ast.Attribute) else one.func
+            if name in SENDING and _mentions(receiver, targets):
+                if len(targets) > 1 or not isinstance(receiver, ast.Name):
+                    return "direct"
+            elif any(_mentions(given, targets) for given in [*one.args, *(k.value for k in one.keywords)]):
+                helpers.append(name)
+        return "helper" if self._search(helpers, SENDING, self.sending) else ""
+
+    def _search(self, names: Iterable[str], wanted: Set[str], known: MutableMapping[Any, bool]) -> bool:
+        """Search functions, and all functions that they may call, for calls of wanted names."""
+        bodies = self._bodies()
+        seen: set[str] = set()
+        pending = [*names]
+        while pending:
+            name = pending.pop()
+            if name in wanted or known.get(name):
+                return True
+            if name in bodies and name not in seen and name not in known:
+                seen.add(name)
+                if name not in self.called:
+                    self.called[name] = frozenset(_called(bodies[name]))
+                pending += self.called[name]
+        known.update(dict.fromkeys(seen, False))
+        return False
+
+    def _bodies(self) -> dict[str, list[ast.AST]]:
+        """Return the code of each name; note the names of classes, and of functions that define functions."""
+        if self.bodies is None:
+            self.bodies = {}
+            for node in _definitions(self.trees):
+                code = [node] if isinstance(node, FUNCTIONS) else _constructor(node)
+                self.bodies.setdefault(node.name, []).extend(code)
+                if _makes(node):
+                    self.known[node.name] = True
+        return self.bodies
+
+
+def _definitions(trees: Iterable[ast.Module]) -> Iterator[Function | ast.ClassDef]:
+    """Yield the functions and classes of files; expressions are not searched."""
+    pending: list[ast.AST] = [*trees]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, (*FUNCTIONS, ast.ClassDef)):
+            yield node
+        pending += [one for one in children(node) if not isinstance(one, ast.expr)]
+
+
+def _makes(node: Function | ast.ClassDef) -> bool:
+    """Return whether a call makes an object with data of its own, or a function."""
+    if isinstance(node, ast.ClassDef):
+        return not any(last_name(base).endswith(VALUES) for base in node.bases)
+    return any(isinstance(s, FUNCTIONS) for s in node.body)
+
+
+def _constructor(node: ast.ClassDef) -> list[ast.AST]:
+    """Return the code that runs when a class is called: its own constructors, and calls of its base classes."""
+    own = [s for s in node.body if isinstance(s, FUNCTIONS) and s.name in CONSTRUCTORS]
+    return [*own, *(ast.Call(base, [], []) for base in node.bases)]
+
+
+def _names(target: ir.Expr | None) -> frozenset[str]:
+    """Return the variables that a loop assigns its elements to."""
+    if isinstance(target, ir.SequenceDisplay):
+        return frozenset().union(*map(_names, target.items))
+    return frozenset([target.name]) if isinstance(target, ir.Name) else frozenset()
+
+
+def _mentions(expr: ast.expr, names: Set[str]) -> bool:
+    return any(isinstance(one, ast.Name) and one.id in names for one in walk(expr))
+
+
+def _called(nodes: Iterable[ast.AST]) -> Iterator[str]:
+    """Yield the last parts of the names of called functions, except constructors of base classes."""
+    for one in walk(*nodes):
+        if isinstance(one, ast.Call) and (name := last_name(one.func)) and name not in CONSTRUCTORS:
+            yield name

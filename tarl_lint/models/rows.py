@@ -1,0 +1,94 @@
+"""Rows: the possible elements of a container, over which a loop is unrolled although their order is unknown."""
+
+from __future__ import annotations
+
+from ast import literal_eval
+
+from tarl_lint.interpret.budget import MAX_ROWS
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.memory import heap
+from tarl_lint.memory.heap import KEYS
+from tarl_lint.memory.values import BOTTOM, ClassInfo, Obj, Value, const, pointer
+
+MAX_MEMBERS = 100  # maximum number of attributes of an object or class over which a loop is unrolled
+ENUMERATIONS = ("Enum", "Flag")  # endings of the names of base classes of enumerations
+CONTAINERS = frozenset(["sequence", "mapping"])
+
+
+def of(ctx: Interpreter, source: Value) -> list[Value]:
+    """Return the different elements that iteration over containers may yield; [] if they are unknown or too many."""
+    if len(source.pts) == 1 and (cls := next(iter(source.pts))).kind == "class":
+        return _members(ctx, cls)
+    if not source.pts or any(o.kind not in CONTAINERS for o in source.pts):
+        return []
+    return parts(heap.elements(ctx, source))
+
+
+def parts(value: Value) -> list[Value]:
+    """Return a value as its different objects and constants; [] if it is not known, or has fewer than two of them."""
+    constants = value.keys()
+    if not 1 < len(value.pts) + len(constants or ()) <= MAX_ROWS or (constants is None and not value.pts):
+        return []
+    found = [
+        Value(value.deps, frozenset([o]), None if constants is None else BOTTOM.consts) for o in value.objects
+    ]
+    names = sorted(constants or (), key=lambda one: (type(one).__name__, repr(one)))
+    return found + [Value(value.deps, consts=frozenset([name])) for name in names]
+
+
+def entries(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | None:
+    """Return the keys and values of mappings whose keys are known constants; None if they are not, or too many."""
+    found: list[tuple[Value, Value]] = []
+    for obj in base.objects:
+        own = _entries_of(ctx, obj)
+        if own is None:
+            return None
+        found += [(const(key), heap.arrive(ctx, value, base.deps)) for key, value in own]
+    return found if 1 < len(found) <= MAX_ROWS else None
+
+
+def attributes(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | None:
+    """Return the names and values in the body of one class, as `vars(cls)` has them; None for anything else."""
+    cls = next(iter(base.pts)) if len(base.pts) == 1 else None
+    if cls is None or cls.kind != "class":
+        return None
+    ctx.store.look(cls)
+    found: list[tuple[Value, Value]] = []
+    for name in list(cls.fields):
+        value = ctx.store.get((cls, name)) if name.isidentifier() and not name.startswith("__") else None
+        if value is not None:
+            found.append((const(name), heap.arrive(ctx, value, base.deps)))
+    return found if 0 < len(found) <= MAX_MEMBERS else None
+
+
+def _members(ctx: Interpreter, cls: Obj) -> list[Value]:
+    """Return the members of an enumeration, which are represented by their values."""
+    if not isinstance(cls.info, ClassInfo) or not any(
+        name.endswith(ENUMERATIONS) for name in cls.info.external
+    ):
+        return []
+    found = [value for _, value in attributes(ctx, pointer(cls)) or () if value.fixed()]
+    return found if 1 < len(found) <= MAX_ROWS else []
+
+
+def _entries_of(ctx: Interpreter, obj: Obj) -> list[tuple[object, Value]] | None:
+    if (
+        obj.kind != "mapping"
+        or heap.content(ctx, obj) is not BOTTOM
+        or ctx.store.get((obj, KEYS)) is not None
+    ):
+        return None
+    ctx.store.look(obj)
+    found: list[tuple[object, Value]] = []
+    for name in list(obj.fields):
+        if not name.startswith("["):
+            continue
+        value = ctx.store.get((obj, name))
+        ctx.graph.asked += 1
+        if value is None:
+            continue
+        try:
+            found.append((literal_eval(name[1:-1]), value))
+        except (ValueError, SyntaxError):
+            return None  # a class is a key
+    return found
