@@ -7,6 +7,8 @@ from collections.abc import Callable
 from textwrap import indent
 from typing import Final
 
+from tests.lint.executed.wiring import CLASSES, wiring
+
 HEAD: Final = """\
 import rospy
 from std_msgs.msg import Float64
@@ -81,6 +83,7 @@ class Generator:
     """Draws one program; the same seed gives the same program."""
 
     def __init__(self, seed: int) -> None:
+        self.seed = seed
         self.draw = random.Random(seed)
         self.outputs = 0
         self.helpers = False
@@ -97,18 +100,12 @@ class Generator:
             self.method("tick", "event", "0"),
         ]
         helper = self.method("helper", "n", "n") + f"        return {self.number(1)}\n"
-        publishers = "".join(
-            f'        self.out{i} = rospy.Publisher("out{i}", Float64, queue_size=1)\n'
-            for i in range(self.outputs)
+        ends = "".join(f"        {line}\n" for line in wiring(self.seed, self.outputs))
+        head = HEAD.replace("ERROR", self.draw.choice(RAISED)) + CLASSES
+        body = "\n".join([START + ends, helper, *methods])
+        return (
+            f'{head}class Node(Listener):\n{body}\n\nrospy.init_node("node")\nnode = Node()\nrospy.spin()\n'
         )
-        wiring = (
-            '        rospy.Subscriber("a", Float64, self.on_a)\n'
-            '        rospy.Subscriber("b", Float64, self.on_b)\n'
-            "        rospy.Timer(rospy.Duration(1), self.tick)\n"
-        )
-        head = HEAD.replace("ERROR", self.draw.choice(RAISED))
-        body = "\n".join([START + publishers + wiring, helper, *methods])
-        return f'{head}class Node:\n{body}\n\nrospy.init_node("node")\nnode = Node()\nrospy.spin()\n'
 
     def method(self, name: str, parameter: str, first: str) -> str:
         """Return a method; its local variables are two numbers, a list and a box."""
@@ -121,7 +118,8 @@ class Generator:
         body = self.block(2, 0, self.draw.randint(1, 4))
         if name != "helper":
             body += self.publish()
-        lines = [f"def {name}(self, {parameter}):", *(f"    {line}" for line in [*opening, *body])]
+        mark = [f'@marked("{name[-1]}")'] if name.startswith("on_") else []
+        lines = [*mark, f"def {name}(self, {parameter}):", *(f"    {line}" for line in [*opening, *body])]
         return indent("\n".join(lines) + "\n", "    ")
 
     # --- statements ---------------------------------------------------------------------------------------
@@ -281,6 +279,8 @@ class Generator:
             [f"self.d.setdefault({key}, {number})"],
             [f"self.d = {{{key}: {number}}}"],
             ["if self.d:", "    self.d.popitem()"],
+            ["for key, value in sorted(self.d.items()):", f"    {self.one(NUMBERS)} = value"],
+            ["for key in sorted(self.d):", f"    self.d[key] = {number}"],
         ])  # fmt: skip
 
     def change_set(self) -> list[str]:
@@ -310,6 +310,8 @@ class Generator:
             ["if len(self.boxes) > 2:", "    self.boxes.pop()"],
             [f"self.boxes = [make(q) for q in (0, {number})]"],
             ["for q in self.boxes:", f"    q.x {self.draw.choice(['=', '+='])} {number}"],
+            ["for q in (self.b, t):", f"    q.x {self.draw.choice(['=', '+='])} {number}"],
+            ["for i, q in enumerate(self.boxes):", f"    q.x = {self.draw.choice(['i', number])}"],
             [f"self.boxes[0] = {self.draw.choice(['self.boxes[1]', 't', 'Box()'])}"],
         ])  # fmt: skip
 
