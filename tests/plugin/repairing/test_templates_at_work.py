@@ -14,7 +14,9 @@ import numpy as np
 import pytest
 
 from pytest_tarl import Sensor
+from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.rewriting import rewrite
+from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import SHIPPED, template
 from pytest_tarl.repairing import structural, template_forms, typical_sizes
 from pytest_tarl.repairing.structural import Structures
@@ -64,6 +66,7 @@ BODIES = {  # other ways to compute the same value
     "a message": "self.out.publish(Float64(data=msg.data + msg.data))",
     "a choice": "value = -msg.data if self.off else self.twice(msg.data)\n        self.out.publish(value)",
 }
+SCALED = "value = 2.0 * msg.data\n        self.out.publish(value)"
 INPUT = "value = msg.data\n        self.out.publish(value)"
 COMPARED = (
     "value = msg.data\n        if value < self.bound:\n            self.out.publish(value)\n"
@@ -183,12 +186,20 @@ MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
 }
 
 
+# laws by which a constant, here 2.0, follows the slope: they are tried after a value of the constant was found
+LAWS: dict[str, Command] = {
+    "above": lambda value, slope: 2.0 * max(1.0, slope / 0.8) ** 0.7 * value,
+    "below": lambda value, slope: 2.0 * min(1.0, slope / 0.8) ** 0.7 * value,
+}
+
+
 class World:
     """Thirty values per mission; the reward is ten minus the relative error of the sent commands."""
 
     def __init__(self, name: str, folder: Path, body: str = "") -> None:
-        assert name in MENDED, f"add what a node mended by {name} sends to MENDED in this file"
-        usual, self.mended = MENDED[name]
+        known = name in MENDED or name in LAWS
+        assert known, f"add what a node mended by {name} sends to MENDED or LAWS in this file"
+        usual, self.mended = MENDED[name] if name in MENDED else (SCALED, lambda: LAWS[name])
         self.bound = BOUNDS.get(name, 0.0)
         self.pair = name == "swapped_axes"
         self.steps = name == "comparison"
@@ -224,11 +235,28 @@ class World:
         return Outcome(total, total > 5.0)
 
 
-@pytest.mark.parametrize("name", sorted(path.stem for path in SHIPPED.glob("*.toml")))
+SEARCHED = [
+    path.stem for path in sorted(SHIPPED.glob("*.toml")) if path.stem not in LAWS
+]  # templates that a search of its own tries
+
+
+@pytest.mark.parametrize("name", SEARCHED)
 def test_the_found_template_has_fitted_parameters_and_its_patch_runs(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     check_found(name, World(name, tmp_path), monkeypatch)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_the_patch_of_a_law_of_a_constant_runs(name: str, tmp_path: Path) -> None:
+    world = World(name, tmp_path)
+    (factor,) = [one for step in world.analysis.sites for one in world.analysis.operands(step.site)]
+    slope = Sensor("slope", topic="/slope", field="data", low=0, high=2, bins=4)
+    defaults = (("power", 0.7), ("usual", 0.8))
+    law = Form(template(SHIPPED / f"{name}.toml"), sensor=slope, parameter="power", defaults=defaults)
+    found = Candidate((Mutation(factor, 1.0, form=law),), ALWAYS)
+    assert world.run(Candidate((), ALWAYS), 1).total < 9.0, "the node needs no change"
+    assert world.run(found, 1).total == pytest.approx(10.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", ["limit", "low_pass", "rate_limit", "integral"])
