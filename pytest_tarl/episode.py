@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from pytest_tarl.ros import Bus, Ros
     from pytest_tarl.starting import Replacement
 
+_LAST = 2**31 - 1  # largest seconds of a time of ROS 2, an int32
+
 
 class Tarl:
     """The fixture `tarl`: random numbers, the in-process ROS, sensors and reward of one episode."""
@@ -233,6 +235,8 @@ class Tarl:
         seconds = as_number(dt)
         if seconds is None or not 0 <= seconds < math.inf:
             raise SettingsError(f"tarl.step got {dt!r}: give a finite number of seconds, such as 0.1.")
+        if self.now + seconds > _LAST:
+            raise SettingsError(f"tarl.step got {dt!r}: the times of ROS end {_LAST} s after the start.")
         if self._replay is not None:
             self._replayed(self._replay, seconds)
         (self.ros.step if self.simulator is None else self.simulator.advance)(seconds)

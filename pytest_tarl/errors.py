@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Final
+
+MOST_TEXT: Final = 4000  # characters of an error's message that are shown, two screens of a terminal
+
 
 class TarlError(Exception):
     """Base of all errors shown to the user as a sentence, without a traceback."""
@@ -83,7 +87,21 @@ class RefusedError(TarlError):
     """A command is valid but would cause harm in the current state, so it changed nothing."""
 
 
+def text_of(said: object) -> str:
+    """Return the message of an error of other code, cut to `MOST_TEXT` characters.
+
+    Its `__str__` may raise any exception; the text then names this exception.
+    """
+    try:
+        text = str(said)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:
+        return f"(its __str__ raised {type(problem).__name__})"
+    return text if len(text) <= MOST_TEXT else f"{text[:MOST_TEXT]}… ({len(text)} characters)"
+
+
 def first_line(error: BaseException | None) -> str:
     """Return the first line of an error's message, or the name of its class if the message is empty."""
-    text = str(error).strip()
+    text = text_of(error).strip()
     return text.splitlines()[0] if text else type(error).__name__

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytest_tarl.errors import AnalysisError, LogError
+from pytest_tarl.errors import AnalysisError, LogError, text_of
 from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning.fixture import Fixture, load
@@ -94,13 +94,13 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
         try:
             imports.run(order.node.resolve(), order.entry)
         except SystemExit as ended:
-            observer.end(passed=ended.code in (None, 0), failure=f"exit status {ended.code}")
+            observer.end(passed=ended.code in (None, 0), failure=f"exit status {text_of(ended.code)}")
             raise
         except KeyboardInterrupt:
             observer.end(passed=True)
         except BaseException as error:
             if type(error).__name__ != SHUT_DOWN:
-                observer.end(passed=False, failure=f"{type(error).__name__}: {error}")
+                observer.end(passed=False, failure=f"{type(error).__name__}: {text_of(error)}")
                 raise
             observer.end(passed=True)
         observer.end(passed=True)

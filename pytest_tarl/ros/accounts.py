@@ -7,7 +7,7 @@ import traceback
 from pathlib import Path
 from types import TracebackType
 
-from pytest_tarl.errors import NodeError
+from pytest_tarl.errors import NodeError, text_of
 
 _PACKAGE = str(Path(__file__).parent.parent)
 
@@ -16,9 +16,9 @@ def account(error: BaseException, test: Path) -> str:
     """Return the text to show for an error in a test: its message, and the node's traceback if a node failed."""
     cause = error.__cause__
     if not isinstance(error, NodeError) or cause is None or cause.__traceback__ is None:
-        return str(error)
+        return text_of(error)
     lines = traceback.format_exception(type(cause), cause, of_node(cause.__traceback__))
-    parts = [str(error), "".join(lines).rstrip(), _called(error.__traceback__, test)]
+    parts = [text_of(error), "".join(lines).rstrip(), _called(error.__traceback__, test)]
     return "\n\n".join(part for part in parts if part)
 
 

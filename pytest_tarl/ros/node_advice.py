@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Sequence
 from types import FrameType, TracebackType
 from typing import Final, TypeGuard
 
+from pytest_tarl.errors import text_of
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.launch_sources import Given, arguments_from, parameter_from
 from pytest_tarl.ros.missing_modules import PYTHON_2, interface_advice, module_advice
@@ -41,26 +42,27 @@ def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str
     `given` contains what launch files pass to the node; `unset` contains the parameters without a value that
     it asked for.
     """
+    text = text_of(error)
     if isinstance(error, SyntaxError):
-        return PYTHON_2 if _PYTHON_2_SYNTAX.search(str(error)) or isinstance(error, TabError) else ""
-    if isinstance(error, NameError | AttributeError | ImportError) and _PYTHON_2_NAMES.search(str(error)):
+        return PYTHON_2 if _PYTHON_2_SYNTAX.search(text) or isinstance(error, TabError) else ""
+    if isinstance(error, NameError | AttributeError | ImportError) and _PYTHON_2_NAMES.search(text):
         return PYTHON_2
     if isinstance(error, ImportError):
         return _of_import(error)
-    lacking = _LACKING.search(str(error)) if isinstance(error, AttributeError) else None
+    lacking = _LACKING.search(text) if isinstance(error, AttributeError) else None
     if lacking is not None and lacking[1] in STANDINS:
         return _of_name(lacking[1])
     if isinstance(error, KeyError):
         return _of_lookup(error, given)
     if type(error).__name__ == "ParameterUninitializedException" and error.args:
-        return _of_parameter(str(error.args[0]).rpartition(": ")[2], given)
-    if isinstance(error, TypeError | IndexError) and _INTEGER_NEEDED.search(str(error)) and _divides(error):
+        return _of_parameter(text_of(error.args[0]).rpartition(": ")[2], given)
+    if isinstance(error, TypeError | IndexError) and _INTEGER_NEEDED.search(text) and _divides(error):
         return "In Python 3, / of two integers gives a float: write // where Python 2 rounded down."
     if isinstance(error, SystemExit | IndexError):
         return _of_arguments(error, given)
-    if unset and isinstance(error, TypeError | AttributeError | ValueError) and _NONE.search(str(error)):
+    if unset and isinstance(error, TypeError | AttributeError | ValueError) and _NONE.search(text):
         return _of_unset(unset, _line_of(error))
-    if isinstance(error, TypeError) and "required positional argument: 'Loader'" in str(error):
+    if isinstance(error, TypeError) and "required positional argument: 'Loader'" in text:
         return (
             "PyYAML 6 has no default for it: call yaml.safe_load in the node, or run pip install 'PyYAML<6' in the "
             "environment of the tests."
@@ -109,7 +111,7 @@ def _of_lookup(error: KeyError, given: Given) -> str:
     last = _innermost(error)
     if last is None or not error.args:
         return ""
-    name = str(error.args[0])
+    name = text_of(error.args[0])
     if last.f_globals.get("__name__") == "os":
         return (
             f'The environment variable {name} is not set: call monkeypatch.setenv("{name}", …) in the test.'
@@ -185,10 +187,18 @@ def _indexes_arguments(innermost: Sequence[TracebackType]) -> bool:
     """Return whether the line that raised the error contains `argv` or a variable with the same value."""
     for entry in innermost:
         line = linecache.getline(entry.tb_frame.f_code.co_filename, entry.tb_lineno)
-        held = [name for name, value in entry.tb_frame.f_locals.items() if value == sys.argv]
+        held = [name for name, value in entry.tb_frame.f_locals.items() if _is_argv(value)]
         if any(re.search(rf"\b{re.escape(name)}\b", line) for name in ("argv", *held)):
             return True
     return False
+
+
+def _is_argv(value: object) -> bool:
+    """Return whether a node's variable has the value of `sys.argv`, without calling code of the value.
+
+    Arrays compare element by element, and other objects may raise.
+    """
+    return type(value) is list and all(type(one) is str for one in value) and value == sys.argv
 
 
 def _statement_and_conditions(file: str, line: int) -> Iterator[str]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, TypeVar
 
-from pytest_tarl.errors import NodeError, StuckNodeError, TarlError, UnsupportedApiError
+from pytest_tarl.errors import NodeError, StuckNodeError, TarlError, UnsupportedApiError, text_of
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.bus import Bus
 from pytest_tarl.ros.exiting import ProcessExit
@@ -191,7 +191,7 @@ class Process:
         what = (
             f"exited with status {_status(error)}"
             if isinstance(error, SystemExit)
-            else f"raised {type(error).__name__}: {error}"
+            else f"raised {type(error).__name__}: {text_of(error)}"
         )
         where = blame.describe(getattr(error, "tarl_place", None) or blame.of_traceback(error.__traceback__))
         hint = advice(error, self.launched, tuple(self.unset))
@@ -210,7 +210,7 @@ def _status(error: SystemExit) -> str:
     """Return the exit status; for an exit with a string, return 1 (as Python does) and the first line of the string."""
     if isinstance(error.code, int):
         return str(error.code)
-    first = next((one.strip() for one in str(error.code).splitlines() if one.strip()), "")
+    first = next((one.strip() for one in text_of(error.code).splitlines() if one.strip()), "")
     return f"1: {first[:_LONGEST]}{'…' if len(first) > _LONGEST else ''}"
 
 

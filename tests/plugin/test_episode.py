@@ -90,6 +90,7 @@ MISTAKES: dict[str, Any] = {
     "a text as time": (lambda t: t.step("0.1"), "tarl.step got '0.1': give a finite number"),
     "time backwards": (lambda t: t.step(-0.1), "tarl.step got -0.1"),
     "no time": (lambda t: t.step(float("nan")), "tarl.step got nan"),
+    "a time that ROS cannot express": (lambda t: t.step(1e300), "the times of ROS end 2147483647 s after"),
     "a message without topic": (
         lambda t: t.message(SimpleNamespace(data=1), None),
         "the topic name comes first",

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import TracebackType
 from typing import Any, ClassVar
 
+from pytest_tarl.errors import text_of
 from pytest_tarl.ros.smach.errors import (
     InvalidStateError,
     InvalidTransitionError,
@@ -134,7 +135,7 @@ class Container(State):
         except Exception as error:
             if getattr(error, "tarl_shutdown", False):
                 raise
-            logerr(f"A {when} callback of a container raised {type(error).__name__}: {error}")
+            logerr(f"A {when} callback of a container raised {type(error).__name__}: {text_of(error)}")
 
     def run_child(self, label: str) -> str:
         """Execute a state, and return its outcome. Raise InvalidTransitionError if the outcome is not declared."""

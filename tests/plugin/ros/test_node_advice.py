@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from pytest_tarl.errors import NodeError
+from pytest_tarl.errors import MOST_TEXT, NodeError
 from pytest_tarl.ros import Ros
 from pytest_tarl.ros.launch_sources import Given
 from pytest_tarl.ros.launched import given
@@ -113,6 +113,44 @@ def test_an_error_names_parameters_of_rclpy_without_a_value(asks: str, start: St
             node = rclpy.create_node("it", allow_undeclared_parameters=True)
             print(2.0 * {asks})
         """)
+
+
+# values of local variables whose comparison calls code or has no single truth value
+LOCALS = ["numpy.zeros(5)", "[numpy.zeros(5)]", "Unequal()", "[Unequal()]"]
+
+
+@pytest.mark.parametrize("value", LOCALS)
+def test_variables_of_the_failing_function_are_not_compared_by_their_own_code(
+    value: str, start: Start
+) -> None:
+    code = (
+        "import numpy\n\n\nclass Unequal:\n    def __eq__(self, other):\n        raise KeyError(other)\n\n\n"
+        f"def on_scan():\n    ranges = {value}\n    return [][3]\n\n\non_scan()\n"
+    )
+    with pytest.raises(NodeError, match=r"raised IndexError: list index out of range \(\S+node.py, line 11"):
+        start(code)
+
+
+def test_a_variable_equal_to_the_arguments_is_advised_on(start: Start) -> None:
+    with pytest.raises(NodeError, match="The node reads its command line"):
+        start("import sys\n\n\ndef run(given):\n    return given[7]\n\n\nrun(list(sys.argv))\n")
+
+
+MESSAGES = {
+    "raise Silent()": "raised Silent: (its __str__ raised ZeroDivisionError) (",
+    "raise KeyError(Silent())": "raised KeyError: (its __str__ raised ZeroDivisionError) (",
+    "raise SystemExit(Silent())": "exited with status 1: (its __str__ raised ZeroDivisionError) (",
+    "raise ValueError('x' * 5000)": f"raised ValueError: {'x' * MOST_TEXT}… (5000 characters) (",
+}
+
+
+@pytest.mark.parametrize("line", MESSAGES)
+def test_messages_that_raise_or_are_long_still_give_one_sentence(line: str, start: Start) -> None:
+    code = "class Silent(BaseException):\n    def __str__(self):\n        return 1 / 0\n\n    __repr__ = __str__\n\n\n"
+    with pytest.raises(NodeError) as error:
+        start(f"{code}{line}\n")
+    assert f"Node 'node.py' {MESSAGES[line]}" in str(error.value)
+    assert str(error.value).endswith("node.py, line 8).")
 
 
 def test_a_node_may_continue_without_a_module_that_is_not_implemented(start: Start) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from pytest_tarl.errors import text_of
 from pytest_tarl.ros.messages import find_class
 from pytest_tarl.ros.rclpy.exceptions import RCLError
 from pytest_tarl.ros.rclpy.lifecycle.entities import LifecyclePublisher, ManagedEntity
@@ -139,7 +140,7 @@ class LifecycleNodeMixin(ManagedEntity):
         except Exception as error:
             if getattr(error, "tarl_shutdown", False):
                 raise
-            self._said(f"{name} raised {type(error).__name__}: {error}")
+            self._said(f"{name} raised {type(error).__name__}: {text_of(error)}")
             return _ERROR
         return answer
 
