@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from pytest_tarl.errors import RefusedError, RepairError
-from pytest_tarl.patching.reading import Patch
+from pytest_tarl.patching.reading import Patch, in_closed_folder
 
 
 def located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
@@ -47,7 +47,7 @@ def _located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
 
 
 def _keep_inside(patch: Patch, named: str, path: Path, project: Path) -> None:
-    if not path.is_relative_to(project) or ".git" in path.relative_to(project).parts:
+    if not path.is_relative_to(project) or in_closed_folder(path.relative_to(project).parts):
         raise RefusedError(
             f"{patch.name} leads out of {project}: {named} is {path}. Nothing was changed; if "
             "this is intended, name "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path, PurePosixPath
@@ -22,6 +22,9 @@ _HEADER = (  # lines of a file after `diff --git`; git appends a tab to names wi
     re.compile(rb"--- a/([^\t\n]+)\t?\n"),
     re.compile(rb"\+\+\+ b/([^\t\n]+)\t?\n"),
 )
+
+# folders that no patch changes: git runs files of its own, and TARL loads compiled nodes from its cache
+CLOSED = frozenset({".git", ".tarl"})
 
 
 @dataclass(frozen=True)
@@ -100,10 +103,15 @@ def _whole(content: bytes, seals: Sequence[str]) -> bool:
 
 
 def _inside(name: str) -> bool:
-    """Return whether a relative name stays below its base folder and outside `.git`."""
+    """Return whether a relative name stays below its base folder and outside the folders of `CLOSED`."""
     parts = name.split("/")
     odd = PurePosixPath(name).is_absolute() or "\\" in name or not name.isprintable()
-    return not odd and not {"", ".", ".."} & set(parts) and ".git" not in map(str.lower, parts)
+    return not odd and not {"", ".", ".."} & set(parts) and not in_closed_folder(parts)
+
+
+def in_closed_folder(parts: Iterable[str]) -> bool:
+    """Return whether one of the names of a path is a folder that no patch changes, in any case of the letters."""
+    return not CLOSED.isdisjoint(map(str.lower, parts))
 
 
 def _file(body: bytes) -> FilePatch:

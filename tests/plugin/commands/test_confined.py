@@ -178,11 +178,21 @@ def test_file_names_outside_the_project_are_refused(name: str) -> None:
         assert code == 0 if name == "node.py" else code in (1, 2) or inside
 
 
-@pytest.mark.parametrize("name", [".git/hooks/step.py", "lib/.git/step.py", ".git/../.git/step.py"])
-def test_files_inside_the_git_folder_are_refused(name: str, capsys: Printed) -> None:
+CLOSED = [
+    ".git/hooks/step.py",
+    "lib/.git/step.py",
+    ".git/../.git/step.py",
+    "lib/.GIT/step.py",
+    ".tarl/step.py",
+    "lib/.tarl/cache/step.py",
+]
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_files_inside_the_folders_of_git_and_tarl_are_refused(name: str, capsys: Printed) -> None:
     with robot() as (root, place):
-        for folder in (".git/hooks", "lib/.git"):
-            (root / folder).mkdir(parents=True)
+        for folder in (".git/hooks", "lib/.git", "lib/.GIT", "lib/.tarl/cache"):
+            (root / folder).mkdir(parents=True, exist_ok=True)
         (root / name).write_text(NODE)
         content = made(root, {"node.py": DONE})
         place.write_bytes(sealed(content.replace(b"/node.py", b"/" + name.encode())))
@@ -192,11 +202,12 @@ def test_files_inside_the_git_folder_are_refused(name: str, capsys: Printed) -> 
         assert texts(root.parent) == before
 
 
-def test_links_into_the_git_folder_are_refused(capsys: Printed) -> None:
+@pytest.mark.parametrize("folder", [".git/hooks", ".tarl/cache"])
+def test_links_into_the_folders_of_git_and_tarl_are_refused(folder: str, capsys: Printed) -> None:
     with robot() as (root, place):
-        (root / ".git" / "hooks").mkdir(parents=True)
-        (root / "node.py").rename(root / ".git" / "hooks" / "step.py")
-        (root / "node.py").symlink_to(".git/hooks/step.py")
+        (root / folder).mkdir(parents=True)
+        (root / "node.py").rename(root / folder / "step.py")
+        (root / "node.py").symlink_to(f"{folder}/step.py")
         place.write_bytes(PATCH)
         before = texts(root.parent)
         assert main(["apply", "--force", str(place)]) == 1
