@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import AnalysisError
+from pytest_tarl.files import existing
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.item_episode import Instruments
 from pytest_tarl.modules_in_flows import imported
@@ -32,9 +33,10 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
 
     Raise AnalysisError if a node cannot be analysed, or if no data flows from a subscription to a publish call.
     """
-    paths = [(folder / node).resolve() for node in designation.nodes]
-    for path, node in zip(paths, designation.nodes, strict=True):
-        if not path.exists():
+    paths = []
+    for node in designation.nodes:
+        path = existing(folder, node)
+        if path is None:
             raise AnalysisError(f"The marker names the node {node!r}: no such file in {folder}.")
         if path.suffix in SETTINGS:
             raise AnalysisError(
@@ -42,6 +44,7 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
                 "files only. A node gets the parameters of a launch file or of a parameter file that the test passes "
                 "(tarl.launch, or parameters= of tarl.start), and TARL finds them there."
             )
+        paths.append(path)
     with _working_in(root):  # the analysis names files relative to the working directory
         # a package's __init__.py passes on names of other files, so imports from the package lead through it
         analysis = _analysis([*paths, *imported(paths, root, packages=True)], root)

@@ -59,6 +59,18 @@ def check_writable(path: Path) -> None:
                 folder.rmdir()
 
 
+def existing(folder: Path, name: str | os.PathLike[str]) -> Path | None:
+    """Return the resolved path of a file or folder that a test names, or None if it does not exist.
+
+    Names that no file can have (with a NUL or a lone surrogate, or too long) and loops of links do not exist.
+    """
+    try:
+        path = (folder / name).resolve(strict=True)
+    except (OSError, ValueError, RuntimeError):
+        return None
+    return path
+
+
 def slug(text: str) -> str:
     """Return a string as a valid part of a file name."""
     return re.sub(r"[^A-Za-z0-9]+", "-", text.replace(".py", "")).strip("-")[:60]

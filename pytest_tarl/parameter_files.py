@@ -20,6 +20,9 @@ def parameters_of(given: Parameters | None, folder: Path, function: str) -> Mapp
     if given is None:
         return {}
     if isinstance(given, Mapping):
+        odd = next((name for name in given if not isinstance(name, str) or not name), None)
+        if odd is not None:
+            raise SettingsError(f"{function}: parameters maps names to values; {odd!r:.60} is not a name.")
         return given
     if not isinstance(given, str | os.PathLike):
         raise SettingsError(

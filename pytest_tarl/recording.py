@@ -318,7 +318,12 @@ def _silent(name: str, *, forwarded: bool) -> str:
 
 
 def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:
-    """Return the previous recording (or None), and the reason if it exists but cannot be read."""
+    """Return the previous recording (or None), and the reason if it exists but cannot be read.
+
+    A folder has no reason here, because it cannot be replaced: `check_writable` refuses it.
+    """
+    if path.is_dir():
+        return None, ()
     try:
         return (fixtures.load(path).sample if os.path.lexists(path) else None), ()
     except FixtureError as problem:

@@ -32,4 +32,6 @@ def uniform(seed: int, name: str) -> float:
 
 
 def _hashed(text: str, size: int) -> int:
-    return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=size).digest(), "little")
+    return int.from_bytes(
+        hashlib.blake2b(text.encode(errors="surrogatepass"), digest_size=size).digest(), "little"
+    )

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.files import existing
 from pytest_tarl.parameter_files import parameters_of
 
 if TYPE_CHECKING:
@@ -42,17 +43,22 @@ class Starter:
 
         Raise SettingsError if there is no such file, or for invalid parameters.
         """
-        path = (self._folder / script).resolve()
-        if not path.is_file():
+        path = existing(self._folder, script)
+        if path is None or not path.is_file():
             raise SettingsError(f"tarl.start: {script!r}: no such file in {self._folder}.")
         values = parameters_of(parameters, self._folder, "tarl.start")
+        if isinstance(argv, str) or not all(isinstance(one, str) for one in argv):
+            raise SettingsError(f"tarl.start: argv takes a list of strings, not {argv!r:.60}.")
         ros = self._ros()
         ros.use_definitions_around(path.parent, self._folder)
         ros.give(values)
         if launch is not False:
             from pytest_tarl.ros.launched import given
 
-            got = given(path, None if launch is None else (self._folder / launch).resolve())
+            file = None if launch is None else existing(self._folder, launch)
+            if launch is not None and file is None:
+                raise SettingsError(f"tarl.start: there is no launch file {self._folder / launch}.")
+            got = given(path, file)
             ros.launch(got)
             argv = argv or got.argv
         ros.start(self._program(path, entry), name=name or path.stem, argv=argv)

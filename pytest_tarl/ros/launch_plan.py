@@ -13,6 +13,7 @@ from itertools import combinations
 from pathlib import Path
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.files import existing
 from pytest_tarl.ros.launch_sources import Given
 from pytest_tarl.ros.launched import WITH_TEXTS, parameters, python_files
 from pytest_tarl.ros.messages.workspace import on_forget, search, workspace_around
@@ -133,8 +134,8 @@ def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
 
     Raise SettingsError if there is no such file; the message of the error begins with `where`.
     """
-    path = (folder / file).resolve()
-    if path.is_file():
+    path = existing(folder, file)
+    if path is not None and path.is_file():
         return path
     root = workspace_root(folder.resolve())
     if root is None:

@@ -102,6 +102,11 @@ MISTAKES: dict[str, Any] = {
     "a measurement for flags": (lambda t: t.observe(wet=0.5), "low, high and bins for a measurement"),
     "not a number for a sensor": (lambda t: t.observe(x="far"), "'x' got 'far', which is not a number"),
     "a message without the field": (lambda t: t.message("/odom", SimpleNamespace()), "has no field 'data'"),
+    "a script whose name has a NUL": (lambda t: t.start("no\0de.py"), "no such file"),
+    "a script whose name has a lone surrogate": (lambda t: t.start("\ud800.py"), "no such file"),
+    "a script whose name is too long": (lambda t: t.start("n" * 5000), "no such file"),
+    "a launch file whose name has a NUL": (lambda t: t.launch("a\0.launch"), "no such file"),
+    "a folder as script": (lambda t: t.start("."), "no such file"),
     "a script that is not there": (lambda t: t.start("nod.py"), "'nod.py': no such file"),
 }
 
@@ -113,6 +118,28 @@ def test_a_mistake_of_the_test_is_reported_in_one_sentence(tmp_path, mistake):
         with pytest.raises(SettingsError, match=words):
             call(tarl)
         assert not recorder.finish().steps
+
+
+STARTS: dict[str, dict[str, Any]] = {
+    "argv takes a list of strings, not 'a'": {"argv": "a"},
+    r"argv takes a list of strings, not \['a', 3\]": {"argv": ["a", 3]},
+    "parameters maps names to values; 3 is not a name": {"parameters": {3: 1}},
+    "parameters maps names to values; '' is not a name": {"parameters": {"": 1}},
+    "there is no launch file .*gone.launch": {"launch": "gone.launch"},
+    "there is no launch file .*\0": {"launch": "\0"},
+}
+
+
+@pytest.mark.parametrize("words", STARTS)
+def test_a_wrong_argument_of_start_is_the_error_of_the_test_and_not_of_the_node(tmp_path, words):
+    (tmp_path / "node.py").write_text("1 / 0\n")
+    with episode(tmp_path) as (tarl, _), pytest.raises(SettingsError, match=f"^tarl.start: {words}"):
+        tarl.start("node.py", **STARTS[words])
+
+
+def test_any_text_names_a_random_stream(tmp_path):
+    with episode(tmp_path) as (tarl, _):
+        assert tarl.rng("\ud800\0").random() != tarl.rng("\ud801\0").random()
 
 
 def test_errors_during_shutdown_of_a_node_become_a_note(tmp_path):

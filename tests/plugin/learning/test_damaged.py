@@ -259,6 +259,7 @@ def test_a_damaged_recording_is_reported_before_any_episode_and_can_be_replaced(
         done.stdout.fnmatch_lines(
             ["*cannot be written (Is a directory): something other than a regular file is at this path*"]
         )
+        assert "replaces it" not in done.stdout.str()
         return
     for broken in (good[: len(good) // 2], DAMAGED["deep JSON"](), DAMAGED["not an array"]()):
         path.write_bytes(broken)
