@@ -172,3 +172,19 @@ def test_topics_without_a_name_are_not_subscribed(library: dict[str, Any]) -> No
     observer: Any = Told()
     found = listeners._listeners(observer, Topics(TOPICS.types))
     assert [topic for topic, _, _ in found] == ["/place", "/speed", "/t"]
+
+
+@pytest.mark.parametrize("name", ["rospy", "rclpy"])
+def test_the_library_is_imported_before_any_message_type(
+    library: dict[str, Any], name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    imported: list[str] = []
+
+    def importing(module: str) -> ModuleType:
+        imported.append(module)
+        return sys.modules[module]
+
+    monkeypatch.setattr(listeners, "import_module", importing)
+    observer: Any = Told()
+    with watched(name, observer, TOPICS, idle=False):
+        assert imported[:2] == [name, "a_msgs.msg"]

@@ -28,6 +28,10 @@ HEAD += "from sensor_msgs.msg import Joy\nfrom nav_msgs.msg import Odometry\n"
         "odom = Odometry()\nodom.header.stamp.sec = 7",
         "joy = Joy()\njoy.buttons = [7, 0]",
         "joy = Joy()\njoy.buttons[0] = 7",
+        "msg = Int32()\nlast = msg.data = 7",
+        "msg = Int32()\nmsg.data = last = 7",
+        "msg = Int32()\nmsg.data: int = 7",
+        "joy = Joy()\njoy.buttons = (1, 7)",
     ],
 )
 def test_a_constant_in_an_integer_field_stays_an_integer(code: str) -> None:
@@ -46,6 +50,9 @@ def test_a_constant_in_an_integer_field_stays_an_integer(code: str) -> None:
         "msg = Int32()\nmsg.data = int(7 * x)",
         "msg = Mine()\nmsg.data = 7",
         "speed = 7",
+        "joy = Joy()\njoy.buttons[7] = 1",
+        "msg = Int32()\nlast = first = 7",
+        "msg = Int32()\nmsg.data = steps[7]",
     ],
 )
 def test_a_constant_outside_an_integer_field_may_become_a_fraction(code: str) -> None:
