@@ -251,6 +251,28 @@ def test_a_ranking_replaces_effects_if_it_has_any(monkeypatch: pytest.MonkeyPatc
         assert found.ranking is not None
 
 
+def test_an_interrupted_ranking_keeps_its_curve_and_its_episodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    guards: list[Any] = []
+
+    class Interrupted(Ranks):
+        def run(self) -> None:
+            super().run()
+            raise KeyboardInterrupt
+
+    def ranking(_: Any, guard: Any, trials: Any) -> Ranks:
+        guards.append(guard)
+        return Interrupted(trials, EFFECTS)
+
+    monkeypatch.setattr(repair.strategies, "ranking", ranking)
+    accepted: Any = SimpleNamespace(candidate=SimpleNamespace(guard=WET))
+    found = _Findings(accepted=accepted, episodes=5)
+    of = order()
+    _rank(mutants(of), found, ALWAYS, Watch(of))
+    assert (found.interrupted, found.accepted, found.episodes, found.effects) == (True, accepted, 6, EFFECTS)
+    assert guards == [WET]  # the guard of the repair
+    assert [(one.method, one.totals) for one in found.curves] == [("ranking", (10.0,))]
+
+
 @pytest.mark.parametrize(
     ("interrupted", "late", "reason", "expected"),
     [
