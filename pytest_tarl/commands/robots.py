@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
 
 from pytest_tarl.commands.parser import Parser
+from pytest_tarl.errors import SettingsError
 from pytest_tarl.printable import printable
 
 
@@ -77,6 +79,7 @@ def add_observe(commands: argparse._SubParsersAction[Parser]) -> None:
 def _observe(arguments: argparse.Namespace) -> int:
     from pytest_tarl.observing.command import Order, observe
 
+    _check_numbers(arguments)
     order = Order(
         node=arguments.node,
         argv=tuple(arguments.argv),
@@ -93,6 +96,16 @@ def _observe(arguments: argparse.Namespace) -> int:
     )
     print(printable(observe(order)), file=sys.stderr)
     return 0
+
+
+def _check_numbers(arguments: argparse.Namespace) -> None:
+    """Raise SettingsError for a number of `tarl observe` that is out of its range."""
+    given = {"--log-size": arguments.log_size or None, "--step": arguments.step, "--idle": arguments.idle}
+    for name, value in given.items():
+        if value is not None and not 0.0 < value < math.inf:
+            raise SettingsError(f"{name} must be a finite number above 0, got {value:g}.")
+    if arguments.log_keep < 0:
+        raise SettingsError(f"--log-keep must be a whole number from 0, got {arguments.log_keep}.")
 
 
 def add_watch(commands: argparse._SubParsersAction[Parser]) -> None:

@@ -106,6 +106,25 @@ def test_the_command_observe_passes_on_its_arguments(calls: Calls) -> None:
     )
 
 
+@pytest.mark.parametrize("value", ["nan", "inf", "-1", "0"])
+@pytest.mark.parametrize("flag", ["--log-size", "--step", "--idle"])
+def test_the_command_observe_refuses_numbers_out_of_their_range(
+    calls: Calls, capsys: Printed, flag: str, value: str
+) -> None:
+    calls.replace(observing, "observe", "")
+    never = flag == "--log-size" and value == "0"  # the default, which renames no log
+    assert cli.main(["observe", "node.py", flag, value]) == (0 if never else 2)
+    told = "" if never else f"tarl: {flag} must be a finite number above 0, got {value}.\n"
+    assert (capsys.readouterr().err.strip(), len(calls.made)) == (told.strip(), int(never))
+
+
+def test_the_command_observe_refuses_a_negative_number_of_logs(calls: Calls, capsys: Printed) -> None:
+    calls.replace(observing, "observe", "")
+    assert cli.main(["observe", "node.py", "--log-keep", "-1"]) == 2
+    assert capsys.readouterr().err == "tarl: --log-keep must be a whole number from 0, got -1.\n"
+    assert calls.made == []
+
+
 @pytest.mark.parametrize(
     ("flags", "given"), [([], (False, False)), (["--force"], (True, False)), (["--partial"], (False, True))]
 )
