@@ -429,6 +429,26 @@ def test_use_before_init_and_double_shutdown_fail_as_in_ros(start: Start) -> Non
         start("import rclpy; rclpy.init(); rclpy.shutdown(); rclpy.shutdown()")
 
 
+@pytest.mark.parametrize(
+    ("end", "reported"),
+    [("rclpy.shutdown()", ()), ("rclpy.try_shutdown()", ()), ("1 / 0", ("ZeroDivisionError",))],
+)
+def test_a_shutdown_after_the_node_was_ended_is_no_error_of_the_node(
+    start: Start, end: str, reported: tuple[str, ...]
+) -> None:
+    ros = start(f"""
+        import rclpy
+        rclpy.init()
+        try:
+            rclpy.spin(rclpy.create_node("n"))
+        finally:
+            {end}
+    """)
+    ros.step(0.1)
+    ros.close()
+    assert tuple(type(one.__cause__).__name__ for one in ros.shutdown_errors) == reported
+
+
 def test_errors_name_missing_apis(start: Start) -> None:
     make = "import rclpy; rclpy.init(); node = rclpy.create_node('n');"
     for missing, line in {

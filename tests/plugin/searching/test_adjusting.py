@@ -11,6 +11,7 @@ import pytest
 
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.searching import adjusting
 from pytest_tarl.searching.adjusting import IDLE, REFINED, ROUNDS, Adjusting
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.gains import Gains
@@ -84,6 +85,27 @@ def test_constants_are_not_refined_after_a_refusal_or_enough_refinements_or_with
     found.refined[B, ALWAYS] = REFINED - 1
     assert list(found.refine(0)) == []
     assert search.tried != []
+
+
+def test_before_a_proposal_the_constants_beside_a_plateau_are_refined_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[Any] = []
+
+    def refined(beside: list[Any], proposed: bool) -> set[Unit]:
+        def nearby(tried: Any, gains: Gains, least: float) -> list[Any]:
+            asked.append((list(tried), least))
+            return beside
+
+        monkeypatch.setattr(adjusting.plateau, "nearby", nearby)
+        found, _ = adjusted(entered((A, 2.2, 3.0), (B, 2.2, 1.0)), proposed=proposed)
+        return {unit for unit, _ in found.refined}
+
+    assert refined([(B, ALWAYS)], proposed=True) == {A}
+    assert asked == []
+    assert refined([(B, ALWAYS)], proposed=False) == {B}
+    assert asked[0] == ([(A, ALWAYS), (B, ALWAYS)], adjusting.PROMISING * 10.0)
+    assert refined([], proposed=False) == {A}  # no plateau
 
 
 def test_an_offset_is_refined_half_as_often_as_other_constants() -> None:

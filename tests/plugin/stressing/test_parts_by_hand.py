@@ -287,7 +287,7 @@ def test_failures_are_sorted_by_distance_and_then_by_name() -> None:
 def test_failures_that_contain_a_nearer_one_must_be_farther_by_some_percent() -> None:
     evaluator: Any = SimpleNamespace(space=SPACE)
     small = near(1.0, slope=0.5, mud=2.0)
-    for distance, kept in ((APART - 0.005, 1), (APART + 0.005, 2)):
+    for distance, kept in ((APART - 0.005, 1), (APART, 2), (APART + 0.005, 2)):
         larger = near(distance, slope=0.6, mud=2.0)
         assert len(_apart([larger, small], evaluator)) == kept
     aside = near(1.005, slope=-0.5, mud=2.0)
