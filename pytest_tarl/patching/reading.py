@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.files import read_regular
@@ -105,7 +105,7 @@ def _whole(content: bytes, seals: Sequence[str]) -> bool:
 def _inside(name: str) -> bool:
     """Return whether a relative name stays below its base folder and outside the folders of `CLOSED`."""
     parts = name.split("/")
-    odd = PurePosixPath(name).is_absolute() or "\\" in name or not name.isprintable()
+    odd = "\\" in name or not name.isprintable()
     return not odd and not {"", ".", ".."} & set(parts) and not in_closed_folder(parts)
 
 

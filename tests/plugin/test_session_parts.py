@@ -247,6 +247,46 @@ def test_finished_tests_are_reported_once_and_corrected_together(monkeypatch: py
     assert (said, concluded) == (["started", "logged"] * 3, ["one at 0.05", None, "other at 0.05"])
 
 
+def protocol(monkeypatch: pytest.MonkeyPatch, *, interrupted: bool = False, **given: Any) -> list[str]:
+    """Run two tests, the second of which is the last; return what pytest was told, and when."""
+    said: list[str] = []
+
+    class Function:
+        def __init__(self, name: str, marker: str = "tarl") -> None:
+            self.name, self.marker = name, marker
+
+        def get_closest_marker(self, name: str) -> str | None:
+            return self.marker if name == self.marker else None
+
+    of = run(**given)
+    monkeypatch.setattr(pytest, "Function", Function)
+    monkeypatch.setattr(session, "started", lambda item: said.append(f"{item.name} started"))
+    monkeypatch.setattr(session, "passed", lambda *_: None)
+    monkeypatch.setattr(session, "finish", lambda *_: None)
+    monkeypatch.setattr(session, "FinishedTest", lambda item, call, *_: item.name)
+    monkeypatch.setattr(of, "_run", lambda *_: SimpleNamespace(interrupted=interrupted))
+    monkeypatch.setattr(of, "_tell", lambda: said.append(f"told {', '.join(map(str, of._ended))}"))
+    first, last, other = Function("a"), Function("b"), Function("c", "other")
+    everything: Any = of
+    assert everything.pytest_runtest_protocol(other, last) is None
+    assert everything.pytest_runtest_protocol(first, last) is True
+    assert everything.pytest_runtest_protocol(last, None) is True
+    return said
+
+
+def test_each_test_is_reported_when_it_ends_unless_all_are_corrected_together(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert protocol(monkeypatch) == ["a started", "told a", "b started", "told a, b"]
+    for together in ({"holm": True}, {"total": 100}):
+        assert protocol(monkeypatch, **together) == ["told a, b"]
+
+
+def test_an_interrupted_test_ends_the_run_after_its_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        protocol(monkeypatch, interrupted=True)
+
+
 def test_the_commands_that_apply_patches_are_the_last_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     of = run()
     monkeypatch.setattr(of, "_joined", lambda: SimpleNamespace(commands=("tarl apply a",), lines=()))

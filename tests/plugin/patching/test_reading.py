@@ -233,3 +233,28 @@ def test_a_partial_repair_is_quoted_so_that_only_tarl_reads_it(tmp_path: Path) -
     (tmp_path / "file").write_text("")
     with pytest.raises(RepairError, match="cannot be written"):
         write_partial(diff, tmp_path / "file", "t", "mud")
+
+
+ODD = [
+    "/abs.py",
+    "a//b.py",
+    "a/",
+    "",
+    ".",
+    "a/./b.py",
+    "../a.py",
+    "a\\b.py",
+    "a\x1b.py",
+    "a/.git/b.py",
+    ".TARL/b.py",
+]
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_names_that_may_leave_the_project_are_not_inside(name: str) -> None:
+    assert not reading._inside(name)
+
+
+@pytest.mark.parametrize("name", ["a.py", "a/b c.py", "...py", "a/..b/.gitignore", "git/tarl.py", "ö.py"])
+def test_other_names_are_inside(name: str) -> None:
+    assert reading._inside(name)

@@ -201,6 +201,9 @@ def test_a_map_labels_its_axes_and_legend_at_fixed_positions() -> None:
         270.0,
         362.0,
     ]
+    base = found["confirmed failure"][1]
+    symbols = ("M90 514h18", 'cx="258" cy="514"', "M345 509l10 10m0 -10l-10 10")  # their middles are at 514
+    assert (base, [one in drawn for one in symbols]) == (518.0, [True] * 3)
     assert map_figure.map_figure(stress()) == ""
 
 
