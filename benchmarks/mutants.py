@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from py_compile import PycInvalidationMode
 
+from nearest_tests import Nearest
 from reached_lines import Reached, from_coverage, read
 from scipy.stats import beta
 from sown_faults import Fault, faults
@@ -77,6 +78,12 @@ def main() -> None:
         help="run all tests of the files named by --tests for each fault, instead of those that reach its line",
     )
     parser.add_argument(
+        "--nearest",
+        type=int,
+        metavar="N",
+        help="run the N files of --tests that are nearest to the changed module by imports, without coverage",
+    )
+    parser.add_argument(
         "--keep",
         type=Path,
         nargs="*",
@@ -103,7 +110,10 @@ def main() -> None:
         copy = Path(folder) / "copy"
         shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(*LEFT_OUT))
         precompiled(copy)
-        if given.without_coverage:
+        nearest = Nearest(copy, given.package, tuple(given.tests))
+        if given.nearest:
+            reached = Reached.of_files([])
+        elif given.without_coverage:
             reached = Reached.of_files(given.tests)
         else:
             reached = known(given.keep, copy, given.package, given.tests)
@@ -116,7 +126,11 @@ def main() -> None:
                 if fault.name in proven:
                     print(f"equivalent  {fault.name}: {proven[fault.name]}", flush=True)
                     continue
-                tests = reached.within(given.budget, reached.at(fault.path, fault.lines), fault.path)
+                if given.nearest:
+                    tests = nearest.files(fault.path, given.nearest)
+                    reached.seconds |= dict.fromkeys(tests, 0.0)
+                else:
+                    tests = reached.within(given.budget, reached.at(fault.path, fault.lines), fault.path)
                 outcomes.append(tried(fault, copy, tests, reached.seconds, runner, given.patience))
                 print(
                     f"{outcomes[-1].word:<11} {fault.path}:{fault.line} {fault.kind}: {fault.was!r} → {fault.now!r}",
