@@ -71,6 +71,25 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
     ),
 }
 
+# methods that use transforms, by what they return: a transform or what it transforms, a truth value or a time, nothing
+TRANSFORMING: Final = frozenset(
+    ["lookup_transform", "lookup_transform_full", "lookup_transform_async", "lookup_transform_full_async",
+     "lookup_transform_core", "lookupTransform", "lookupTransformFull", "lookupTwist", "lookupTwistFull",
+     "transformPose", "transformPoint", "transformPointStamped", "transformVector3", "transformPointCloud",
+     "transformQuaternion", "asMatrix", "transform_full"]
+)  # fmt: skip
+ASKING_TRANSFORMS: Final = frozenset(
+    ["can_transform", "can_transform_full", "canTransform", "canTransformFull", "frameExists",
+     "get_latest_common_time", "getLatestCommonTime"]
+)  # fmt: skip
+WAITING_TRANSFORMS: Final = frozenset(["waitForTransform", "waitForTransformFull"])
+LOOKUPS: Final = TRANSFORMING | ASKING_TRANSFORMS | WAITING_TRANSFORMS
+BUFFERS: Final = frozenset(
+    ["tf2_ros.Buffer", "tf2_ros.buffer.Buffer", "tf2_ros.BufferClient", "tf2_ros.buffer_client.BufferClient",
+     "tf2_ros.BufferInterface", "tf2_ros.buffer_interface.BufferInterface"]
+)  # fmt: skip
+TRANSFORM: Final = Fact("transform", "tf2.transform")  # the method `transform` of these classes
+LOOKUP_WORDS: Final = (*sorted(LOOKUPS), ".transform(")  # words of look-ups in a file
 MARKER_SERVERS: Final = frozenset(
     [
         "interactive_markers.InteractiveMarkerServer",
@@ -101,12 +120,8 @@ CLASS_METHODS: Final[Mapping[str, Fact]] = {
         )
         for name in ("subscribe", "subscribe_camera")
     },
+    **{f"{buffer}.transform": TRANSFORM for buffer in sorted(BUFFERS)},
 }  # qualified method name → fact; METHODS holds the methods whose name alone identifies them
-
-LOOKUPS: Final = frozenset(
-    ["lookup_transform", "lookup_transform_full", "lookup_transform_async", "lookup_transform_full_async",
-     "lookup_transform_core", "lookupTransform", "lookupTransformFull", "lookupTwist"]
-)  # fmt: skip
 
 METHODS: Final[Mapping[str, Fact]] = {
     "create_subscription": Fact(

@@ -9,14 +9,13 @@ from tarl_lint.interpret import calls, descriptors, expressions
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import control_dependence
-from tarl_lint.memory import heap, recency, updates
+from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import BOTTOM, ClassInfo, Obj, Value, function_of, join, lineage, pointer
+from tarl_lint.memory.function_attributes import DECORATED, attribute_of
+from tarl_lint.memory.values import ClassInfo, Obj, Value, const, function_of, join, lineage, pointer
 from tarl_lint.models.ros import subscriptions
 from tarl_lint.models.smach import LATER
 from tarl_lint.read.module_names import KNOWN
-
-OF_PYTHON = ("builtins.", "abc.", "functools.", "contextlib.", "typing.")
 
 
 def define(ctx: Interpreter, s: ir.Define, frame: Frame) -> bool:
@@ -72,37 +71,13 @@ def decorated(
                 subscriptions.call_later(ctx, target, ())
         elif later and _of_unknown_package(expressions.evaluate(ctx, maker, frame)):
             ctx.handed_over.update(later)
-        if isinstance(decorator, ir.Call) and _copies_names(expressions.evaluate(ctx, maker, frame)):
-            _copy_attributes(ctx, value, calls.arguments(ctx, decorator, frame)[0])
-        elif not _adds_nothing(decorator, wrapper) and not any(wraps(ctx, o) for o in wrapper.pts):
-            ctx.decorated.update(value.pts)
+        if later and not ctx.nothing_yet(wrapper) and not any(wraps(ctx, o) for o in wrapper.pts):
+            _note_library(ctx, later, expressions.evaluate(ctx, maker, frame))
         if any(wraps(ctx, o) for o in wrapper.pts):
             call = ir.Call(decorator, (), (), s.pos, -1)
             value = calls.call_value(ctx, wrapper, ([value], {}), frame, call)
     frame.statement = s
     return value
-
-
-def _adds_nothing(decorator: ir.Expr, wrapper: Value) -> bool:
-    """Return whether a decorator of Python gives a function no attributes with names of a program's own."""
-    if isinstance(decorator, ir.Attribute) and decorator.name in ("setter", "getter", "deleter"):
-        return True
-    return bool(wrapper.pts) and all(o.kind == "ext" and o.name.startswith(OF_PYTHON) for o in wrapper.pts)
-
-
-def _copies_names(maker: Value) -> bool:
-    return any(o.kind == "ext" and o.name == "functools.wraps" for o in maker.pts)
-
-
-def _copy_attributes(ctx: Interpreter, value: Value, wrapped: Sequence[Value]) -> None:
-    """Give a function the name and the attributes of the function that it wraps."""
-    for function in wrapped[0].objects if wrapped else ():
-        ctx.store.look(function)
-        names = [name for name in list(function.fields) if name.startswith("<")]
-        for name in (*names, heap.NAME):
-            held = heap.read_field(ctx, function, name[1:-1])
-            if held is not BOTTOM:
-                updates.write_field(ctx, value, name[1:-1], held)
 
 
 def _of_library(value: Value) -> bool:
@@ -112,6 +87,18 @@ def _of_library(value: Value) -> bool:
 def _of_unknown_package(value: Value) -> bool:
     packages = {o.name.partition(".")[0] for o in value.pts if o.kind == "ext"}
     return bool(packages) and packages.isdisjoint(KNOWN | catalog.TRANSFORMS)
+
+
+def _of_known_package(value: Value) -> bool:
+    """Return whether a value is a name of the standard library or of ROS."""
+    return bool(value.pts) and all(o.kind == "ext" and o.name.partition(".")[0] in KNOWN for o in value.pts)
+
+
+def _note_library(ctx: Interpreter, functions: Sequence[Obj], maker: Value) -> None:
+    """Note that a decorator of a library, or an unknown one, may have added attributes to functions."""
+    for one in functions:
+        if one.kind == "closure" and not _of_known_package(maker):
+            ctx.store.put((one, attribute_of(DECORATED)), const(value=True))
 
 
 def wraps(ctx: Interpreter, obj: Obj) -> bool:

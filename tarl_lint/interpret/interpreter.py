@@ -100,8 +100,6 @@ class Interpreter:
         self.wanted: set[Obj] = (
             set()
         )  # classes that annotate parameters of functions that code outside the files calls
-        # functions with a decorator that is not analysed, which may give them attributes
-        self.decorated: set[Obj] = set()
         self.handed_over: set[Obj] = set()  # functions with a decorator of a package that is not analysed
         # names of classes outside the analysed files whose methods receive data or callbacks
         self.ended: set[str] = set()

@@ -7,7 +7,8 @@ from ast import literal_eval
 from tarl_lint.catalog import ENDPOINT_METHODS, MEASURES, METHODS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import properties, recency, userdata
+from tarl_lint.memory import function_attributes, properties, recency, userdata
+from tarl_lint.memory.function_attributes import FUNCTIONS, attribute_of
 from tarl_lint.memory.properties import PARTS
 from tarl_lint.memory.userdata import VIEW
 from tarl_lint.memory.values import (
@@ -20,7 +21,6 @@ from tarl_lint.memory.values import (
     Nodes,
     Obj,
     Value,
-    const,
     join,
     lineage,
     pointer,
@@ -34,8 +34,6 @@ RESULT = "<result>"  # field of a future that holds its result
 SENT = "<sent>"  # field of a port, file or socket: data written to it
 # name of a sequence that holds the known attribute names of an object, or (name, value) pairs
 MEMBERS = "members"
-NAME = "<__name__>"  # field of a function: its name, unless `functools.wraps` gave it another one
-ATTRIBUTES = "<__dict__>"  # field of a function: the function, as the mapping of its attributes
 GENERATOR = "generator"  # name of a sequence that represents a generator
 METHODS_OF = {
     "publisher": frozenset(["publish"]),
@@ -79,9 +77,12 @@ def content(ctx: Interpreter, obj: Obj) -> Value:
 
 def read_field(ctx: Interpreter, obj: Obj, name: str) -> Value:
     """Return the value of a field of one object."""
-    if obj.kind in RENAMING:
-        if name in PARTS and (part := properties.part(ctx, obj, name)) is not None:
+    if obj.kind in FUNCTIONS:
+        if obj.kind == "closure" and name in PARTS and (part := properties.part(ctx, obj, name)) is not None:
             return part
+        found = function_attributes.attribute(ctx, obj, name)
+        return BOTTOM if found is None else found
+    if obj.kind == VIEW:
         obj, name = renamed(ctx, obj, name)
     stored = ctx.store.get((obj, name))
     if stored is not None:
@@ -99,7 +100,9 @@ def renamed(ctx: Interpreter, obj: Obj, name: str) -> tuple[Obj, str]:
 
     A function's attributes are stored with its defaults.
     """
-    return (obj, f"<{name}>") if obj.kind == "closure" else userdata.seen_through(ctx, obj, name)
+    if obj.kind == "closure":
+        return obj, attribute_of(name)
+    return userdata.seen_through(ctx, obj, name)
 
 
 def written_here(ctx: Interpreter, obj: Obj, name: str) -> bool:
@@ -116,8 +119,6 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
         return _part(ctx, obj, name)
     if kind in ("sequence", "mapping"):
         return content(ctx, obj) if name.startswith("[") else BOTTOM
-    if kind in ("bound", "closure"):
-        return _of_function(ctx, obj, name)
     if name == "__class__" and kind == "instance" and isinstance(obj.info, Obj):
         return pointer(obj.info)
     if name == "__dict__":
@@ -131,18 +132,6 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
     if kind == "module":
         return opened(ctx, obj, name)
     return BOTTOM
-
-
-def _of_function(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return an unset attribute of a function; a method has the attributes of its function."""
-    if obj.kind == "bound" and isinstance(obj.info, tuple):
-        closure, receiver, _ = obj.info
-        if name in ("__func__", "__self__"):
-            return pointer(closure if name == "__func__" else receiver)
-        return BOTTOM if name in PARTS else read_field(ctx, closure, name)
-    if name == ATTRIBUTES:
-        return pointer(obj)
-    return const(obj.name) if name == NAME else BOTTOM
 
 
 def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:

@@ -32,6 +32,7 @@ from tarl_lint.models import (
     environment,
     filling,
     fixed_numbers,
+    function_wrappers,
     futures,
     heaps,
     iterators,
@@ -149,6 +150,7 @@ def _name_class(ctx: Interpreter, qualified: str, made: Value, arguments: Argume
     if not (
         markers
         or qualified == catalog.IMAGE_TRANSPORT
+        or qualified in catalog.BUFFERS
         or qualified.startswith(containers.NAMED)
         or qualified in catalog.RESERVING
         or (ctx.config.named and qualified.rpartition(".")[2][:1].isupper())
@@ -238,6 +240,8 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "map": iterators.mapped_elements,
     "filter": iterators.mapped_elements,
     "functools.reduce": iterators.reduced,
+    function_wrappers.WRAPS: function_wrappers.wraps,
+    function_wrappers.UPDATES: function_wrappers.update_wrapper,
     "heapq.heappop": heaps.popped,
     "min": containers.chosen_element,
     "max": containers.chosen_element,

@@ -59,6 +59,8 @@ def call_method(
         if client is not None:
             return client
     known = catalog.CLASS_METHODS.get(f"{target.name}.{name}") if target is not None and target.name else None
+    if known is None and name == "transform" and not catalog.BUFFERS.isdisjoint(inherited_from(base)):
+        known = catalog.TRANSFORM
     if known is not None:
         return ctx.ops.ros_call(ctx, Invocation(name, base, arguments, frame, call, known))
     if name == "split" and ctx.exact and (parts := strings.pieces(ctx, base, arguments, frame, call)):

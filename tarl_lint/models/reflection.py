@@ -11,7 +11,7 @@ from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, recency, updates
+from tarl_lint.memory import function_attributes, heap, recency, updates
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, const, join_all, lineage, pointer
 from tarl_lint.models import containers, type_queries
@@ -36,7 +36,12 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
         expressions.read_attribute(ctx, plain[0], _written(it, name, number), it.frame)
         for number, name in enumerate(names)
     ]
-    return join_all(found + plain[2:])
+    for default in plain[2:]:
+        found = [
+            function_attributes.with_default(ctx, plain[0], name, one, default)
+            for name, one in zip(names, found, strict=True)
+        ]
+    return join_all(found)
 
 
 def _written(it: Invocation, name: str, number: int = 0) -> ir.Attribute:

@@ -7,7 +7,7 @@ from types import GeneratorType
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
-from tarl_lint.memory import heap
+from tarl_lint.memory import function_attributes, heap
 from tarl_lint.memory.values import (
     BOTTOM,
     NO_CONSTANTS,
@@ -18,6 +18,7 @@ from tarl_lint.memory.values import (
     const,
     function_of,
     lineage,
+    pointer,
 )
 from tarl_lint.models import sizes
 
@@ -105,9 +106,9 @@ def _lacks(ctx: Interpreter, obj: Obj, name: str) -> bool:
         dynamic = heap.read_field(ctx, obj, "__getattr__").pts or heap.replaced_attributes(ctx, obj)
         return not dynamic and not _opaque(obj.info) and heap.read_field(ctx, obj, name) is BOTTOM
     closure = obj.info[0] if obj.kind == "bound" and isinstance(obj.info, tuple) else obj
-    if function_of(closure) is None or closure in ctx.decorated:
+    if function_of(closure) is None or function_attributes.may_have_more(ctx, pointer(closure)):
         return False
-    return heap.read_field(ctx, closure, name) == BOTTOM
+    return function_attributes.attribute(ctx, closure, name) is None
 
 
 def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared signature

@@ -94,7 +94,7 @@ def endpoint_words(config: Config, *, clients: bool = False) -> Callable[[str], 
     """Return a function that tests whether a text has a word that every subscribing or publishing module has."""
     named = (*(w.name for w in config.wrappers), *config.sources, *config.sinks)
     words = {*catalog.SOURCE_WORDS, *catalog.SINK_WORDS, *(name.rpartition(".")[2] for name in named)}
-    words |= set(catalog.LOOKUPS) if config.tf2 else set()
+    words |= set(catalog.LOOKUP_WORDS) if config.tf2 else set()
     words |= set(catalog.CLIENT_WORDS) if clients or config.clients else set()
     search = re.compile("|".join(whole(word) for word in sorted(words))).search
     # checked before the pattern, because a substring search is faster and finds nothing in most files

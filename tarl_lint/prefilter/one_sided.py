@@ -21,7 +21,10 @@ from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
 from tarl_lint.trees import outside_functions
 
-HEARS: Final = re.compile("|".join(whole(w) for w in (*catalog.SOURCE_WORDS, *sorted(catalog.LOOKUPS))))
+HEARS: Final = re.compile("|".join(map(whole, catalog.SOURCE_WORDS)))
+LOOKS_UP: Final = re.compile(
+    "|".join(map(whole, catalog.LOOKUP_WORDS))
+)  # with the setting `tf2`, these do too
 # matches the words of servers, which both receive and send
 ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")
 CLIENTS: Final = re.compile(
@@ -85,6 +88,7 @@ def two_sided(texts: Sequence[str], config: Config) -> bool:
 def _hears_and_says(texts: Sequence[str], config: Config) -> tuple[bool, bool]:
     """Return two truth values: whether texts contain words used to subscribe, and words used to publish."""
     hears, says, answers = (any(map(words.search, texts)) for words in (HEARS, SAYS, ANSWERS))
+    hears |= config.tf2 and any(map(LOOKS_UP.search, texts))
     answers |= config.clients and any(map(CLIENTS.search, texts))
     return (True, True) if answers else (hears, says)
 

@@ -13,7 +13,6 @@ from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, pointer
-from tarl_lint.method_effects import fails
 from tarl_lint.models import library_functions
 from tarl_lint.models.ros import publications, subscriptions
 from tarl_lint.models.ros.endpoints import Acceptance, Publisher, SourceRecord
@@ -155,6 +154,8 @@ def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
     record = subscriptions.source(ctx, it, BOTTOM)
     record.topics.add("/tf")
     message, given = arrived(ctx, record, it), call_contexts.all_used(ctx, it.arguments)
-    if (raises := fails(it.name)) is not None:
-        ctx.ops.may_fail(ctx, given | ctx.use(message), raises, it.frame)
-    return Value(message.deps | given, message.pts)
+    told = given | ctx.use(message)
+    if it.name in catalog.ASKING_TRANSFORMS:
+        return Value(told)
+    ctx.ops.may_fail(ctx, told, "", it.frame)
+    return UNKNOWN if it.name in catalog.WAITING_TRANSFORMS else Value(message.deps | given, message.pts)

@@ -394,6 +394,23 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(kept.near)  # data
         out.publish(kept.far)  # clean
     """,
+    ("functools.wraps",): """
+        def near(value): return value
+        near.gain, near.limit = msg.data, 1.0
+        @NAME(near)
+        def far(value): return 2.0
+        out.publish(far(1.0))  # clean
+        out.publish(far.gain)  # data
+        out.publish(far.limit)  # clean
+    """,
+    ("functools.update_wrapper",): """
+        def near(value): return value
+        near.gain, near.limit = msg.data, 1.0
+        def far(value): return 2.0
+        out.publish(NAME(far, near)(1.0))  # clean
+        out.publish(far.gain)  # data
+        out.publish(far.limit)  # clean
+    """,
     ("functools.partialmethod",): """
         class Plain:
             def put(self, place, value): setattr(self, place, value)
