@@ -351,9 +351,10 @@ WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])
 # package whose classes are bases of states; a state that runs receives the data shared by all states
 STATES: Final = "smach"
 RUNS_STATE: Final = "execute"
-ADDS_STATE: Final = tuple(
-    f"smach.{machine}.add" for machine in ("StateMachine", "Sequence", "Concurrence", "Container")
-)
+ADDS_STATE: Final = (
+    *(f"smach.{machine}.add" for machine in ("StateMachine", "Sequence", "Concurrence", "Container")),
+    "smach.StateMachine.add_auto", "smach.Iterator.set_contained_state",
+)  # fmt: skip
 STATE_BY_CALLBACKS: Final = (
     "smach.CBState", "smach.state.CBState", "smach_ros.SimpleActionState", "smach_ros.ServiceState",
 )  # fmt: skip

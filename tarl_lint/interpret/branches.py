@@ -239,7 +239,9 @@ def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
         managers.append((value, rest))
         if target is not None:
             ctx.ops.bind_target(ctx, target, entered, frame, f"with{number}", context)
+    ctx.opened += [manager for manager, _ in managers]
     goes_on = ctx.ops.block(ctx, s.body, frame)
+    del ctx.opened[len(ctx.opened) - len(managers) :]
     frame.statement = s
     # The managers also exit if a `return` leaves the body.
     for number, (manager, rest) in reversed([*enumerate(managers)]):

@@ -12,7 +12,8 @@ from tarl_lint.interpret.node_starts import STARTING, definitions, publishes, re
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency, userdata
 from tarl_lint.memory.shared import Root
-from tarl_lint.memory.values import ClassInfo, Obj, Value, lineage
+from tarl_lint.memory.values import ClassInfo, Obj, lineage
+from tarl_lint.models import parts
 from tarl_lint.models.ros import subscriptions
 
 
@@ -147,8 +148,7 @@ def _framework_methods(ctx: Interpreter, obj: Obj, owner: Obj, info: ClassInfo) 
             continue
         for closure in _values(ctx, owner, name):
             if closure.kind == "closure" and (hooked or closure in ctx.handed_over):
-                state = name == catalog.RUNS_STATE and any(e.startswith(catalog.STATES) for e in external)
-                _start_method(ctx, closure, obj, owner, [userdata.userdata(ctx, obj)] if state else [])
+                _start_method(ctx, closure, obj, owner, external)
 
 
 def _called_by_others(ctx: Interpreter, obj: Obj) -> bool:
@@ -156,11 +156,16 @@ def _called_by_others(ctx: Interpreter, obj: Obj) -> bool:
     return obj.info in ctx.plugins or obj.info in ctx.guests
 
 
-def _start_method(ctx: Interpreter, closure: Obj, obj: Obj, owner: Obj, given: list[Value]) -> None:
+def _start_method(ctx: Interpreter, closure: Obj, obj: Obj, owner: Obj, external: Set[str]) -> None:
+    state = closure.name == catalog.RUNS_STATE and any(e.startswith(catalog.STATES) for e in external)
+    given = [userdata.userdata(ctx, obj)] if state else []
+    guards, answer = parts.run_by_others(ctx, obj, closure, external)
     method = recency.intern(ctx, "bound", (closure.key, obj), closure.name)
     method.info = (closure, obj, owner)
     program = closure.info[2].path if isinstance(closure.info, tuple) else ""
-    subscriptions.call_when(ctx, "framework", method, given, "callback", program=program)
+    subscriptions.call_when(
+        ctx, "framework", method, given, "callback", program=program, guards=guards, answer=answer
+    )
 
 
 def _external(info: ClassInfo) -> set[str]:

@@ -22,6 +22,7 @@ from tarl_lint.memory.shared import Root
 from tarl_lint.memory.store import Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value
+from tarl_lint.models import parts
 from tarl_lint.prefilter.by_words import endpoint_words
 from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
@@ -81,11 +82,15 @@ class Linker(Interpreter):
             self._settle()
             entry_points.start_hooks(self)
             self._settle()
+            if parts.connect(self):
+                self._settle()
             if len(self.roots) == before:
                 break
         if self.waiting:  # no root stores anything new any more, so what is unknown now stays unknown
             self.patient = False
             self.pending.update(self.waiting)
+            self._settle()
+        while parts.connect(self):  # a new condition may add outcomes, until all parts have all of them
             self._settle()
         carry_nodes.settle(self.graph)
 
@@ -135,7 +140,7 @@ class Linker(Interpreter):
         self.work.begin(LATE_RUN_LIMIT if self.hurried(root.program) else MAX_STATEMENTS)
         self.graph.edges = self.work.edges_of.get(root.program, 0)
         self.graph.made = self.work.nodes_of.get(root.program, 0)
-        self.delivered = frozenset()
+        self.delivered, self.opened = frozenset(), []
         try:
             run(root)
         except Exception as error:

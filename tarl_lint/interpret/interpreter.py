@@ -12,6 +12,7 @@ from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, S
 from tarl_lint.interpret.budget import MAX_APART, READS_PER_STATEMENT
 from tarl_lint.interpret.operations import Operations
 from tarl_lint.interpret.registrations import Registrations
+from tarl_lint.interpret.run_order import Group, Part
 from tarl_lint.interpret.state import NullnessFacts, Work
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import Branch, Control, control_dependence
@@ -100,6 +101,9 @@ class Interpreter:
         self.wanted: set[Obj] = (
             set()
         )  # classes that annotate parameters of functions that code outside the files calls
+        self.parts: dict[Obj, Part] = {}  # states of machines and behaviours of trees
+        self.groups: dict[Obj, Group[Obj]] = {}  # their containers
+        self.opened: list[Value] = []  # the context managers of the `with` statements that are running
         self.handed_over: set[Obj] = set()  # functions with a decorator of a package that is not analysed
         # names of classes outside the analysed files whose methods receive data or callbacks
         self.ended: set[str] = set()

@@ -20,6 +20,7 @@ from tarl_lint.interpret.budget import READS_PER_STATEMENT
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.interpret.nullness import RETURNED
+from tarl_lint.interpret.run_order import Part
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.exception_types import raised
 from tarl_lint.ir.lower_statements import lower_body
@@ -172,6 +173,10 @@ def _returned(ctx: Interpreter, s: ir.Return, frame: Frame) -> bool:
         elif isinstance(frame.answer, Acceptance):
             it = Invocation("goal", BOTTOM, ([], {}), frame, _answer(s))
             publications.accept(ctx, it, value, frame.answer)
+        elif isinstance(frame.answer, Part):
+            publications.end(
+                ctx, Invocation("outcome", BOTTOM, ([], {}), frame, _answer(s)), value, frame.answer
+            )
     attempts.returned(ctx, value, frame)
     return False
 

@@ -7,7 +7,8 @@ from ast import literal_eval
 from tarl_lint.catalog import ENDPOINT_METHODS, MEASURES, METHODS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import function_attributes, properties, recency, userdata
+from tarl_lint.memory import blackboards, function_attributes, properties, recency, userdata
+from tarl_lint.memory.blackboards import CLIENT
 from tarl_lint.memory.function_attributes import FUNCTIONS, attribute_of
 from tarl_lint.memory.properties import PARTS
 from tarl_lint.memory.userdata import VIEW
@@ -48,10 +49,23 @@ METHODS_OF = {
 }  # fmt: skip
 DICTIONARIES = frozenset(["dict", "OrderedDict", "defaultdict", "UserDict", "Counter", "TypedDict", "?"])
 HOLLOW = frozenset(
-    ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super", VIEW]
+    [
+        "closure",
+        "bound",
+        "class",
+        "module",
+        "ext",
+        "publisher",
+        "partial",
+        "method",
+        "frame",
+        "super",
+        VIEW,
+        CLIENT,
+    ]
 )
 # kinds of objects whose attributes are stored elsewhere or under other names
-RENAMING = frozenset(["closure", VIEW])
+RENAMING = frozenset(["closure", VIEW, CLIENT])
 
 
 def item_field(constant: object) -> str:
@@ -82,7 +96,7 @@ def read_field(ctx: Interpreter, obj: Obj, name: str) -> Value:
             return part
         found = function_attributes.attribute(ctx, obj, name)
         return BOTTOM if found is None else found
-    if obj.kind == VIEW:
+    if obj.kind in (VIEW, CLIENT):
         obj, name = renamed(ctx, obj, name)
     stored = ctx.store.get((obj, name))
     if stored is not None:
@@ -102,6 +116,8 @@ def renamed(ctx: Interpreter, obj: Obj, name: str) -> tuple[Obj, str]:
     """
     if obj.kind == "closure":
         return obj, attribute_of(name)
+    if obj.kind == CLIENT:
+        return blackboards.seen_through(ctx, obj, name)
     return userdata.seen_through(ctx, obj, name)
 
 

@@ -25,6 +25,8 @@ from tarl_lint.memory.values import (
 )
 from tarl_lint.method_effects import fails, keeps_callables
 from tarl_lint.models import (
+    behaviour_trees,
+    blackboards,
     callables,
     command_line,
     containers,
@@ -40,6 +42,7 @@ from tarl_lint.models import (
     records,
     reflection,
     smach,
+    state_callbacks,
     strings,
     type_queries,
 )
@@ -248,7 +251,16 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "next": iterators.next_element,
     "asyncio.gather": futures.gathered_results,
     **dict.fromkeys(catalog.ADDS_STATE, smach.add_state),
-    **dict.fromkeys(catalog.STATE_BY_CALLBACKS, smach.state_by_callbacks),
+    **dict.fromkeys(catalog.STATE_BY_CALLBACKS, state_callbacks.state_by_callbacks),
+    **dict.fromkeys(smach.MACHINES, smach.new_machine),
+    **dict.fromkeys(behaviour_trees.COMPOSITES, behaviour_trees.composite),
+    **dict.fromkeys(behaviour_trees.DECORATORS, behaviour_trees.decorator),
+    **dict.fromkeys(behaviour_trees.CONSTANTS, behaviour_trees.constant),
+    **dict.fromkeys(behaviour_trees.CHECKS, behaviour_trees.check),
+    behaviour_trees.COMPARISON: behaviour_trees.comparison,
+    **dict.fromkeys(blackboards.CLIENTS, blackboards.new_client),
+    **dict.fromkeys(blackboards.GETTERS, blackboards.read),
+    **dict.fromkeys(blackboards.SETTERS, blackboards.write),
     **dict.fromkeys(catalog.AWAITING, futures.awaited_result),
     **dict.fromkeys(catalog.IN_THREADS, futures.called_in_thread),
     "getattr": reflection.get_attribute,

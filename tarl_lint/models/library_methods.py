@@ -10,6 +10,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, instances, updates
+from tarl_lint.memory.blackboards import CLIENT
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import (
     NONE,
@@ -22,6 +23,8 @@ from tarl_lint.memory.values import (
 from tarl_lint.method_effects import changes, derives, fails, keeps_callables, observes, returns_all
 from tarl_lint.models import (
     argument_parsers,
+    behaviour_trees,
+    blackboards,
     callables,
     containers,
     drawings,
@@ -31,6 +34,7 @@ from tarl_lint.models import (
     objects,
     qt_signals,
     reflection,
+    smach,
     strings,
 )
 from tarl_lint.models.containers import is_device
@@ -63,9 +67,26 @@ def call_method(
         known = catalog.TRANSFORM
     if known is not None:
         return ctx.ops.ros_call(ctx, Invocation(name, base, arguments, frame, call, known))
+    if target is not None and (
+        part := _of_run_order(ctx, target, Invocation(name, base, arguments, frame, call))
+    ):
+        return part
     if name == "split" and ctx.exact and (parts := strings.pieces(ctx, base, arguments, frame, call)):
         return parts
     return _call_method(ctx, base, target, name, arguments, frame, call)
+
+
+def _of_run_order(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
+    """Call a method of a client of a blackboard, or one that adds a part to a machine or tree; None for others."""
+    if target.kind == CLIENT:
+        return blackboards.call(ctx, target, it)
+    if it.name == blackboards.ATTACHES and target.kind == "instance":
+        return blackboards.new_client(ctx, it)
+    if behaviour_trees.adds(ctx, target, it.name):
+        return behaviour_trees.add(ctx, target, it)
+    if it.name in smach.ADDS and smach.holds_states(ctx, target):
+        return smach.call(ctx, target, it)
+    return None
 
 
 def _call_method(
@@ -234,6 +255,7 @@ def _built_by_base(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
         return reflection.set_attribute(ctx, replace(it, arguments=(given, named)))
     if isinstance(target.info, tuple):
         senders.inherit(ctx, target.info[1], it.arguments, it.frame, it.call)
+        behaviour_trees.inherit(ctx, target.info[1], it)
         callables.make_instances(
             ctx, it.arguments, Value(it.base.deps, frozenset([target.info[1]])), it.frame, it.call
         )

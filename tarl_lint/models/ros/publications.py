@@ -8,6 +8,7 @@ from tarl_lint.interpret import call_contexts, shared_contexts
 from tarl_lint.interpret.budget import MAX_APART
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.interpret.run_order import Part
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
@@ -100,17 +101,30 @@ def _keys(ctx: Interpreter, it: Invocation, info: Publisher) -> tuple[Hashable, 
 
 def accept(ctx: Interpreter, it: Invocation, value: Value, acceptance: Acceptance) -> None:
     """Let the decision about a goal depend on a returned value and its conditions, unless all values are one."""
-    node = ctx.node(it.frame, ("accept", it.call.pos), "condition")
-    ctx.graph.flow(value.deps, node)
-    ctx.graph.depend(node, [n for n, _ in ctx.guards])
-    if it.frame.statement is not None:
-        under(ctx, it.frame, it.frame.statement, node)
+    node = _answer(ctx, it, value)
     known, constant = value.constant()
     names = {o.name for o in value.pts}
     only = next(iter(names)) if len(names) == 1 else None
     acceptance.answers[node] = only if value.pts else repr(constant) if known else None
     if len(set(acceptance.answers.values())) > 1 or None in acceptance.answers.values():
         ctx.graph.depend(acceptance.node, acceptance.answers)
+
+
+def end(ctx: Interpreter, it: Invocation, value: Value, part: Part) -> None:
+    """Record the outcome with which a state or behaviour ends, with its conditions."""
+    kinds = {one.kind for one in value.pts}
+    names = [one.name.rpartition(".")[2] for one in value.pts]
+    part.answers[_answer(ctx, it, value)] = frozenset(names if kinds == {"ext"} else value.texts()) or None
+
+
+def _answer(ctx: Interpreter, it: Invocation, value: Value) -> int:
+    """Return the node of a returned value, which depends on its data and its conditions."""
+    node = ctx.node(it.frame, ("accept", it.call.pos), "condition")
+    ctx.graph.flow(value.deps, node)
+    ctx.graph.depend(node, [n for n, _ in ctx.guards])
+    if it.frame.statement is not None:
+        under(ctx, it.frame, it.frame.statement, node)
+    return node
 
 
 def under(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int) -> None:

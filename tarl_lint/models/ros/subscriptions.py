@@ -13,6 +13,7 @@ from tarl_lint.interpret.budget import MAX_ALIKE, MAX_GENERATIONS
 from tarl_lint.interpret.call_contexts import CALLABLE, ROOT_CALL
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.interpret.run_order import Part
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.abstract_gc import together
@@ -271,7 +272,7 @@ def call_when(
     values: Sequence[Value],
     kind: str,
     fresh: Fresh = (),
-    answer: Publisher | Acceptance | None = None,
+    answer: Publisher | Acceptance | Part | None = None,
     named: Mapping[str, Value] = NOTHING,
     program: str = "",
     guards: Sequence[int] = (),

@@ -5,7 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tarl_lint.catalog import IN_THREADS
+from tarl_lint.models.behaviour_trees import CHECKS, COMPARISON, COMPOSITES, CONSTANTS, DECORATORS
+from tarl_lint.models.blackboards import CLIENTS, GETTERS, SETTERS
 from tarl_lint.models.library_functions import BUILTIN
+from tarl_lint.models.smach import MACHINES
 from tests.lint.models.marked import differing, in_callback
 
 QUEUES = [
@@ -25,7 +28,22 @@ WHERE = {
 AWAITABLE = [f"asyncio.{name}" for name in ("run", "create_task", "ensure_future", "wait_for", "shield")]
 NAMES = ("rospy.resolve_name", "rospy.remap_name", "rospy.names.resolve_name")
 PATHS = ("rospy.names.ns_join", "roslib.names.ns_join", "os.path.join", "posixpath.join")
-MACHINES = ("StateMachine", "Sequence", "Concurrence", "Container")
+CONTAINERS = ("StateMachine", "Sequence", "Concurrence", "Container")
+TREE = """
+        class Test(py_trees.behaviour.Behaviour):
+            def update(self):
+                return py_trees.common.Status.SUCCESS if msg.data > 1.0 else py_trees.common.Status.FAILURE
+        class Far(py_trees.behaviour.Behaviour):
+            def update(self):
+                out.publish(2.0)  # MARK
+                return py_trees.common.Status.SUCCESS
+"""
+
+
+def in_tree(mark: str, body: str) -> str:
+    """Return the behaviours `Test` and `Far`, with the mark at the publish call of `Far`, and a body."""
+    return TREE.replace("MARK", mark) + body
+
 
 # function(s) → the body of a callback, in which NAME is the function
 CASES: dict[tuple[str, ...], str] = {
@@ -481,7 +499,7 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(Pair().both()[0])  # data
         out.publish(Pair().both()[1])  # clean
     """,
-    tuple(f"smach.{name}.add" for name in MACHINES): """
+    tuple(f"smach.{name}.add" for name in CONTAINERS): """
         class Near(smach.State):
             def execute(self, userdata):
                 userdata.seen = msg.data
@@ -509,6 +527,96 @@ CASES: dict[tuple[str, ...], str] = {
             out.publish(userdata.other)  # clean
         NAME("/a", A, result_cb=near), NAME("/b", B, goal_cb=far)
     """,
+    ("smach.StateMachine.add_auto", "smach.Iterator.set_contained_state"): """
+        class Near(smach.State):
+            def execute(self, userdata):
+                userdata.seen = msg.data
+        class Far(smach.State):
+            def execute(self, userdata):
+                out.publish(userdata.seen)  # data
+                out.publish(userdata.other)  # clean
+        with smach.StateMachine(outcomes=["end"]):
+            NAME("NEAR", Near(), ["done"])
+            NAME("FAR", Far(), ["done"])
+    """,
+    tuple(name for name in MACHINES if not name.endswith("Concurrence")): """
+        class Test(smach.State):
+            def execute(self, userdata):
+                return "yes" if msg.data > 1.0 else "no"
+        class Far(smach.State):
+            def execute(self, userdata):
+                out.publish(1.0)  # control
+        with NAME(["no"], "done"):
+            smach.StateMachine.add("TEST", Test(), {"yes": "FAR", "no": "no"})
+            smach.StateMachine.add("FAR", Far())
+    """,
+    tuple(name for name in MACHINES if name.endswith("Concurrence")): """
+        class Test(smach.State):
+            def execute(self, userdata):
+                return "yes" if msg.data > 1.0 else "no"
+        class Far(smach.State):
+            def execute(self, userdata):
+                out.publish(1.0)  # clean
+        with NAME(["no"], "no"):
+            smach.StateMachine.add("TEST", Test(), {"yes": "FAR", "no": "no"})
+            smach.StateMachine.add("FAR", Far())
+    """,
+    tuple(name for name in COMPOSITES if not name.endswith("Parallel")): in_tree(
+        "control",
+        """
+        NAME("root", False, children=[Test(), Far()])
+    """,
+    ),
+    tuple(name for name in COMPOSITES if name.endswith("Parallel")): in_tree(
+        "clean",
+        """
+        NAME("root", children=[Test(), Far()])
+    """,
+    ),
+    DECORATORS: in_tree(
+        "control",
+        """
+        inner = py_trees.composites.Parallel("inner", children=[NAME("t", child=Far())])
+        py_trees.composites.Sequence("root", False, children=[Test(), inner])
+    """,
+    ),
+    CONSTANTS: in_tree(
+        "clean",
+        """
+        py_trees.composites.Sequence("root", False, children=[NAME("one"), Far()])
+    """,
+    ),
+    CHECKS: in_tree(
+        "control",
+        """
+        py_trees.blackboard.Blackboard.set("level", msg.data)
+        py_trees.composites.Sequence("root", False, children=[NAME("one", "level"), Far()])
+    """,
+    ),
+    (COMPARISON,): in_tree(
+        "control",
+        """
+        py_trees.blackboard.Blackboard.set("level", msg.data)
+        check = py_trees.behaviours.CheckBlackboardVariableValue("check", NAME("level", 1.0, min))
+        py_trees.composites.Sequence("root", False, children=[check, Far()])
+    """,
+    ),
+    CLIENTS: """
+        near, far = NAME("near", "near"), NAME(name="far", namespace="far")
+        near.level, far.level = msg.data, 1.0
+        out.publish(NAME("other", "near").level)  # data
+        out.publish(NAME("other", "far").level)  # clean
+    """,
+    GETTERS: """
+        py_trees.blackboard.Client(name="near").level = msg.data
+        out.publish(NAME("level"))  # data
+        out.publish(NAME("other"))  # clean
+    """,
+    SETTERS: """
+        NAME("level", msg.data)
+        out.publish(py_trees.blackboard.Client(name="near").level)  # data
+        out.publish(py_trees.blackboard.Client(name="near").other)  # clean
+    """,
 }
 COVERED = [(name, body) for names, body in CASES.items() for name in names]
 
@@ -521,6 +629,13 @@ def test_each_function_with_a_model_has_a_test():
 @pytest.mark.parametrize(("name", "body"), COVERED, ids=[name for name, _ in COVERED])
 def test_the_result_of_a_modelled_function_has_the_data_of_its_arguments(name, body):
     path = WHERE.get(name, name)
-    modules = {path.rpartition(".")[0]} - {"", "dict", "object", *(f"smach.{name}" for name in MACHINES)}
-    head = "\n".join(f"import {module}" for module in sorted({*modules, "asyncio", "dataclasses", "smach"}))
+    modules = {path.rpartition(".")[0]} - {
+        "",
+        "dict",
+        "object",
+        *(f"smach.{name}" for name in (*CONTAINERS, "Iterator")),
+    }
+    head = "\n".join(
+        f"import {module}" for module in sorted({*modules, "asyncio", "dataclasses", "py_trees", "smach"})
+    )
     assert differing(in_callback(body.replace("NAME", path), head)) == {}

@@ -230,8 +230,21 @@ METHODS: dict[tuple[str, ...], str] = {
         *("lookupTransform", "lookupTransformFull", "lookupTwist"),
         *("lookup_transform", "lookup_transform_core", "lookup_transform_full"),
         *("lookup_transform_async", "lookup_transform_full_async"),
-        *("asMatrix", "canTransform", "canTransformFull", "can_transform", "can_transform_full", "frameExists"),
-        *("getLatestCommonTime", "get_latest_common_time", "lookupTwistFull", "transformPoint", "transformPose"),
+        *(
+            "asMatrix",
+            "canTransform",
+            "canTransformFull",
+            "can_transform",
+            "can_transform_full",
+            "frameExists",
+        ),
+        *(
+            "getLatestCommonTime",
+            "get_latest_common_time",
+            "lookupTwistFull",
+            "transformPoint",
+            "transformPose",
+        ),
         *("transformPointCloud", "transformPointStamped", "transformQuaternion", "transformVector3"),
         *("transform_full", "waitForTransform", "waitForTransformFull"),
     ): """

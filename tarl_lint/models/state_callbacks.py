@@ -1,0 +1,37 @@
+"""Models of smach's states that are made of functions, which get the shared userdata."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.memory import recency, userdata
+from tarl_lint.memory.values import Value, pointer
+from tarl_lint.models import parts
+from tarl_lint.models.ros import subscriptions
+from tarl_lint.models.smach import LATER
+
+# keywords of the functions whose result is the outcome of the state
+ENDING: Final = frozenset(["cb", "result_cb", "response_cb"])
+
+
+def state_by_callbacks(ctx: Interpreter, it: Invocation) -> Value:
+    """Create a state from functions, which get the shared userdata; the result of some of them is its outcome."""
+    state = recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
+    part = parts.part_of(ctx, state, it.frame)
+    plain, named = it.arguments
+    given = [*(("cb" if n == 0 else "", v) for n, v in enumerate(plain)), *named.items()]
+    for keyword, value in given:
+        for target in value.objects:
+            if target.kind in LATER:
+                subscriptions.call_when(
+                    ctx,
+                    ("state", state.key),
+                    target,
+                    [userdata.userdata(ctx, state)],
+                    "callback",
+                    guards=[part.runs],
+                    answer=part if keyword in ENDING else None,
+                )
+    return pointer(state)
