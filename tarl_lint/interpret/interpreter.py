@@ -110,6 +110,8 @@ class Interpreter:
         self.checking = os.environ.get(CHECK, "") not in ("", "0")
         # ROS parameters whose values are names of topics or nodes; None if the run does not collect them
         self.parameter_names: list[ParameterName] | None = None
+        # place of a call that reads or declares parameters → their names; None if some are unknown
+        self.parameter_reads: dict[tuple[str, ir.Pos], set[str] | None] = {}
         self.fixed: Mapping[str, object] = {}  # known values of parameters, by their name in the code
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None

@@ -29,8 +29,8 @@ def own_arguments(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def counted(ctx: Interpreter, it: Invocation) -> Value:
-    """Return `range(...)`: its numbers one by one if they are few, and known to matter."""
-    each = sizes.counts(ctx, it.frame)
+    """Return `range(...)`: its numbers one by one if they are few, and known to matter or in a run for a launch file."""
+    each = ctx.launching or sizes.counts(ctx, it.frame)
     found = [value.constant()[1] for value in it.arguments[0] if each]
     given = [one for one in found if isinstance(one, int)]
     exact = len(given) == len(found) and 0 < len(given) <= 3 and 0 not in given[2:]

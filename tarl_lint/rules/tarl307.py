@@ -10,8 +10,10 @@ without a namespace, and no other section of the file gives the node these param
 
 A parameter of a node is reported only if the node's program and all its imports could be read, and the program states
 the names of all parameters that it reads: as literals, in tables and lists, as arguments of its functions, as fields
-of its classes, or in the workspace's `.cfg` files of dynamic_reconfigure. If a group sets a parameter for all its
-nodes, the rule reports the parameter only if none of the nodes has it.
+of its classes, or in the workspace's `.cfg` files of dynamic_reconfigure. A name that the program composes counts if
+all parts are known at each call, as in `get_param("~%s/%s" % (group, key))` in a helper or `f"tray{n}.tare"` in a loop
+over `range(4)`. If some parts are not known, any name that its words and digits can form counts as a name of the node.
+If a group sets a parameter for all its nodes, the rule reports the parameter only if none of the nodes has it.
 
 In ROS 1, parameters that are set outside a node but below its name are its private ones. They are reported if
 the node has another parameter of the same file, or one with a similar name.
@@ -76,6 +78,35 @@ INVALID: Final = (
     node = Node("keeper")
     gain = node.declare_parameter("gain", 0.5).value
     rclpy.spin(node)
+    """,
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="keeper.py" name="keeper">
+        <param name="gains/left" value="0.8"/>
+        <param name="limits/low" value="0.1"/>
+      </node>
+    </launch>
+    --- scripts/keeper.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    def section(name, *keys):
+        return [rospy.get_param("~%s/%s" % (name, key), 0.5) for key in keys]
+
+    rospy.init_node("keeper")
+    near, far = section("gains", "near", "far")
+    low, left = section("limits", "low", "left")
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_odom(odom):
+        cmd = Twist()
+        cmd.angular.z = -near * max(low, min(left, odom.pose.pose.position.y)) - far
+        pub.publish(cmd)
+
+    rospy.Subscriber("odom", Odometry, on_odom)
+    rospy.spin()
     """,
 )
 
@@ -212,12 +243,18 @@ def _lacks(instance: Instance, name: str) -> bool:
     interface = instance.interface
     if interface is None or not interface.parameters or name.partition(".")[0] in _OF_ROS:
         return False
-    # ROS 1 nodes may read a whole group of parameters; in ROS 2, `gain` is not the group of `gain.p`
-    groups = name.split("/") if "/" in name else ()
-    spellings = {name, name.replace(".", "/"), name.replace("/", "."), *groups}
-    if any(one.endswith(f"/{name}") for one in interface.words):
+    spellings = {name, name.replace(".", "/"), name.replace("/", ".")}
+    known = interface.exact if interface.exact is not None else frozenset[str]()
+    words = interface.words | known
+    if any(one.endswith(f"/{name}") for one in words):
         return False  # the program reads it by its absolute name
-    return spellings.isdisjoint(interface.words) and not _joined_of(name, interface.words)
+    # ROS 1 nodes may read a whole group of parameters; in ROS 2, `gain` is not the group of `gain.p`
+    parts = name.split("/")
+    if interface.exact is not None:
+        above = {"/".join(parts[:number]) for number in range(1, len(parts))}
+        return spellings.isdisjoint(words) and above.isdisjoint(known)
+    groups = parts if len(parts) > 1 else ()
+    return spellings.isdisjoint(words) and words.isdisjoint(groups) and not _joined_of(name, words)
 
 
 def _joined_of(name: str, words: Collection[str]) -> bool:

@@ -8,8 +8,9 @@ A remapping from `/cmd_vel` also matches nothing if the node uses `cmd_vel` in a
 `/robot/cmd_vel`.
 
 A remapping is reported only if every node that it applies to could be read with all its imports, uses only constant
-topic names, and contains no other string that ends in the remapped name. A remapping of a group is reported only if it
-matches nothing in any of the group's nodes.
+topic names, and contains no other string that is the remapped name or the end of it. A private name (`~path`) and a
+longer one (`front/path`) are no uses of `path`. A remapping of a group is reported only if it matches nothing in any of
+the group's nodes.
 """
 
 from __future__ import annotations
@@ -108,6 +109,31 @@ INVALID: Final = (
     rospy.Subscriber("cmd_val", Twist, print)
     rospy.spin()
     """,
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="keeper.py" name="keeper">
+        <remap from="cmd_vel" to="/wheels/cmd_vel"/>
+      </node>
+    </launch>
+    --- scripts/keeper.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    rospy.init_node("keeper")
+    gain = rospy.get_param("~gain", 0.5)
+    pub = rospy.Publisher("~cmd_vel", Twist, queue_size=1)
+
+    def on_odom(odom):
+        cmd = Twist()
+        cmd.angular.z = -gain * odom.pose.pose.position.y
+        pub.publish(cmd)
+
+    rospy.loginfo("publishes on %s", "keeper/cmd_vel")
+    rospy.Subscriber("odom", Odometry, on_odom)
+    rospy.spin()
+    """,
 )
 
 VALID: Final = (
@@ -197,6 +223,10 @@ def _unmatched(instance: Instance, old: str) -> bool:
     own, namespace = instance.name.rpartition("/")[2], instance.node.namespace
     names = {name for end in instance.certain for name in end.names}
     used = {resolved(name, namespace, own) for name in names}
-    words = instance.interface.words if instance.interface is not None else frozenset[str]()
-    said = any(_last(word) == last for word in words - names)
-    return not said and resolved(old, namespace, own) not in used
+    words = frozenset[str]()
+    if instance.interface is not None:
+        words = instance.interface.words - instance.interface.private
+    # the end of a name may be put below a namespace; a longer name is another one
+    whole = resolved(old, namespace, own)
+    said = any(whole.endswith(f"/{word.strip('/')}") for word in words - names if word.strip("/"))
+    return not said and whole not in used

@@ -65,6 +65,8 @@ _PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "flows": _findings,
     "stale": _findings,
     "words": frozenset,
+    "private": frozenset,
+    "exact": lambda names: None if names is None else frozenset(names),
     "misfits": lambda entries: tuple(map(_misfit, entries)),
     "uses": lambda entries: tuple(map(_misfit, entries)),
     "deciding": tuple,

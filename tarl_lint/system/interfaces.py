@@ -26,9 +26,10 @@ from tarl_lint.parameter_names import MARK, ParameterName
 from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
+from tarl_lint.system.composed_names import composed_names
 from tarl_lint.system.fields import misfits, uses
 from tarl_lint.system.model import Endpoint, Interface, Qos, Role
-from tarl_lint.system.parameters import configurations, deciding, reads_named_parameters, words
+from tarl_lint.system.parameters import configurations, deciding, private_words, reads_named_parameters, words
 from tarl_lint.system.qos import of_call
 from tarl_lint.system.quiet_imports import closed
 from tarl_lint.system.service_calls import CLIENTS, called_services
@@ -78,7 +79,7 @@ def interface(
     quiet = closed(modules) and imports_read
     named = all(one.names for one in endpoints) and not any(topicless(one) for one in flows)
     heard = _heard(machine)
-    configured = configurations(modules)
+    configured, exact = configurations(modules), composed_names(machine, modules, outlines)
     return Interface(
         path=script.path,
         name=next((name for one in modules if (name := node_name(one.tree))), ""),
@@ -86,10 +87,12 @@ def interface(
         endpoints=endpoints,
         flows=found,
         words=words(modules),
+        private=private_words(modules),
         parameters=closed(modules, of_parameters=True)
         and imports_read
         and configured is not None
-        and reads_named_parameters(modules),
+        and (exact is not None or reads_named_parameters(modules)),
+        exact=exact,
         closed=quiet,
         whole=quiet and named and not machine.cut,
         complete=quiet and not machine.cut,

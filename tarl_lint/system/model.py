@@ -75,6 +75,8 @@ class Interface:
     type lacks. `uses` are uses of fields of types `package/Name` that are unknown here; their fields are dotted paths.
     `configured` are the classes `PACKAGE.cfg.NAMEConfig`, whose `.cfg` files name further parameters.
     `complete` says that the endpoints are all that the program has, though some may have no known name.
+    `private` are the words that only private names (`~path`) contain.
+    `exact` are the names of all parameters that the program reads, without `~`; None if some of them are not known.
     """
 
     path: str
@@ -93,6 +95,8 @@ class Interface:
     uses: tuple[Misfit, ...] = ()
     configured: tuple[str, ...] = ()
     complete: bool = False
+    exact: frozenset[str] | None = None
+    private: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

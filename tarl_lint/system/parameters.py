@@ -45,6 +45,13 @@ def words(modules: Sequence[Module]) -> frozenset[str]:
     )
 
 
+def private_words(modules: Sequence[Module]) -> frozenset[str]:
+    """Return the words that all strings of a program state as private names, such as `~path`."""
+    texts = {text for module in modules for node in ast.walk(module.tree) for text in _texts(node)}
+    own = {one.strip("~/") for one in texts if one.startswith("~")}
+    return frozenset(own - {one.strip("/").lstrip(".") for one in texts if not one.startswith("~")})
+
+
 def _texts(node: ast.AST) -> Iterator[str]:
     match node:
         case ast.Constant(value=str(text)):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
 from functools import partial
+from typing import Final
 
 from tarl_lint.interpret import literals
 from tarl_lint.interpret.interpreter import Interpreter
@@ -23,8 +24,24 @@ def ros_call(ctx: Interpreter, it: Invocation) -> Value:
     """Apply the catalog's entry for a call."""
     if "**" in it.arguments[1]:
         it.arguments = it.arguments[0], _unpacked_keywords(ctx, it)
+    if ctx.launching and it.fact.kind in READS_PARAMETERS:
+        _note_names(ctx, it)
     action = ACTIONS.get(it.fact.kind)
     return action(ctx, it) if action is not None else UNKNOWN  # UNKNOWN if this kind of call has no model
+
+
+def _note_names(ctx: Interpreter, it: Invocation) -> None:
+    """Record the names of the parameters that a call reads or declares."""
+    place = (it.frame.program.path, it.call.pos)
+    names: set[str] | None = set(it.argument(it.fact.topic).texts())
+    if it.fact.kind == "declare all":
+        above, entries = names or {""}, sizes.unpacked(ctx, it.argument(it.fact.extra))
+        given = [sizes.unpacked(ctx, entry) or [] for entry in entries or ()]
+        texts = [parts[0].texts() if parts else () for parts in given]
+        names = {f"{one}.{text}" if one else text for one in above for two in texts for text in two}
+        names = names if entries is not None and all(texts) else None
+    known = ctx.parameter_reads.get(place, set())
+    ctx.parameter_reads[place] = known | names if names and known is not None else None
 
 
 def _unpacked_keywords(ctx: Interpreter, it: Invocation) -> dict[str, Value]:
@@ -239,6 +256,9 @@ def _parameters(ctx: Interpreter, receiver: Value, name: Value) -> Value:
     return Value(pts=frozenset(recency.intern(ctx, "parameter", key, str(key[1])) for key in keys))
 
 
+READS_PARAMETERS: Final = frozenset(
+    ["parameter", "declare", "declare all", "parameter object", "parameter or"]
+)
 ACTIONS: Mapping[str, Callable[..., Value]] = {
     "publisher": publications.made_publisher,
     "image publisher": publications.image_publisher,

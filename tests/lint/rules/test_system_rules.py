@@ -346,7 +346,10 @@ def test_a_remapping_of_a_name_that_the_node_does_not_use_is_reported(old, told)
 def test_a_remapping_of_a_name_that_the_node_may_use_is_not_reported():
     remaps = (("cmd_val", "y"),)
     assert messages(308, mover(remaps=remaps, whole=False)) == []
-    assert messages(308, mover(remaps=remaps, words=("/x/cmd_val",))) == []
+    for word in ("cmd_val", "/n/cmd_val", "n/cmd_val"):
+        assert messages(308, mover(remaps=remaps, words=(word,))) == []
+    for word in ("/x/cmd_val", "my_cmd_val", "/n/x/cmd_val"):
+        assert len(messages(308, mover(remaps=remaps, words=(word,)))) == 1  # another name
     assert messages(308, node("/k", unread=True, remaps=remaps)) == []
     silent = node("/k", interface=Interface("n.py", whole=True), remaps=remaps)
     assert messages(308, silent) == ["/k uses no name cmd_val, so renaming it to y has no effect"]

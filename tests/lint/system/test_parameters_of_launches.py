@@ -28,9 +28,9 @@ speed = rospy.get_param("~speed")
 """
 
 
-def messages(root: Path, launch: str, **programs: str) -> list[str]:
+def messages(root: Path, launch: str, where: str = "launch/r.launch", **programs: str) -> list[str]:
     """Return the hazards of a package `robot` with a launch file and programs."""
-    files = {"package.xml": "<package><name>robot</name></package>", "launch/r.launch": launch, **programs}
+    files = {"package.xml": "<package><name>robot</name></package>", where: launch, **programs}
     for name, text in files.items():
         path = root / "robot" / (f"{name}.py" if name in programs and name != "cfg/Edge.cfg" else name)
         path.parent.mkdir(parents=True, exist_ok=True)
