@@ -58,6 +58,9 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
     "multiprocessing.Process": Fact(
         "thread", "multiprocessing.Process", callback=(1, "target"), extra=(3, "args")
     ),
+    "smach_ros.MonitorState": Fact(
+        "monitor", "smach_ros.MonitorState", (0, "topic"), (1, "msg_type"), (2, "cond_cb")
+    ),
     "functools.partial": Fact("partial", "functools.partial", callback=(0, "func")),
     "copy.copy": Fact("copy", "copy.copy"),
     "copy.deepcopy": Fact("copy", "copy.deepcopy"),
@@ -222,6 +225,7 @@ SOURCE_WORDS: Final = (
     "SimpleActionServer",
     "InteractiveMarkerServer",
     "ImageTransport",
+    "MonitorState",
 )  # a file that contains none of these words has no source
 SINK_WORDS: Final = ("publish", "Publisher")
 CLIENT_WORDS: Final = (
@@ -357,6 +361,7 @@ ADDS_STATE: Final = (
 )  # fmt: skip
 STATE_BY_CALLBACKS: Final = (
     "smach.CBState", "smach.state.CBState", "smach_ros.SimpleActionState", "smach_ros.ServiceState",
+    "smach_ros.ConditionState",
 )  # fmt: skip
 
 NODES: Final = frozenset(["rclpy.node.Node", "rclpy.lifecycle.Node", "rclpy.lifecycle.LifecycleNode"])

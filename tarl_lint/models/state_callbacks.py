@@ -13,7 +13,7 @@ from tarl_lint.models.ros import subscriptions
 from tarl_lint.models.smach import LATER
 
 # keywords of the functions whose result is the outcome of the state
-ENDING: Final = frozenset(["cb", "result_cb", "response_cb"])
+ENDING: Final = frozenset(["cb", "cond_cb", "result_cb", "response_cb"])
 
 
 def state_by_callbacks(ctx: Interpreter, it: Invocation) -> Value:
@@ -34,4 +34,18 @@ def state_by_callbacks(ctx: Interpreter, it: Invocation) -> Value:
                     guards=[part.runs],
                     answer=part if keyword in ENDING else None,
                 )
+    return pointer(state)
+
+
+def monitor(ctx: Interpreter, it: Invocation) -> Value:
+    """Create a state that receives messages until its function returns False for one of them."""
+    callback = it.argument(it.fact.callback)
+    record = subscriptions.source(ctx, it, callback)
+    state = recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
+    part = parts.part_of(ctx, state, it.frame)
+    for target in callback.objects:
+        if target.kind in LATER:
+            values = [userdata.userdata(ctx, state), pointer(subscriptions.message(ctx, record, target))]
+            key = ("monitor", *record.key)
+            subscriptions.call_when(ctx, key, target, values, "callback", guards=[part.runs], answer=part)
     return pointer(state)

@@ -15,7 +15,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.symbolic_names import text_of_parameter
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Consts, Value, join, pointer
-from tarl_lint.models import containers, launched, records, sizes
+from tarl_lint.models import containers, launched, records, sizes, state_callbacks
 from tarl_lint.models.ros import publications, services, subscriptions
 from tarl_lint.parameter_names import DEFAULT, ELSEWHERE
 
@@ -266,6 +266,7 @@ ACTIONS: Mapping[str, Callable[..., Value]] = {
     "receive": subscriptions.receive,
     "configured": subscriptions.configured_source,
     "filter": subscriptions.message_filter,
+    "monitor": state_callbacks.monitor,
     "feedback": subscriptions.feedback,
     "synchronizer": subscriptions.synchronizer,
     "timer": _timer,

@@ -519,6 +519,15 @@ CASES: dict[tuple[str, ...], str] = {
             out.publish(userdata.other)  # clean
         NAME(near), NAME(cb=far)
     """,
+    ("smach_ros.ConditionState",): """
+        def near(userdata):
+            userdata.seen = msg.data
+            return True
+        def far(userdata):
+            out.publish(userdata.seen)  # data
+            out.publish(userdata.other)  # clean
+        NAME(near), NAME(cond_cb=far)
+    """,
     ("smach_ros.SimpleActionState", "smach_ros.ServiceState"): """
         def near(userdata, result):
             userdata.seen = msg.data

@@ -37,6 +37,15 @@ FUNCTIONS: dict[tuple[str, ...], str] = {
         NAME("in", Float64, on, 1.0)
         NAME("other", Float64, callback=lambda msg: out.publish(msg.data))  # data
     """,
+    ("smach_ros.MonitorState",): """
+        import smach_ros
+        def low(userdata, msg):
+            out.publish(msg.data)  # data
+            return msg.data > 1.0
+        NAME("in", Float64, low)
+        NAME("other", Float64, cond_cb=lambda userdata, msg: out.publish(msg.data))  # data
+        NAME("third", Float64, lambda userdata, msg: out.publish(1.0))  # clean
+    """,
     ("rospy.Publisher", "rospy.topics.Publisher"): """
         made = NAME("made", Float64)
         rospy.Subscriber("in", Float64, lambda msg: made.publish(msg.data))  # data

@@ -220,6 +220,28 @@ with smach.StateMachine(outcomes=["end"]) as machine:
     smach.StateMachine.add("FIRST", smach.CBState(first, outcomes=["done"]), {"done": "AGAIN"})
     smach.StateMachine.add("AGAIN", First(), {"done": "end"})
 Second()
+### a state that monitors a topic: control clean
+def low(userdata, msg):
+    userdata.seen = msg.data
+    return msg.data > 1.0
+with smach.StateMachine(outcomes=["end"]) as machine:
+    low_state = smach_ros.MonitorState("level", Float64, low)
+    smach.StateMachine.add("LOW", low_state, {"valid": "FIRST", "invalid": "end", "preempted": "end"})
+    smach.StateMachine.add("FIRST", First(), {"done": "end"})
+    smach.StateMachine.add("LATER", smach.CBState(lambda userdata: out.publish(userdata.seen)))  # data
+Second()
+### a state that monitors a topic and always ends in the same way: clean clean
+with smach.StateMachine(outcomes=["end"]) as machine:
+    state = smach_ros.MonitorState("level", Float64, lambda userdata, msg: msg.data > 1.0)
+    smach.StateMachine.add("LOW", state, {"valid": "FIRST", "invalid": "FIRST", "preempted": "FIRST"})
+    smach.StateMachine.add("FIRST", First(), {"done": "end"})
+Second()
+### a state that tests a condition: control clean
+with smach.StateMachine(outcomes=["end"]) as machine:
+    state = smach_ros.ConditionState(cond_cb=lambda userdata: last > 1.0)
+    smach.StateMachine.add("LOW", state, {"true": "FIRST", "false": "end", "preempted": "end"})
+    smach.StateMachine.add("FIRST", First(), {"done": "end"})
+Second()
 ### states of other machines are not concerned: clean clean
 with smach.StateMachine(outcomes=["end"]) as machine:
     smach.StateMachine.add("TEST", Test(), {"yes": "SAME", "no": "end"})
