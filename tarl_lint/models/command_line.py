@@ -29,7 +29,7 @@ def own_arguments(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def counted(ctx: Interpreter, it: Invocation) -> Value:
-    """Return `range(...)`: its numbers one by one if they are few, and known to matter or in a run for a launch file."""
+    """Return `range(...)`: its numbers one by one if few, and if known to matter or in a run for a launch file."""
     each = ctx.launching or sizes.counts(ctx, it.frame)
     found = [value.constant()[1] for value in it.arguments[0] if each]
     given = [one for one in found if isinstance(one, int)]
