@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -37,6 +37,7 @@ class Choices:
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
         self.alongside = made_alongside(graph)
+        self._choosing: dict[int, Sequence[tuple[int, Branches]]] = {}
         self._chosen_by: dict[int, list[int]] | None = None
 
     def made_there(self, nodes: Set[int], known: Made = NOTHING_MADE) -> set[int]:
@@ -50,15 +51,30 @@ class Choices:
         for node in self.renewed(nodes, known.nodes):
             if node in graph.gates:
                 made, choice = graph.gates[node]
-                starts.setdefault(frozenset(b for b in choice if b[0] in nodes), set()).add(made)
-            for made in self.alongside.get(node, ()):
-                ways = frozenset(b for b in graph.branches[made] - graph.branches[node] if b[0] in nodes)
-                if ways:
+                starts.setdefault(choice, set()).add(made)
+            for made, choice in self._alongside(node):
+                if any(decision in nodes for decision, _ in choice):
                     found.add(made)
-                    starts.setdefault(ways, set()).add(made)
-        for ways, values in starts.items():
+                    starts.setdefault(choice, set()).add(made)
+        inside: dict[Branches, set[int]] = {}  # the same, with the conditions among the nodes only
+        for choice, values in starts.items():
+            inside.setdefault(frozenset(b for b in choice if b[0] in nodes), set()).update(values)
+        for ways, values in inside.items():
             found |= self.makers(values, ways)
         return found
+
+    def made_of(self, nodes: Set[int], known: Made) -> Made:
+        """Return nodes with the result of `made_there`; `known` is the same for a subset of them."""
+        return Made(nodes, self.made_there(nodes, known))
+
+    def _alongside(self, node: int) -> Sequence[tuple[int, Branches]]:
+        """Return the values that a node uses through a copy without conditions, and the conditions of each."""
+        known = self._choosing.get(node)
+        if known is None:
+            branches = self.graph.branches
+            made = self.alongside.get(node, ())
+            known = self._choosing[node] = [(one, branches[one] - branches[node]) for one in made]
+        return known
 
     def makers(self, values: Iterable[int], ways: Branches) -> set[int]:
         """Return those inputs of values, direct or not, that are computed under one of the conditions `ways`."""

@@ -6,12 +6,12 @@ extends a copy of it by its other nodes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from tarl_lint.flows.choices import Choices, Entrance
-from tarl_lint.flows.precedence import Precedence
+from tarl_lint.flows.choices import Choices
+from tarl_lint.flows.precedence import Bits, Precedence
 from tarl_lint.flows.statement_text import Written
 from tarl_lint.flows.statements import Statements
 from tarl_lint.memory.frames import Frame
@@ -19,12 +19,27 @@ from tarl_lint.memory.frames import Frame
 Pairs = dict[tuple[int, int], None]  # (`id` of a statement, `id` of a statement that it precedes)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Way:
+    """Calls that lead from a condition to a value that it chooses; many conditions and values share them."""
+
+    passed: Mapping[int, Written]  # the calls as written
+    between: Pairs  # their order
+    ends: tuple[int, int] | None  # the first and the last call; None without calls
+
+    def joining(self, first: int | None, last: int | None) -> Iterator[tuple[int, int]]:
+        """Yield the pairs that order two statements around the calls."""
+        head, tail = self.ends or (last, first)
+        for former, latter in ((first, head), (tail, last)):
+            if former is not None and latter is not None and former != latter:
+                yield former, latter
+
+
 @dataclass(slots=True)
 class Part:
     """Statements (by `id`) of a set of nodes, and their order."""
 
     nodes: Set[int] = frozenset()
-    statement_of: dict[int, int] = field(default_factory=dict)  # node → statement
     written: dict[int, Written] = field(default_factory=dict)
     # (frame, `id` of a statement) → the statement as written
     placed: dict[tuple[Frame, int], Written] = field(default_factory=dict)
@@ -41,7 +56,6 @@ class Part:
         """Return an equal part that can be extended without a change of this one."""
         return Part(
             self.nodes,
-            {**self.statement_of},
             {**self.written},
             {**self.placed},
             self.precedence.copy(),
@@ -58,12 +72,20 @@ class Parts:
     def __init__(self, statements: Statements, choices: Choices) -> None:
         self.statements = statements
         self.choices = choices
-        self._entrances: dict[int, Sequence[Entrance]] = {}
+        self.bits = Bits()  # of all statements; the orders of all parts share them
+        # node → the nodes of other statements that it depends on, and the bits of these statements
+        self._formers: dict[int, tuple[tuple[int, ...], int]] = {}
+        self._bits: dict[
+            int, int
+        ] = {}  # the one object for equal bits, since nodes in many contexts have the same
+        self._ways: dict[tuple[Frame, Frame], Way | None] = {}
+        # node → (condition, node that uses the value, calls between) of each condition that chooses its value
+        self._entrances: dict[int, Sequence[tuple[int, int, Way]]] = {}
 
     def of(self, nodes: Set[int], known: Part) -> Part:
         """Return the part of a set of nodes. `known` is the part of a subset of the nodes; it is not changed."""
         news = nodes - known.nodes
-        part = known.copy()
+        part = known.copy() if known.nodes else Part(precedence=Precedence(bits=self.bits))
         part.nodes = nodes
         self._add_statements(part, sorted(news))
         affected = {n for n in self.statements.nodes_after(news) if n in nodes} if known.nodes else set()
@@ -76,27 +98,28 @@ class Parts:
         for node in nodes:
             found = self.statements.of(node)
             if found is not None:
-                part.statement_of[node] = id(found)
                 part.written[id(found)] = found
                 part.placed[places[node].frame, id(found)] = found
 
     def _add_order(self, part: Part, nodes: Iterable[int]) -> None:
         """Add the order between statements; set apart dependencies on earlier iterations of a loop."""
-        statement_of, written, places = part.statement_of, part.written, self.statements.graph.places
-        numbers = part.precedence.numbers
+        inside, written, places = part.nodes, part.written, self.statements.graph.places
+        key_of, bits = self.statements.key_of, self.bits
         for node in nodes:
-            after = statement_of.get(node)
+            after = key_of[node]
             if after is None:
                 continue
             here = part.function[after] = places[node].frame.function
-            known, earlier = part.precedence.before.get(after, 0), 0
-            for before, formers in self.statements.before(node):
-                bit = 1 << numbers[before]
-                if before == after or known & bit:
+            # the first node of a statement decides whether this statement belongs to an earlier iteration
+            seen, earlier = part.precedence.before.get(after, 0), 0
+            formers, asked = self._formers.get(node) or self._formers_of(node, after)
+            for former in formers if asked & ~seen else ():
+                if former not in inside or (before := key_of[former]) is None:
                     continue
-                former = next(filter(statement_of.__contains__, formers), None)
-                if former is None:
+                bit = bits[before]
+                if seen & bit:
                     continue
+                seen |= bit
                 same = places[former].frame.function is here
                 if same and written[before].start > written[after].start:
                     part.turns[before, after] = None
@@ -105,26 +128,45 @@ class Parts:
             if earlier:
                 part.precedence.add(earlier, after)
 
+    def _formers_of(self, node: int, after: int) -> tuple[tuple[int, ...], int]:
+        """Return the nodes of other statements than `after` that a node depends on, and the bits of the statements."""
+        key_of = self.statements.key_of
+        formers = tuple(f for f in self.statements.nodes_before(node) if key_of[f] not in (None, after))
+        asked = self.bits.union(key for f in formers if (key := key_of[f]) is not None)
+        known = self._formers[node] = formers, self._bits.setdefault(asked, asked)
+        return known
+
     def _add_entrances(self, part: Part, nodes: Iterable[int]) -> None:
         """Add the calls between conditions and the values that they choose, and their order."""
-        inside, statement_of = part.nodes, part.statement_of
-        found: dict[tuple[Frame, Frame, int | None, int | None], None] = {}
+        inside, key_of = part.nodes, self.statements.key_of
+        found: dict[Way, dict[tuple[int | None, int | None], None]] = {}
         for node in nodes:
-            for condition, frame, outer, value in self._through_calls(node):
+            for condition, value, way in self._through_calls(node):
                 if condition in inside and value in inside:
-                    found[frame, outer, statement_of.get(condition), statement_of.get(value)] = None
-        for frame, outer, first, last in found:
-            between = self.statements.calls(frame, outer) or ()
-            part.passed.update((id(call), call) for call in between)
-            chain = [key for key in (first, *map(id, between), last) if key is not None]
-            part.entrances.update(((a, b), None) for a, b in pairwise(chain) if a != b)
+                    found.setdefault(way, {})[key_of[condition], key_of[value]] = None
+        for way, ends in found.items():
+            part.passed.update(way.passed)
+            part.entrances.update(way.between)
+            part.entrances.update((pair, None) for first, last in ends for pair in way.joining(first, last))
 
-    def _through_calls(self, node: int) -> Sequence[Entrance]:
+    def _through_calls(self, node: int) -> Sequence[tuple[int, int, Way]]:
         """Return the conditions that choose the value of a node, if calls lead from them to the value."""
         known = self._entrances.get(node)
         if known is None:
-            every = self.choices.entrances(node)
-            calls = self.statements.calls
-            known = [one for one in every if calls(one.frame, one.outer) is not None]
+            every = ((one, self._way(one.frame, one.outer)) for one in self.choices.entrances(node))
+            known = [(one.condition, one.value, way) for one, way in every if way is not None]
             self._entrances[node] = known
         return known
+
+    def _way(self, frame: Frame, outer: Frame) -> Way | None:
+        """Return the calls that lead from one frame to another; None if no calls do."""
+        if (frame, outer) not in self._ways:
+            calls = self.statements.calls(frame, outer)
+            self._ways[frame, outer] = None if calls is None else _way(calls)
+        return self._ways[frame, outer]
+
+
+def _way(calls: Sequence[Written]) -> Way:
+    keys = [id(call) for call in calls]
+    between = {(a, b): None for a, b in pairwise(keys) if a != b}
+    return Way(dict(zip(keys, calls, strict=True)), between, (keys[0], keys[-1]) if keys else None)

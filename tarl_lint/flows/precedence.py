@@ -7,53 +7,52 @@ these integers, and one operation joins two sets.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 
 
-@dataclass(slots=True)
-class Numbers:
-    """Numbers for keys; relations that are copies of each other share them."""
+class Bits(dict[int, int]):
+    """Key → its bit; a key gets the next free bit at its first use. Relations with common bits share this table."""
 
-    of: dict[int, int] = field(default_factory=dict)
-    keys: list[int] = field(default_factory=list)
+    def __init__(self) -> None:
+        super().__init__()
+        self.keys_of: list[int] = []  # number of a bit → its key
 
-    def __getitem__(self, key: int) -> int:
-        """Return the number of a key; the next free one at first use."""
-        number = self.of.setdefault(key, len(self.keys))
-        if number == len(self.keys):
-            self.keys.append(key)
-        return number
+    def __missing__(self, key: int) -> int:
+        """Return a new bit for a key."""
+        bit = self[key] = 1 << len(self.keys_of)
+        self.keys_of.append(key)
+        return bit
 
-    def bits(self, keys: Iterable[int]) -> int:
-        """Return the set of the keys as bits."""
+    def union(self, keys: Iterable[int]) -> int:
+        """Return the bits of some keys."""
         found = 0
         for key in keys:
-            found |= 1 << self[key]
+            found |= self[key]
         return found
 
 
 class Precedence:
     """A relation between keys. A key does not precede itself."""
 
-    def __init__(self, pairs: Iterable[tuple[int, int]] = ()) -> None:
-        self.numbers = Numbers()
+    def __init__(self, pairs: Iterable[tuple[int, int]] = (), bits: Bits | None = None) -> None:
+        """`bits` is the table of other relations, with which this one shares its bits."""
+        self.bits = Bits() if bits is None else bits
         self.before: dict[int, int] = {}  # key → bits of the keys that precede it
         self.update(pairs)
 
     def copy(self) -> Precedence:
         """Return an equal relation."""
-        made = Precedence()
-        made.numbers, made.before = self.numbers, {**self.before}
+        made = Precedence(bits=self.bits)
+        made.before = {**self.before}
         return made
 
     def update(self, pairs: Iterable[tuple[int, int]]) -> None:
         """Add pairs (former, latter)."""
         for former, latter in pairs:
-            self.add(1 << self.numbers[former], latter)
+            self.add(self.bits[former], latter)
 
     def add(self, formers: int, latter: int) -> None:
         """Let a set of keys, given as bits, precede a key."""
-        self.before[latter] = (self.before.get(latter, 0) | formers) & ~(1 << self.numbers[latter])
+        self.before[latter] = (self.before.get(latter, 0) | formers) & ~self.bits[latter]
 
     def add_ahead_of_loops(self, turns: Iterable[tuple[int, int]], function: Mapping[int, object]) -> None:
         """Order statements of other functions before the loops whose bodies use their values.
@@ -62,12 +61,12 @@ class Precedence:
         """
         heads: dict[int, int] = {}
         for carried, head in turns:
-            heads[head] = heads.get(head, 0) | 1 << self.numbers[carried]
+            heads[head] = heads.get(head, 0) | self.bits[carried]
         if not heads:
             return
         together: dict[int, int] = {}  # function → its statements
         for key, where in function.items():
-            together[id(where)] = together.get(id(where), 0) | 1 << self.numbers[key]
+            together[id(where)] = together.get(id(where), 0) | self.bits[key]
         known: dict[int, int] = {}
         ahead = {head: self._all_before(carried, known) for head, carried in heads.items()}
         for head, formers in ahead.items():
@@ -87,7 +86,7 @@ class Precedence:
         return found
 
     def _before_one(self, number: int, known: Mapping[int, int]) -> int:
-        names, before = self.numbers.keys, self.before
+        names, before = self.bits.keys_of, self.before
         finished = sum(1 << one for one in known)
         found = pending = 1 << number
         while pending:
@@ -105,9 +104,9 @@ class Precedence:
     def formers(self, key: int) -> set[int]:
         """Return the keys that precede a key."""
         bits = self.before.get(key, 0)
-        return {one for number, one in enumerate(self.numbers.keys) if bits >> number & 1}
+        return {one for number, one in enumerate(self.bits.keys_of) if bits >> number & 1}
 
     def first_of(self, key: int, left: int) -> int | None:
         """Return a key that precedes `key` and is among `left`, a set as bits; None if there is none."""
         waiting = self.before.get(key, 0) & left
-        return self.numbers.keys[waiting.bit_length() - 1] if waiting else None
+        return self.bits.keys_of[waiting.bit_length() - 1] if waiting else None

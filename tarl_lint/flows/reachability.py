@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from tarl_lint.flows.apart import named_first, named_sinks_first, sinks_told_apart, told_apart
-from tarl_lint.flows.choices import Choices, Made
+from tarl_lint.flows.choices import NOTHING_MADE, Choices
 from tarl_lint.flows.ends import Ends
+from tarl_lint.flows.nearest import Nearest
 from tarl_lint.flows.parts import Part, Parts
-from tarl_lint.flows.shortest_path import shortest_path
+from tarl_lint.flows.shortest_path import ShortestPaths
 from tarl_lint.flows.statement_text import Texts
 from tarl_lint.flows.statements import Statements
 from tarl_lint.flows.taint_list import TaintLists
@@ -48,7 +49,8 @@ class Tracer:
         self.forward_control = _reversed(self.graph.control)
         self.choices = Choices(self.graph)
         self.statements = Statements(self.graph, self.texts, (self.forward_data, self.forward_control))
-        self.parts = Parts(self.statements, self.choices)
+        self.made = Nearest(NOTHING_MADE, self.choices.made_of)
+        self.listed = Nearest(Part(), Parts(self.statements, self.choices).of)
         self.lists = TaintLists(self.texts, self.statements)
 
     def flows(self) -> tuple[Flow, ...]:
@@ -90,39 +92,47 @@ class Tracer:
         behind = closure(record.nodes, [graph.data]), closure(record.nodes, [graph.data, graph.control])
         on_data = [self.made_from(behind[0] & reach.data, reach) for _, _, reach in reaching]
         on_any = [behind[1] & reach.any for _, _, reach in reaching]
-        shared = set.intersection(*on_any)
-        made = Made(shared, self.choices.made_there(shared))
+        made = self.made.of(set.intersection(*on_any), None)
         for data, nodes in zip(on_data, on_any, strict=True):
             nodes |= data | self.choices.made_there(nodes, made)
-        common = self.parts.of(set.intersection(*on_any), Part())
-        for (source, origin, reach), data, nodes in zip(reaching, on_data, on_any, strict=True):
-            listed = self.lists.of(origin, data, self.parts.of(nodes, common), record)
-            path = [listed.index[key] for key in self.path(origin, reach, record, listed.statement_of)]
+        common = self.listed.of(set.intersection(*on_any), None)
+        paths = self.paths(record, reaching)
+        for (source, origin, reach), data, nodes, path_from in zip(
+            reaching, on_data, on_any, paths, strict=True
+        ):
+            listed = self.lists.of(origin, data, self.listed.of(nodes, id(origin), common), record)
+            path = [listed.index[key] for key in path_from(origin.nodes)]
             chain = ending_in_publish_call(path, listed.steps)
             kind: Kind = "implicit" if record.nodes.isdisjoint(reach.data) else "explicit"
             yield Flow(kind, source, sink, listed.steps, chain)
 
-    def path(
-        self, origin: SourceRecord, reach: Reach, record: SinkRecord, statement_of: Mapping[int, int]
-    ) -> tuple[int, ...]:
-        """Return the statements of the shortest path from a source to a sink; only data if data leads there."""
-        inside, formers = reach.data, self.data_formers(reach)
-        if record.nodes.isdisjoint(reach.data):
-            inside, formers = reach.any, self.statements.formers
-        return shortest_path(
-            sorted(record.nodes & inside),
-            origin.nodes,
-            lambda n: (f for f in formers(n) if f in inside),
-            statement_of,
-        )
+    def paths(
+        self, record: SinkRecord, reaching: Iterable[Reaching]
+    ) -> Iterator[Callable[[Set[int]], Sequence[int]]]:
+        """Yield for each source the search for the shortest path; only through data if data leads to the sink."""
+        ends = sorted(record.nodes)
+        statement_of = self.statements.key_of.__getitem__
+        through_data = ShortestPaths(ends, self.data_formers({}), statement_of)
+        through_any = ShortestPaths(ends, self.statements.formers, statement_of)
+        for _, _, reach in reaching:
+            if record.nodes.isdisjoint(reach.data):
+                yield through_any.path_from
+            elif reach.counted:
+                yield ShortestPaths(ends, self.data_formers(reach.counted), statement_of).path_from
+            else:
+                yield through_data.path_from
 
-    def data_formers(self, reach: Reach) -> Callable[[int], list[int]]:
+    def data_formers(self, counted: Mapping[int, set[int]]) -> Callable[[int], list[int]]:
         """Return a function from a node to the data it is made from; for a container's length, also the elements."""
-        return lambda node: sorted(self.graph.data[node] | reach.counted.get(node, set()))
+        data = self.graph.data
+        return lambda node: sorted(data[node] | counted[node] if node in counted else data[node])
 
     def made_from(self, ends: set[int], reach: Reach) -> set[int]:
-        """Return the nodes of a source's data from which the ends are computed."""
-        found = closure(ends, [self.graph.data], reach.data)
+        """Return the nodes of a source's data from which the ends are computed.
+
+        All data of the source that leads to one of the ends by data edges is among the ends.
+        """
+        found = set(ends)
         while more := set().union(*(reach.counted[n] for n in found & reach.counted.keys())) - found:
             found |= closure(more, [self.graph.data], reach.data)
         return found

@@ -3,50 +3,73 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from itertools import chain
 
 
-def shortest_path(
-    ends: Iterable[int],
-    starts: set[int],
-    formers: Callable[[int], Iterable[int]],
-    statement_of: Mapping[int, int],
-) -> tuple[int, ...]:
-    """Return the statements on a shortest path from one of `starts` to one of `ends`, in order.
+class ShortestPaths:
+    """Shortest paths to one publish call. All subscriptions share the search, which goes on only as far as needed.
 
     A step to a node of the same statement, or to one without a statement, costs nothing (0-1 breadth-first search
-    from the ends). The order of `ends` and `formers` breaks ties, so both must be ordered. Empty if there is no path.
+    from the ends). The order of `ends` and `formers` breaks ties, so both must be ordered.
+
+    The paths of a subscription consist of nodes that it reaches. The search need not be restricted to these: what a
+    reached node leads to is reached too, so no path from a subscription enters a node that it does not reach.
     """
-    following: dict[int, int] = {}
-    cost: dict[int, int] = {}
-    pending: deque[int] = deque()
-    for node in ends:
-        if node not in cost:
-            cost[node] = 0
-            pending.append(node)
-    settled: set[int] = set()
+
+    def __init__(
+        self,
+        ends: Iterable[int],
+        formers: Callable[[int], Iterable[int]],
+        statement_of: Callable[[int], int | None],
+    ) -> None:
+        self._statement_of = statement_of
+        self._following: dict[int, int] = {}
+        self._settled: dict[int, None] = {}  # in the order of their cost
+        # the search does not refer to this object: a reference cycle would keep both in memory
+        self._rest = _search(ends, formers, statement_of, self._following, self._settled)
+
+    def path_from(self, starts: Set[int]) -> tuple[int, ...]:
+        """Return the statements on a shortest path from one of `starts` to an end, in order; empty if none exists."""
+        for node in chain(self._settled, self._rest):
+            if node in starts:
+                return _statements(node, self._following, self._statement_of)
+        return ()
+
+
+def _search(
+    ends: Iterable[int],
+    formers: Callable[[int], Iterable[int]],
+    statement_of: Callable[[int], int | None],
+    following: dict[int, int],
+    settled: dict[int, None],
+) -> Iterator[int]:
+    """Settle one node after the other, and yield each; `following` is the next node of its shortest path."""
+    cost = dict.fromkeys(ends, 0)
+    pending = deque(cost)
     while pending:
         node = pending.popleft()
         if node in settled:
             continue
-        settled.add(node)
-        if node in starts:
-            return _statements(node, following, statement_of)
+        settled[node] = None
+        here, so_far = statement_of(node), cost[node]
         for former in formers(node):
-            step = statement_of.get(former)
-            price = cost[node] + (step is not None and step != statement_of.get(node))
+            step = statement_of(former)
+            price = so_far + (step is not None and step != here)
             if price < cost.get(former, price + 1):
                 cost[former] = price
                 following[former] = node
-                (pending.append if price > cost[node] else pending.appendleft)(former)
-    return ()
+                (pending.append if price > so_far else pending.appendleft)(former)
+        yield node
 
 
-def _statements(node: int, following: Mapping[int, int], statement_of: Mapping[int, int]) -> tuple[int, ...]:
+def _statements(
+    node: int, following: Mapping[int, int], statement_of: Callable[[int], int | None]
+) -> tuple[int, ...]:
     """Return the statements along the path from a node, without repetition."""
     found: dict[int, None] = {}
     while True:
-        if (statement := statement_of.get(node)) is not None:
+        if (statement := statement_of(node)) is not None:
             found[statement] = None
         if node not in following:
             return tuple(found)

@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from tarl_lint.flows.call_chains import calls
 from tarl_lint.flows.statement_text import Texts, Written
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import MERGED, Graph, Place
 from tarl_lint.models.ros.endpoints import SourceRecord
+
+
+class Keys(dict[int, int | None]):
+    """Node → `id` of its statement, or None without one; computed at the first use of the node."""
+
+    def __init__(self, statement: Callable[[int], object | None]) -> None:
+        super().__init__()
+        self._statement = statement
+
+    def __missing__(self, node: int) -> int | None:
+        """Compute the entry of a node."""
+        found = self._statement(node)
+        key = self[node] = None if found is None else id(found)
+        return key
 
 
 class Statements:
@@ -20,8 +34,8 @@ class Statements:
         self.forward = forward  # tables from a node to the nodes that depend on it
         self._merged = {n for n, place in enumerate(graph.places) if place.role == MERGED}
         self._statements: dict[int, Written | None] = {}
+        self.key_of = Keys(self.of)
         self._formers: dict[int, list[int]] = {}
-        self._before: dict[int, Sequence[tuple[int, list[int]]]] = {}
         self._chains: dict[tuple[Frame, Frame], Sequence[Written] | None] = {}
 
     def of(self, node: int) -> Written | None:
@@ -48,18 +62,6 @@ class Statements:
             found = [written for place in places if (written := self._at(place)) is not None]
             self._chains[frame, outer] = found if places else None
         return self._chains[frame, outer]
-
-    def before(self, node: int) -> Sequence[tuple[int, list[int]]]:
-        """Return the statements (by `id`) that a node depends on, each with its nodes."""
-        known = self._before.get(node)
-        if known is None:
-            nodes: dict[int, list[int]] = {}
-            for former in self.nodes_before(node):
-                written = self.of(former)
-                if written is not None:
-                    nodes.setdefault(id(written), []).append(former)
-            known = self._before[node] = [*nodes.items()]
-        return known
 
     def nodes_before(self, node: int) -> Sequence[int]:
         """Return the inputs and conditions of a node; skip the merged nodes of fields."""

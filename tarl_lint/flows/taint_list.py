@@ -27,10 +27,9 @@ ROLES: Mapping[str, Role] = {
 
 @dataclass(slots=True)
 class TaintList:
-    """The steps of a flow; also node → statement, and statement → index of its step."""
+    """The steps of a flow; also statement → index of its step."""
 
     steps: tuple[Step, ...]
-    statement_of: Mapping[int, int]
     index: Mapping[int, int]
 
 
@@ -49,7 +48,8 @@ class TaintLists:
         """
         written, precedence = part.written, part.precedence
         dependence: dict[int, Dependence] = dict.fromkeys(written, "control")
-        dependence.update((part.statement_of[n], "data") for n in on_data if n in part.statement_of)
+        key_of = self.statements.key_of
+        dependence.update((key, "data") for n in on_data if (key := key_of[n]) is not None)
         precedence.add_ahead_of_loops(part.turns, part.function)
         for key, call in part.passed.items():
             written.setdefault(key, call)
@@ -71,7 +71,7 @@ class TaintLists:
         roles |= dict.fromkeys(arrivals, "receive")
         roles |= dict.fromkeys(sinks, "publish")
         steps = tuple(self.step(written[k], spans[k], dependence[k], roles.get(k)) for k in order)
-        return TaintList(steps, part.statement_of, {key: place for place, key in enumerate(order)})
+        return TaintList(steps, {key: place for place, key in enumerate(order)})
 
     def step(self, written: Written, span: Span, dependence: Dependence, known: Role | None) -> Step:
         """Return a statement as a step; flows share equal steps."""

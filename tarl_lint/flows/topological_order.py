@@ -18,7 +18,7 @@ def in_order(
     key is placed as early as possible. Keys without a span are ignored.
     """
     left = dict(sorted(spans.items(), key=lambda item: item[1]))
-    bits = precedence.numbers.bits(left)
+    bits = precedence.bits.union(left)
     waiting: dict[
         int, list[int]
     ] = {}  # key → keys that wait for it; each key waits for one predecessor at a time
@@ -36,7 +36,7 @@ def in_order(
         if key not in left:
             continue
         del left[key]
-        bits ^= 1 << precedence.numbers[key]
+        bits ^= precedence.bits[key]
         order.append(key)
         for latter in waiting.pop(key, ()):
             former = precedence.first_of(latter, bits)

@@ -83,7 +83,7 @@ def shown(part: Part) -> tuple:
     order = {key: part.precedence.formers(key) for key in part.precedence.before}
     open_turns = {(a, b) for a, b in part.turns if a not in order.get(b, ())}
     return (
-        part.statement_of,
+        part.nodes,
         part.written.keys(),
         part.placed.keys(),
         {key: found for key, found in order.items() if found},

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tarl_lint.api import analyse
-from tarl_lint.flows.shortest_path import shortest_path
+from tarl_lint.flows.shortest_path import ShortestPaths
 
 CASES = sorted((Path(__file__).parent.parent / "cases").glob("*.py"))
 
@@ -40,10 +40,34 @@ def cheapest(formers: list[list[int]], statements: Mapping[int, int], start: int
 @given(graphs())
 def test_the_reported_path_is_a_shortest_one(graph: tuple[list[list[int]], dict[int, int]]) -> None:
     formers, statements = graph
-    path = shortest_path([0], {1}, formers.__getitem__, statements)
+    path = ShortestPaths([0], formers.__getitem__, statements.get).path_from({1})
     least = cheapest(formers, statements, 1, 0)
     assert len(path) <= (least + 1 if least < float("inf") else 0)
     assert set(path) <= set(statements.values())
+
+
+@given(graphs(), st.lists(st.sets(st.integers(0, 6)), min_size=1, max_size=3))
+def test_a_search_that_several_subscriptions_share_finds_the_paths_of_separate_searches(
+    graph: tuple[list[list[int]], dict[int, int]], starts: list[set[int]]
+) -> None:
+    formers, statements = graph
+    shared = ShortestPaths([0], formers.__getitem__, statements.get)
+    for start in starts:
+        reached = reached_from(start, formers)
+
+        def inside(node: int, reached: set[int] = reached) -> list[int]:
+            return [former for former in formers[node] if former in reached]
+
+        ends = [0] if 0 in reached else []
+        assert shared.path_from(start) == ShortestPaths(ends, inside, statements.get).path_from(start)
+
+
+def reached_from(start: set[int], formers: list[list[int]]) -> set[int]:
+    """Return the nodes that some nodes lead to."""
+    found = set(start)
+    while more := {node for node, before in enumerate(formers) if not found.isdisjoint(before)} - found:
+        found |= more
+    return found
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tarl_lint.flows.ends import Ends
 from tarl_lint.flows.precedence import Precedence
-from tarl_lint.flows.shortest_path import shortest_path
+from tarl_lint.flows.shortest_path import ShortestPaths
 from tarl_lint.flows.topological_order import in_order
 from tarl_lint.model import Span
 from tarl_lint.system import chains as module
@@ -75,7 +75,7 @@ def test_a_copy_of_a_relation_is_independent_and_nothing_precedes_itself():
 
 
 def path(formers: dict[int, list[int]], statements: dict[int, int], ends=(0,), starts=(9,)):
-    return shortest_path(ends, {*starts}, lambda node: formers.get(node, ()), statements)
+    return ShortestPaths(ends, lambda node: formers.get(node, ()), statements.get).path_from({*starts})
 
 
 def test_a_path_with_fewer_statements_is_shorter_however_many_nodes_it_has():
