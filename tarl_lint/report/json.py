@@ -18,7 +18,10 @@ OfStep = Callable[[Step], object]
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the document, indented and in ASCII, which no terminal or pipe can alter."""
+    """Yield the document, indented and in ASCII, which no terminal or pipe can alter.
+
+    Each finding is a line of its own here: the text of a large report is several times as large as its findings.
+    """
     known: dict[Step, Written] = {}  # a cache, because flows share most of their steps
 
     def written(step: Step) -> Written:
@@ -27,22 +30,29 @@ def report(result: Result, _view: View) -> Iterator[Line]:
             text = known[step] = Written(dumped(statement(step), STEP_LEVEL))
         return text
 
-    yield ((dumped(_document(result, written)), ""),)
+    head = dumped({**_head(result), "diagnostics": []})
+    if not result.findings:
+        yield ((head, ""),)
+        return
+    yield ((head.removesuffix("]\n}"), ""),)
+    for number, finding in enumerate(result.findings, 1):
+        comma = "," if number < len(result.findings) else ""
+        yield ((f"  {dumped(_diagnostic(finding, written), 2)}{comma}", ""),)
+    yield ((" ]\n}", ""),)
 
 
 def document(result: Result) -> dict[str, Any]:
     """Return all findings, including accepted flows, in the frozen order of keys."""
-    return _document(result, statement)
+    return {**_head(result), "diagnostics": [_diagnostic(finding, statement) for finding in result.findings]}
 
 
-def _document(result: Result, of_step: OfStep) -> dict[str, Any]:
+def _head(result: Result) -> dict[str, Any]:
     return {
         "format": FORMAT_VERSION,
         "tool": {"name": "tarl-lint", "version": __version__},
         "files": result.statistics.files,
         "errors": [{"path": e.path, "line": e.line, "message": e.message} for e in result.errors],
         **incomplete(result),
-        "diagnostics": [_diagnostic(finding, of_step) for finding in result.findings],
     }
 
 

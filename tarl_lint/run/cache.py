@@ -84,8 +84,11 @@ class Cache:
         )
 
     def put(self, key: str, report: Report) -> None:
-        """Store a report, unless it contains an internal error: the next version may not have that error."""
-        if not any(error.bug for error in report.errors):
+        """Store a report, unless it contains an internal error: the next version may not have that error.
+
+        Without a file, nothing is stored, since no later run can read it.
+        """
+        if self._file is not None and not any(error.bug for error in report.errors):
             parts = packed(report.findings), packed(report.errors), packed(report.cut), list(report.ended)
             self.put_entry(key, list(parts))
 

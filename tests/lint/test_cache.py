@@ -56,6 +56,12 @@ def test_the_cache_is_ignored_by_git(node, capsys):
     assert (PLACE / ".gitignore").read_text() == "*\n"
 
 
+def test_a_cache_without_a_file_stores_nothing():
+    kept = cache.Cache(None)
+    kept.put("key", cache.Report())
+    assert kept.report("key") is None
+
+
 def test_an_edited_file_is_analysed_again(node, capsys, analysed):
     lint(capsys)
     node.write_text(node.read_text().replace("vel = 5 * delta", "vel = 5"))

@@ -104,3 +104,12 @@ def test_the_text_is_ascii_and_parses_to_the_document(example, result):
     text = "\n".join(map(plain, render("json", changed, View())))
     assert text.isascii()
     assert json.loads(text) == document(changed)
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 3])
+def test_the_text_is_the_document_as_the_standard_library_indents_it(result, count):
+    """The text is written finding by finding; the bytes are those of the whole document."""
+    changed = replace(result, findings=result.findings[:count])
+    lines = [*map(plain, render("json", changed, View()))]
+    assert "\n".join(lines) == json.dumps(document(changed), indent=1)
+    assert all(line.count('"fingerprint"') <= 1 for line in lines)
