@@ -93,6 +93,13 @@ class Linker(Interpreter):
         while parts.connect(self):  # a new condition may add outcomes, until all parts have all of them
             self._settle()
         carry_nodes.settle(self.graph)
+        self._forget_runs()
+
+    def _forget_runs(self) -> None:
+        """Drop the records of finished calls, which only further runs to the fixpoint need, before flows are traced."""
+        for frame in self.frames.values():
+            frame.recorded = None
+        self.graph.forget_arrivals()
 
     def replay(self) -> None:
         """Run every root once more under a probe, which observes it."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ast import literal_eval
+from functools import lru_cache
 
 from tarl_lint.catalog import ENDPOINT_METHODS, MEASURES, METHODS
 from tarl_lint.interpret.interpreter import Interpreter
@@ -347,7 +348,16 @@ def _texts(ctx: Interpreter, mapping: Obj) -> Value:
     held = [n for n in names if ctx.store.get((mapping, n)) is not None]
     if not 0 < len(held) <= MAX_TEXTS or not all(n.startswith(("['", '["')) for n in held):
         return UNKNOWN
-    return Value(consts=frozenset(literal_eval(n[1:-1]) for n in held))
+    return Value(consts=frozenset(map(_text_of, held)))
+
+
+@lru_cache(maxsize=4096)
+def _text_of(field: str) -> object:
+    """Return the text that is the key of an element.
+
+    Each call of `literal_eval` leaves a reference cycle behind, and no collection frees it while an analysis runs.
+    """
+    return literal_eval(field[1:-1])
 
 
 def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:

@@ -335,6 +335,11 @@ class Graph:
         self._note(known)
         return known.nodes
 
+    def forget_arrivals(self) -> None:
+        """Drop the cached results about carriers; they are computed again at the next use."""
+        self.arrivals.clear()
+        self.ways_through.clear()
+
     def _by(self, carrier: int, item: int) -> Nodes | set[int]:
         """Return an item as passed on by one carrier; empty if it was not inside the object at that time."""
         parts = self.carried.get(carrier)

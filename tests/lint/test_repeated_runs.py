@@ -136,3 +136,10 @@ def test_if_an_object_now_stands_for_several_objects_only_entry_points_that_stor
     assert any(obj.many and obj.name == "Robot" for obj in machine.objects.values())
     assert machine.runs["on"] == 2
     assert machine.runs["other"] == 1
+
+
+def test_records_of_calls_are_dropped_when_no_entry_point_runs_again():
+    machine = linked("self.pub.publish(self.double(msg.data))")
+    assert machine.runs["on"] == 1
+    assert any(frame.function.name == "on" for frame in machine.frames.values())
+    assert all(frame.recorded is None for frame in machine.frames.values())

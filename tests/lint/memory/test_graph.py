@@ -154,6 +154,17 @@ def test_cached_and_uncached_queries_of_content_give_the_same_result(graph, node
     assert graph.arriving_through(item, {carrier}) == {item}
 
 
+def test_content_arrives_by_the_same_nodes_after_cached_results_were_dropped(graph, node):
+    item, carrier = node("item"), node("carrier")
+    graph.hold(carrier, frozenset([item]))
+    (first,) = graph.through(frozenset([item]), frozenset([carrier]))
+    second = graph.through(frozenset([first]), frozenset([carrier]))
+    graph.forget_arrivals()
+    assert not graph.ways_through
+    assert graph.through(frozenset([item]), frozenset([carrier])) == {first}
+    assert graph.through(frozenset([first]), frozenset([carrier])) == second
+
+
 def test_large_programs_do_not_track_the_carriers_of_content(graph, node, monkeypatch):
     item, carrier = node("item"), node("carrier")
     graph.hold(carrier, frozenset([item]))

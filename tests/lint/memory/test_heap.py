@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import itertools
 from dataclasses import replace
 
@@ -329,6 +330,16 @@ def test_a_negative_index_counts_from_the_end_if_the_length_is_known(ctx):
     assert (ctx.store.get((obj, "[0]")), ctx.store.get((obj, "[1]"))) == (ONE, TWO)
     updates.write_item(ctx, base, const(-3), Value(frozenset([3])))
     assert heap.read_field(ctx, obj, "[0]").deps == {1, 3}
+
+
+def test_reading_the_keys_of_a_mapping_again_leaves_no_reference_cycles(ctx):
+    """The garbage collector is paused during an analysis."""
+    mapping = made(ctx, "mapping", "b")
+    ctx.store.put((mapping, "['again']"), TWO)
+    keys = heap.keys(ctx, mapping, frozenset())
+    gc.collect()
+    assert heap.keys(ctx, mapping, frozenset()) == keys
+    assert gc.collect() == 0
 
 
 def test_the_keys_of_a_mapping_depend_on_the_data_that_chose_them(ctx):
