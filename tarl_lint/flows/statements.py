@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from tarl_lint.flows.call_chains import calls
 from tarl_lint.flows.statement_text import Texts, Written
@@ -11,16 +11,37 @@ from tarl_lint.memory.value_flow_graph import MERGED, Graph, Place
 from tarl_lint.models.ros.endpoints import SourceRecord
 
 
+class Found(dict[int, Written | None]):
+    """Node → its statement, or None without one; computed at the first use of the node."""
+
+    def __init__(self, graph: Graph, texts: Texts) -> None:
+        super().__init__()
+        self._places = graph.places
+        self._texts = texts
+
+    def __missing__(self, node: int) -> Written | None:
+        """Compute the entry of a node."""
+        found = self[node] = self.at(self._places[node])
+        return found
+
+    def at(self, place: Place) -> Written | None:
+        """Return the statement at a place; for an arriving message, the header of the callback."""
+        text = self._texts[place.frame.program.path]
+        if place.statement is not None:
+            return text.statement(place.statement.pos)
+        return text.function(place.pos) if place.role == "receive" else None
+
+
 class Keys(dict[int, int | None]):
     """Node → `id` of its statement, or None without one; computed at the first use of the node."""
 
-    def __init__(self, statement: Callable[[int], object | None]) -> None:
+    def __init__(self, found: Mapping[int, object | None]) -> None:
         super().__init__()
-        self._statement = statement
+        self._found = found
 
     def __missing__(self, node: int) -> int | None:
         """Compute the entry of a node."""
-        found = self._statement(node)
+        found = self._found[node]
         key = self[node] = None if found is None else id(found)
         return key
 
@@ -33,22 +54,15 @@ class Statements:
         self.texts = texts
         self.forward = forward  # tables from a node to the nodes that depend on it
         self._merged = {n for n, place in enumerate(graph.places) if place.role == MERGED}
-        self._statements: dict[int, Written | None] = {}
-        self.key_of = Keys(self.of)
+        # these tables do not refer to this object: a reference cycle would keep all of them in memory
+        self._found = Found(graph, texts)
+        self.key_of = Keys(self._found)
         self._formers: dict[int, list[int]] = {}
         self._chains: dict[tuple[Frame, Frame], Sequence[Written] | None] = {}
 
     def of(self, node: int) -> Written | None:
         """Return the statement of a node; for an arriving message, the header of the callback."""
-        if node not in self._statements:
-            self._statements[node] = self._at(self.graph.places[node])
-        return self._statements[node]
-
-    def _at(self, place: Place) -> Written | None:
-        text = self.texts[place.frame.program.path]
-        if place.statement is not None:
-            return text.statement(place.statement.pos)
-        return text.function(place.pos) if place.role == "receive" else None
+        return self._found[node]
 
     def arrivals(self, origin: SourceRecord) -> list[int]:
         """Return the statements (by `id`) at which messages of a source arrive."""
@@ -59,7 +73,7 @@ class Statements:
         """Return the statements whose calls lead from one frame to another; None if no calls do."""
         if (frame, outer) not in self._chains:
             places = calls(frame, outer)
-            found = [written for place in places if (written := self._at(place)) is not None]
+            found = [written for place in places if (written := self._found.at(place)) is not None]
             self._chains[frame, outer] = found if places else None
         return self._chains[frame, outer]
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from collections.abc import Iterator
 from typing import Final
 
+from tarl_lint.interpret.budget import MAX_ALIKE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, instances, recency, updates
@@ -27,7 +29,7 @@ def handed(ctx: Interpreter, frame: Frame, name: str) -> Value:
     module = ctx.module_objects[frame.program.name]
     classes = _classes(ctx, module, annotation)
     ctx.wanted.update(classes)
-    given = [instances.of_class(ctx, cls) for cls in classes]
+    given = [_some(instances.of_class(ctx, cls)) for cls in classes]
     several = isinstance(annotation, ast.Subscript) and last_name(annotation.value) in SEQUENCES
     value = join_all(one for one in given if one.pts)
     if not value.pts:
@@ -37,6 +39,17 @@ def handed(ctx: Interpreter, frame: Frame, name: str) -> Value:
     listed = recency.allocate(ctx, "sequence", frame, ("handed", name))
     updates.add_element(ctx, pointer(listed), value)
     return pointer(listed)
+
+
+def _some(value: Value) -> Value:
+    """Return a value with the first MAX_ALIKE objects of each class; these stand for all objects of the class."""
+    kept: list[Obj] = []
+    alike: Counter[object] = Counter()
+    for obj in value.objects:
+        alike[obj.info] += 1
+        if alike[obj.info] <= MAX_ALIKE:
+            kept.append(obj)
+    return value if len(kept) == len(value.pts) else Value(value.deps, frozenset(kept), value.consts)
 
 
 def written(function: ir.Function) -> dict[str, ast.expr]:

@@ -34,7 +34,8 @@ IRRELEVANT_CALLS_LIMIT = 1_000  # maximum number of statements in all irrelevant
 MAX_ROUNDS = 40  # maximum number of fixpoint rounds over the roots
 LARGE_RUN = 500  # a root whose last run took at least this many statements is run after smaller ones
 MAX_GENERATIONS = 1  # maximum number of nested restarts of a thread or callback that starts itself
-# maximum number of objects of one class with separate roots for a method that a thread or framework runs
+# maximum number of objects of one class with separate roots for a method that a thread or framework runs, and that
+# code outside the files passes to a function
 MAX_ALIKE = 6
 # maximum number of elements over which a loop is unrolled that registers something or makes objects of analysed classes
 MAX_ROWS = 16

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import gc
 from collections import Counter
 
 import pytest
@@ -143,3 +144,14 @@ def test_records_of_calls_are_dropped_when_no_entry_point_runs_again():
     assert machine.runs["on"] == 1
     assert any(frame.function.name == "on" for frame in machine.frames.values())
     assert all(frame.recorded is None for frame in machine.frames.values())
+
+
+def test_tracing_flows_leaves_no_reference_cycles():
+    """The garbage collector is paused during an analysis, so a cycle would keep each program's graph in memory."""
+    machine = linked("self.pub.publish(self.x)", "self.x = msg.data")
+    tracer = Tracer(machine)
+    assert tracer.flows()
+    tracer.texts.release()
+    gc.collect()
+    del tracer
+    assert gc.collect() == 0

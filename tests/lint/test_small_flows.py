@@ -407,11 +407,11 @@ def test_calls_between_a_condition_and_its_value_are_steps_in_order():
     aside = frame()
     places = [SimpleNamespace(frame=one, role="") for one in (inner, outer, aside)]
     of = graph(3, gates={0: (0, frozenset({(1, "then"), (2, "then")}))}, places=places)
-    known = {0: "value", 1: "condition", 2: "elsewhere"}
+    known: dict[int, str | None] = {0: "value", 1: "condition", 2: "elsewhere"}
     statements = SimpleNamespace(
         graph=of,
         of=known.get,
-        key_of=Keys(known.get),
+        key_of=Keys(known),
         nodes_before=lambda node: (),
         nodes_after=lambda nodes: (),
         calls=lambda one, other: ["far", "near"] if (one, other) == (inner, outer) else None,
@@ -424,7 +424,7 @@ def test_calls_between_a_condition_and_its_value_are_steps_in_order():
         (id("near"), id("value")),
     }
     assert [*found.passed.values()] == ["far", "near"]
-    del known[1]
+    known[1] = None
     statements.key_of.clear()
     assert [*parts.of({0, 1}, Part()).entrances] == [(id("far"), id("near")), (id("near"), id("value"))]
     assert not parts.of({0, 2}, Part()).entrances  # no calls lead to the other condition

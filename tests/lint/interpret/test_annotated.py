@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from tarl_lint.interpret import annotated
+from tarl_lint.interpret.budget import MAX_ALIKE
+from tarl_lint.memory.values import Obj, Value
 from tests.lint.models.marked import differing
 
 HEAD = """\
@@ -126,3 +129,16 @@ CASES = dict(part.split("\n", 1) for part in PROGRAMS.split("### ")[1:])
 @pytest.mark.parametrize("title", CASES)
 def test_parameters_get_the_objects_that_other_code_passes(title):
     assert differing(HEAD + CASES[title]) == {}
+
+
+def test_a_few_objects_of_each_class_stand_for_all():
+    first, second = Obj("class", "A"), Obj("class", "B")
+    many = [Obj("instance", number) for number in range(MAX_ALIKE + 2)]
+    for obj in many:
+        obj.info = first
+    other = Obj("instance", "other")
+    other.info = second
+    whole = Value(frozenset([3]), frozenset([*many, other]))
+    kept = annotated._some(whole)
+    assert (kept.deps, kept.objects) == (whole.deps, [*many[:MAX_ALIKE], other])
+    assert annotated._some(kept) is kept
