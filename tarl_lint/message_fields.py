@@ -154,10 +154,60 @@ KNOWN_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     "GeoPose": _fields("position", "GeoPoint") | _fields("orientation", "Quaternion"),
     "GeoPointStamped": HEADED | _fields("position", "GeoPoint"),
     "GeoPoseStamped": HEADED | _fields("pose", "GeoPose"),
+    "SetBool.Request": _fields("data"),
+    "SetBool.Response": _fields("success message"),
+    "Trigger.Response": _fields("success message"),
+    "GetMap.Response": _fields("map", "OccupancyGrid"),
+    "GetPlan.Request": _fields("start goal", "PoseStamped") | _fields("tolerance"),
+    "GetPlan.Response": _fields("plan", "Path"),
+}
+# type → `field[]` → type of the elements of a list
+ELEMENTS: Final[Mapping[str, Mapping[str, str]]] = {
+    "DiagnosticArray": {"status[]": "DiagnosticStatus"},
+    "DiagnosticStatus": {"values[]": "KeyValue"},
+    "Polygon": {"points[]": "Point32"},
+    "PoseArray": {"poses[]": "Pose"},
+    "Goals": {"goals[]": "PoseStamped"},
+    "GridCells": {"cells[]": "Point"},
+    "Path": {"poses[]": "PoseStamped"},
+    "Trajectory": {"points[]": "TrajectoryPoint"},
+    "JoyFeedbackArray": {"array[]": "JoyFeedback"},
+    "MultiDOFJointState": {"transforms[]": "Transform", "twist[]": "Twist", "wrench[]": "Wrench"},
+    "MultiEchoLaserScan": {"ranges[]": "LaserEcho", "intensities[]": "LaserEcho"},
+    "PointCloud": {"points[]": "Point32", "channels[]": "ChannelFloat32"},
+    "PointCloud2": {"fields[]": "PointField"},
+    "MultiArrayLayout": {"dim[]": "MultiArrayDimension"},
+    "JointTrajectory": {"points[]": "JointTrajectoryPoint"},
+    "Marker": {"points[]": "Point", "colors[]": "ColorRGBA"},
+    "MarkerArray": {"markers[]": "Marker"},
+}
+
+
+def _camera(names: str) -> dict[str, str]:
+    """Return the fields of a CameraInfo whose matrices have these names."""
+    others = {name: kind for name, kind in ALL_FIELDS["CameraInfo"].items() if name.lower() not in "dkrp"}
+    return others | _fields(names)
+
+
+_TIME: Final = "builtin_interfaces/Time"
+# "1" or "2", the release of ROS → types whose fields differ in the other one
+BY_RELEASE: Final[Mapping[str, Mapping[str, Mapping[str, str]]]] = {
+    "1": {
+        "CameraInfo": _camera("D K R P"),
+        "Header": _fields("seq frame_id") | _fields("stamp", _TIME),
+        _TIME: _fields("secs nsecs to_sec to_nsec to_time is_zero set canon from_sec from_seconds now"),
+    },
+    "2": {
+        "CameraInfo": _camera("d k r p"),
+        "Header": _fields("frame_id") | _fields("stamp", _TIME),
+        _TIME: _fields("sec nanosec"),
+    },
 }
 # package → the names in KNOWN_FIELDS that may be types of this package
 PACKAGES: Final[Mapping[str, frozenset[str]]] = {
-    **dict.fromkeys(("std_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs"), frozenset(ALL_FIELDS)),
+    **dict.fromkeys(("std_msgs", "geometry_msgs", "sensor_msgs"), frozenset(ALL_FIELDS)),
+    "nav_msgs": frozenset([*ALL_FIELDS, "GetMap.Response", "GetPlan.Request", "GetPlan.Response"]),
+    "std_srvs": frozenset(["SetBool.Request", "SetBool.Response", "Trigger.Response"]),
     "trajectory_msgs": frozenset(["JointTrajectory", "JointTrajectoryPoint"]),
     "ackermann_msgs": frozenset(["AckermannDrive", "AckermannDriveStamped"]),
     "control_msgs": frozenset(["GripperCommand"]),

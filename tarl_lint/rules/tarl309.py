@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Final
 
-from tarl_lint.message_fields import KNOWN_FIELDS
+from tarl_lint.message_fields import BY_RELEASE, KNOWN_FIELDS
 from tarl_lint.model import Finding
 from tarl_lint.system.fields import lacking
 from tarl_lint.system.model import Interface, Misfit, System
@@ -116,14 +116,23 @@ def findings(system: System) -> Iterator[Finding]:
         one.interface.path: one.interface for one in system.instances if one.interface
     }.values():
         for misfit in (*interface.misfits, *_in_workspace(interface, known)):
-            fields = list(known[misfit.type])
-            near = get_close_matches(misfit.field, fields, 1)
+            fields = _fields(misfit, known)
+            near = [one for one in fields if one.lower() == misfit.field.lower()]
+            near = near or get_close_matches(misfit.field, fields, 1)
             hint = f"did you mean {near[0]}?" if near else f"it has {', '.join(fields)}"
             message = f"{misfit.type} has no field {misfit.field}: {hint}"
             about = f"{misfit.type}.{misfit.field}"
             yield Finding(
                 CODE, misfit.span, message, about=about, place=misfit.place, package=interface.package
             )
+
+
+def _fields(misfit: Misfit, known: Mapping[str, Mapping[str, str]]) -> list[str]:
+    """Return the fields of a message type, in the release of ROS in which it lacks the field."""
+    releases = (known, *(BY_RELEASE[one] for one in sorted(BY_RELEASE)))
+    given = [one[misfit.type] for one in releases if misfit.type in one]
+    fields = next((one for one in given if misfit.field not in one), {})
+    return [one for one in fields if not one.endswith("[]")]
 
 
 def _in_workspace(interface: Interface, known: Mapping[str, Mapping[str, str]]) -> Iterator[Misfit]:
