@@ -4,9 +4,11 @@ The last message wins, so the robot jerks as it follows both nodes in turn. Give
 a multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: the game controller and the autonomous
 control published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
 
-The rule covers commands such as `Twist`, and numbers on topics such as `wheel_velocity/command`, if the commands of
-each node depend on a subscribed topic. The rule does not cover nodes that are started under a condition known only on
-the robot, because one of them may replace the other.
+The rule covers commands such as `Twist` and `JointTrajectory`, and numbers on topics such as `wheel/command` or
+`left_thrust`, if the commands of each node depend on a subscribed topic. Well-known programs without source, such as
+`teleop_twist_joy`, `move_base` and `twist_mux`, count beside a node whose code is read. The rule does not cover nodes
+that only publish constants, such as a stop, and nodes that are started under a condition known only on the robot,
+because one of them may replace the other.
 """
 
 from __future__ import annotations
@@ -16,8 +18,8 @@ from typing import Final
 
 from tarl_lint.model import Finding
 from tarl_lint.system.hazards import at_node
-from tarl_lint.system.model import Instance, System
-from tarl_lint.system.staleness import commands
+from tarl_lint.system.model import Endpoint, Instance, System, place_of
+from tarl_lint.system.command_topics import is_command
 
 CODE: Final = "TARL305"
 SUMMARY: Final = "two nodes publish commands on the same topic"
@@ -111,10 +113,18 @@ def findings(system: System) -> Iterator[Finding]:
     for instance in system.instances:
         for finding in instance.interface.flows if instance.interface is not None else ():
             sink = finding.flow.sink if finding.flow is not None else None
-            if sink is None or instance.node.condition or not commands(sink) or len(sink.topics) != 1:
+            if (
+                sink is None
+                or instance.node.condition
+                or not is_command(sink.type, sink.topics)
+                or len(sink.topics) != 1
+            ):
                 continue
             topic = instance.resolve(sink.topics[0])
             authors.setdefault(topic, {}).setdefault(instance.name, (instance, sink.topics[0]))
+    for topic, instance, end in _of_known_programs(system):
+        if topic in authors:
+            authors[topic].setdefault(instance.name, (instance, end.names[0]))
     for topic, found in sorted(authors.items()):
         (_, (first, _)), *others = found.items()
         for name, (instance, in_code) in others:
@@ -122,3 +132,11 @@ def findings(system: System) -> Iterator[Finding]:
             yield at_node(
                 CODE, instance, message, f"{in_code}, beside {first.node.package}/{first.node.executable}"
             )
+
+
+def _of_known_programs(system: System) -> Iterator[tuple[str, Instance, Endpoint]]:
+    """Yield the commands of programs that are known without source, such as teleoperation and multiplexers."""
+    for topic, instance, end in system.named("publishes"):
+        known = instance.interface is None and not instance.node.condition and end.span == place_of(instance)
+        if known and is_command(end.type, (topic,)):
+            yield topic, instance, end

@@ -6,10 +6,14 @@ last command. For this reason, a Pioneer robot collided with expensive equipment
 (https://github.com/amor-ros-pkg/rosaria/pull/51). Store the time of the last message, and stop the robot when the
 message is too old.
 
-The rule reports nothing if the program reads the time anywhere; the stamp of a message does not count. The rule also
-reports nothing if the program resets the stored values to `None` or, in the function that publishes, to a constant.
-Words such as `timeout`, `last_` and `counter` in the program also suppress the report, because they suggest that the
-program detects old messages in another way.
+The rule covers the commands of TARL305, such as velocities, trajectories, and numbers on topics such as
+`blade_controller/command`. A timer or loop must publish them, directly or through functions, from attributes, globals
+or tables that a callback has stored.
+
+The rule reports nothing if code that runs again and again reads the time or has a word such as `timeout`, `last_` and
+`counter`, because it may detect old messages; sleeps and the stamps of messages do not count. Words such as `watchdog`
+and `deadline` suppress the report anywhere in the program. The rule also reports nothing if the stored value is set to
+`None`, or if code that runs again and again resets or changes it.
 """
 
 from __future__ import annotations

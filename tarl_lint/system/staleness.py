@@ -1,118 +1,259 @@
-"""Find publish calls that go on when no message arrives, in loops and timers that never read the time."""
+"""Find publish calls that go on when no message arrives, in loops and timers that never check the age of a message."""
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
-from tarl_lint.model import Finding, Flow, Sink
+from tarl_lint.model import Finding, Flow
 from tarl_lint.read.source import Module
+from tarl_lint.system.command_topics import is_command
+from tarl_lint.trees import last_name
 
-COMMANDS: Final = frozenset(
-    [
-        "Twist",
-        "TwistStamped",
-        "AckermannDrive",
-        "AckermannDriveStamped",
-        "Wrench",
-        "WrenchStamped",
-        "AttitudeTarget",
-    ]
-)
-_NUMBERS: Final = frozenset(["Float32", "Float64", "Float32MultiArray", "Float64MultiArray"])
-_MOTION: Final = re.compile(
-    r"(?=.*(vel|speed|effort|torque|throttle|thrust|power|force|current|voltage|pwm|duty)).*(cmd|command|setpoint)"
-)
 _TIMES: Final = re.compile(
-    r"\b(now|get_time|get_rostime|Time|time|monotonic|stamp|clock|timeout|wait_for_message|Duration)\b|watchdog|stale|"
+    r"\bnow\(|\b(get_time|get_rostime|Time|time|monotonic|stamp|clock|timeout|wait_for_message|Duration)\b|watchdog|stale|"
     r"last_|_time\b|elapsed|_age\b|\bage\b|fresh|alive|heartbeat|deadman|counter|countdown|received|_new\b|\bnew_|updated"
+)
+# words that show a watchdog wherever they are in the program
+_WATCHDOGS: Final = re.compile(
+    r"watchdog|deadline|liveliness|SubscriptionEventCallbacks|heartbeat|deadman|wait_for_message|threading\.Timer\(|"
+    r"oneshot\s*=\s*True"
 )
 # uses of the time that do not compare it: pauses, timers, and the stamps of messages
 _SLEEPS: Final = re.compile(
     r"\bheader\.stamp\s*=(?!=)[^,\n]*|\bstamp=[^=,\n][^,\n]*\(\)|"
     r"\btime\.sleep\(|\bimport time\b|\bDuration\([^)]*\)|create_(wall_)?timer\([^)]*\)|rospy\.Timer\([^)]*\)"
 )
+_TIMERS: Final = frozenset(["Timer", "create_timer", "create_wall_timer"])
+# functions whose callbacks run for a message, a request, or once
+_REGISTERS: Final = frozenset(
+    ["Subscriber", "create_subscription", "registerCallback", "Service", "create_service", "SimpleActionServer",
+     "ActionServer", "on_shutdown", "add_done_callback", "Server", "add_on_set_parameters_callback", "send_goal"]
+)  # fmt: skip
+_SETUP: Final = frozenset(["__init__", "on_configure", "on_activate", "setup"])
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Finding, ...]:
     """Return the flows into commands that a timer or loop publishes again and again from the last message.
 
-    One function receives the message; another one publishes it and clears nothing that the first one stored. No word in
-    the program suggests that it checks the age of the message.
+    One function receives the message and stores it; another one publishes it, and no function that runs again and again
+    clears what was stored or seems to check the age of the message.
     """
-    texts = {module.path: _SLEEPS.sub("", module.text) for module in modules}
-    trees = {module.path: module.tree for module in modules}
-    if any(_TIMES.search(text) for text in texts.values()):
+    flows = [one.flow for one in findings if one.flow is not None]
+    if not any(is_command(one.sink.type, one.sink.topics) for one in flows):
         return ()
-    callbacks = {
-        name.strip()
-        for one in findings
-        if one.flow is not None
-        for name in one.flow.source.callback.split(",")
-    }
-    return tuple(
-        one
-        for one in findings
-        if one.flow is not None
-        and _repeated(one.flow, texts, callbacks)
-        and not _consumed(one.flow, trees.get(one.flow.sink.span.path))
-    )
+    program = _Program(modules, {name for one in flows for name in _callbacks(one)})
+    if any(_WATCHDOGS.search(_SLEEPS.sub("", module.text)) for module in modules):
+        return ()
+    return tuple(one for one in findings if one.flow is not None and program.goes_on(one.flow))
 
 
-def commands(sink: Sink) -> bool:
-    """Return whether a publish call sends a command to move: by its type, or numbers on a topic with such a name."""
-    if sink.type in _NUMBERS:
-        return any(_MOTION.match(topic.lower()) for topic in sink.topics)
-    return sink.type in COMMANDS
+def _callbacks(flow: Flow) -> set[str]:
+    return {name.strip() for name in flow.source.callback.split(",")} - {""}
 
 
-def _consumed(flow: Flow, tree: ast.Module | None) -> bool:
-    """Return whether the function that publishes an attribute also resets this attribute to a constant."""
-    name = flow.sink.qualname.rpartition(".")[2]
-    used = " ".join(step.code for step in flow.steps if step.site.qualname == flow.sink.qualname)
-    return any(
-        re.search(rf"{re.escape(ast.unparse(target))}\b", used)
-        for function in (ast.walk(tree) if tree is not None else ())
-        if isinstance(function, ast.FunctionDef) and function.name == name
-        for node in ast.walk(function)
-        if isinstance(node, ast.Assign) and _reset(node.value)
-        for target in node.targets
-        if isinstance(target, ast.Attribute) and ast.unparse(target.value) == "self"
-    )
+class _Program:
+    """The functions of a program by their names, and which of them call which. `callbacks` receive messages."""
+
+    def __init__(self, modules: Sequence[Module], callbacks: set[str]) -> None:
+        self._callbacks = callbacks
+        self._handlers = {name.rpartition(".")[2] for name in callbacks}
+        self._timed: set[str] = set()  # functions that timers call
+        self._ticks: list[ast.expr] = []  # callbacks of timers that are no names
+        self._texts = {module.path: module.text for module in modules}
+        self._trees = {module.path: module.tree for module in modules}
+        self._functions: dict[str, list[tuple[str, _Function | ast.Module]]] = {}
+        self._callers: dict[
+            str, list[tuple[str, bool]]
+        ] = {}  # function → callers, and whether each calls it in a loop
+        for module in modules:
+            self._functions.setdefault("", []).append((module.path, module.tree))
+            self._read(module.path, module.tree, "", looped=False)
+
+    def _read(self, path: str, node: ast.AST, inside: str, *, looped: bool) -> None:
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, _Function):
+                self._functions.setdefault(child.name, []).append((path, child))
+                self._read(path, child, child.name, looped=False)
+                continue
+            if isinstance(child, ast.Call):
+                self._callers.setdefault(last_name(child.func), []).append((inside, looped))
+                self._registered(child)
+            again = looped or (isinstance(child, ast.While) and not isinstance(node, ast.expr))
+            self._read(path, child, inside, looped=again)
+
+    def _registered(self, call: ast.Call) -> None:
+        given = [*call.args, *(one.value for one in call.keywords)]
+        name = last_name(call.func)
+        if name in _TIMERS and len(given) > 1:
+            for one in given[1:]:
+                called = (
+                    one.args[0]
+                    if isinstance(one, ast.Call) and last_name(one.func) == "partial" and one.args
+                    else one
+                )
+                self._timed |= {last_name(called)} - {""}
+                self._ticks += [one] if isinstance(one, ast.Lambda) else []
+                self._timed |= {last_name(each.func) for each in ast.walk(one) if isinstance(each, ast.Call)}
+        elif name in _REGISTERS:
+            self._handlers |= {last_name(one) for one in given} - {""}
+
+    def goes_on(self, flow: Flow) -> bool:
+        """Return whether a command is published again and again from a message that was stored."""
+        explicit = flow.kind == "explicit" and "ubscri" in flow.source.api
+        if not explicit or not is_command(flow.sink.type, flow.sink.topics):
+            return False
+        callbacks = _callbacks(flow)
+        stored = self._stored(flow, callbacks)
+        after = [step for step in flow.steps if step.site.qualname not in callbacks]
+        used = [one for one in stored if any(re.search(_word(one), step.code) for step in after)]
+        publishing = {
+            name
+            for step in after
+            for name in [step.site.qualname.rpartition(".")[2]]
+            if step.role != "register"
+        }
+        if not used or flow.sink.qualname in self._callbacks or not self._again(flow):
+            return False
+        running = (
+            self._running() | {flow.sink.qualname.rpartition(".")[2]} | (publishing - _SETUP - self._handlers)
+        )
+        return not self._checks_time(running) and not any(self._cleared(one, running) for one in used)
+
+    def _stored(self, flow: Flow, callbacks: set[str]) -> set[str]:
+        """Return the attributes, globals and elements of tables in which the callbacks store the message."""
+        found: set[str] = set()
+        for step in flow.steps:
+            name = re.match(r"(self\.\w+|\w+)\s*(\[[^\]]*\])*(\.\w+)*\s*=(?!=)", step.code)
+            if name is None or step.site.qualname not in callbacks or step.role != "assign":
+                continue
+            if name[1].startswith("self.") or name[2] or self._shared(name[1], step.span.path):
+                found.add(name[1])
+        return found
+
+    def _shared(self, name: str, path: str) -> bool:
+        nodes = ast.walk(self._trees[path]) if path in self._trees else iter(())
+        return any(isinstance(one, ast.Global | ast.Nonlocal) and name in one.names for one in nodes)
+
+    def _again(self, flow: Flow) -> bool:
+        """Return whether a timer or a loop makes the publish call, directly or through functions."""
+        name, line, path = flow.sink.qualname.rpartition(".")[2], flow.sink.span.line, flow.sink.span.path
+        if any(one.lineno <= line <= (one.end_lineno or 0) for one in self._ticks) or self._looped(
+            name, path, line
+        ):
+            return True
+        unknown = name in self._functions and name not in self._callers
+        if unknown and name not in self._handlers | _SETUP | {"", "execute"}:
+            return True  # something unknown calls it
+        pending, seen = [name], {name}
+        while pending:
+            one = pending.pop()
+            if one in self._timed and one not in self._handlers:
+                return True
+            for caller, looped in self._callers.get(one, ()):
+                if caller in self._handlers:
+                    continue
+                if looped:
+                    return True
+                pending += [caller] if caller not in seen else []
+                seen.add(caller)
+        return False
+
+    def _looped(self, name: str, path: str, line: int) -> bool:
+        """Return whether a line of a function is in a `while` of it."""
+        return any(
+            isinstance(node, ast.While) and node.lineno <= line <= (node.end_lineno or 0)
+            for where, function in self._functions.get(name, ())
+            if where == path
+            for node in _own(function)
+        )
+
+    def _running(self) -> set[str]:
+        """Return the functions that timers and loops call, directly or through others."""
+        found = {name for name in self._timed if name in self._functions}
+        found |= {name for name, callers in self._callers.items() if name in self._functions and any(
+            looped and caller not in self._handlers for caller, looped in callers)}  # fmt: skip
+        pending = [*found]
+        while pending:
+            one = pending.pop()
+            for name, callers in self._callers.items():
+                if (
+                    name in self._functions
+                    and name not in found
+                    and any(caller == one for caller, _ in callers)
+                ):
+                    found.add(name)
+                    pending.append(name)
+        return found
+
+    def _checks_time(self, running: set[str]) -> bool:
+        called = {
+            name for name, callers in self._callers.items() if any(one in running for one, _ in callers)
+        }
+        for name in running | called:
+            for path, function in self._functions.get(name, ()):
+                if _TIMES.search(_SLEEPS.sub("", self._text(path, function))):
+                    return True
+        return False
+
+    def _text(self, path: str, function: _Function | ast.Module) -> str:
+        """Return the text of a function; of a module, that of its loops."""
+        lines = self._texts[path].split("\n")
+        if isinstance(function, _Function):
+            return "\n".join(lines[function.lineno - 1 : function.end_lineno])
+        loops = (one for one in _own(function) if isinstance(one, ast.While))
+        return "\n".join("\n".join(lines[one.lineno - 1 : one.end_lineno]) for one in loops)
+
+    def _cleared(self, name: str, running: set[str]) -> bool:
+        """Return whether code sets a stored value to None, or a function that runs again changes it without a message."""
+        for where, functions in self._functions.items():
+            if where in _SETUP or where == "":
+                continue
+            for _, function in functions:
+                for target, value in _changes(function):
+                    if ast.unparse(target).partition("[")[0] == name and (
+                        (isinstance(value, ast.Constant) and value.value is None)
+                        or (
+                            where not in self._handlers
+                            and (where in running or value is None)
+                            and _reset(value)
+                        )
+                    ):
+                        return True
+        return False
 
 
-def _reset(value: ast.expr) -> bool:
-    """Return whether a value is a constant, or a new object without arguments."""
+def _word(name: str) -> str:
+    return rf"(?<![\w.]){re.escape(name)}\b"
+
+
+def _own(function: ast.AST) -> Iterator[ast.AST]:
+    """Yield the nodes of a function or module without those of functions inside it."""
+    for child in ast.iter_child_nodes(function):
+        if not isinstance(child, _Function):
+            yield child
+            yield from _own(child)
+
+
+def _changes(function: ast.AST) -> Iterator[tuple[ast.expr, ast.expr | None]]:
+    """Yield what a function assigns, with its value; None for what it changes in place or takes out."""
+    for node in ast.walk(function):
+        match node:
+            case ast.Assign(targets=targets, value=value):
+                yield from ((one, value) for one in targets)
+            case ast.AugAssign(target=target):
+                yield target, None
+            case ast.Delete(targets=targets):
+                yield from ((one, None) for one in targets)
+            case ast.Call(func=ast.Attribute(value=owner, attr="pop" | "popleft" | "clear" | "get_nowait")):
+                yield owner, None
+
+
+def _reset(value: ast.expr | None) -> bool:
+    """Return whether a value is a constant, or a new object without arguments; None stands for a change in place."""
     if isinstance(value, ast.Call):
         return not value.args and not value.keywords and isinstance(value.func, ast.Name)
-    return isinstance(value, ast.Constant)
-
-
-def _repeated(flow: Flow, texts: Mapping[str, str], every: Set[str]) -> bool:
-    """Return whether the publish call of a flow runs outside all callbacks of messages."""
-    if flow.kind != "explicit" or not commands(flow.sink) or "ubscri" not in flow.source.api:
-        return False
-    callbacks = {name.strip() for name in flow.source.callback.split(",")}
-    if flow.sink.qualname in every or not callbacks - {""}:
-        return False
-    stored = [step for step in flow.steps if step.site.qualname in callbacks and step.role == "assign"]
-    attributes = {found[1] for step in stored if (found := re.match(r"self\.(\w+)\b[^=]*=", step.code))}
-    if not attributes:
-        return False
-    cleared = "|".join(map(re.escape, sorted(attributes)))
-    text = texts.get(flow.sink.span.path, "")
-    used = rf"self\.({cleared})\b"
-    publishing = [step for step in flow.steps if step.site.qualname == flow.sink.qualname]
-    called = re.search(rf"self\.{re.escape(flow.sink.qualname.rpartition('.')[2])}\(", text)
-    return (
-        called is None
-        and not re.search(rf"{used}\s*=\s*None", _without_init(text))
-        and any(re.search(used, step.code) for step in publishing)
-    )
-
-
-def _without_init(text: str) -> str:
-    """Return a text without its `__init__` methods, in which attributes start as None."""
-    return re.sub(r"def __init__\(.*?(?=\n    def |\n\S|\Z)", "", text, flags=re.DOTALL)
+    return value is None or isinstance(value, ast.Constant)
