@@ -21,20 +21,14 @@ are often started elsewhere.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
-from tarl_lint.system.hazards import (
-    at_end,
-    differ,
-    in_private_names,
-    single,
-    spelled_alike,
-    under_own_name,
-)
-from tarl_lint.system.model import System
-from tarl_lint.workspace.conditions import exclusive
+from tarl_lint.system.hazards import at_end, differ, single
+from tarl_lint.system.lonely_ends import Lonely, near
+from tarl_lint.system.model import Instance, System
 
 CODE: Final = "TARL301"
 SUMMARY: Final = "a subscription has no publisher, and a publisher with a similar name has no subscriber"
@@ -145,30 +139,32 @@ def findings(system: System) -> Iterator[Finding]:
     published, subscribed = (
         {name for name, _, _ in system.named(role)} for role in ("publishes", "subscribes")
     )
-    lonely = [(name, who, end) for name, who, end in system.ends("publishes") if name not in subscribed]
+    lonely = [
+        Lonely(name, who, replace(end, type=end.type or _passed_on(who, system)))
+        for name, who, end in system.ends("publishes")
+        if name not in subscribed
+    ]
     for name, who, end in system.ends("subscribes"):
         if name in published or not single(end) or len(end.names) > 1:
             continue
-        near = sorted(
-            (other, them.name, under_own_name(name, other, them))
-            for other, them, beyond in lonely
-            if them is not who
-            and single(beyond)
-            and not differ(end, beyond)
-            and (
-                spelled_alike(name, other)
-                or in_private_names(name, other, who, them)
-                or under_own_name(name, other, them)
-            )
-            and not exclusive(who.node, them.node)
+        alike = near(
+            system,
+            Lonely(name, who, end),
+            [one for one in lonely if one.node is not who and single(one.end) and not differ(end, one.end)],
         )
-        # only the node itself publishes on its private names, and this node was read
-        own = [one for one in near if one[1] == name.rpartition("/")[0] or one[2]]
-        near = near if system.complete(end) else own
-        if near:
+        if alike:
             message = f"{who.name} subscribes to {name} ({end.type}), which no node publishes; "
             message += (
-                " and ".join(f"{node} publishes {other}" for other, node, _ in near)
+                " and ".join(f"{one.node.name} publishes {one.name}" for one in alike)
                 + ", to which no node subscribes"
             )
             yield at_end(CODE, who, end, message, topic_text(end.in_code))
+
+
+def _passed_on(who: Instance, system: System) -> str:
+    """Return the type of the messages that a relay passes on: that of the publishers of its input; "" if unknown."""
+    heard = (
+        {name for name, _ in who.ends("subscribes")} if who.interface is None and who.known.through else set()
+    )
+    types = {end.type for name, _, end in system.named("publishes") if name in heard}
+    return types.pop() if len(types) == 1 else ""

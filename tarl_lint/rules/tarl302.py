@@ -1,9 +1,12 @@
-"""TARL302: publisher and subscription of a topic have different types.
+"""TARL302: publisher and subscription of a topic, or client and server of a service, have different types.
 
 ROS refuses the connection, and no message arrives. rospy logs a warning; rclpy usually logs nothing. For
 example, some nodes use `Twist` and others `TwistStamped`
 (https://github.com/ros-teleop/teleop_twist_keyboard/issues/39). Two packages may also have types of the same
 name, such as `std_msgs/String` and `my_msgs/String`.
+
+Clients and servers of a service or an action are compared in the same way: a call of another type fails, and ROS 2
+never finds the server.
 
 The rule reports only types that the code names by constants. Packages are compared only if both are known. If a class
 comes from another module of the program, its package is not known.
@@ -17,11 +20,13 @@ from typing import Final
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
 from tarl_lint.system.hazards import at_end, differ
-from tarl_lint.system.model import Endpoint, System
+from tarl_lint.system.model import Endpoint, Role, System
 from tarl_lint.workspace.conditions import exclusive
 
 CODE: Final = "TARL302"
-SUMMARY: Final = "publisher and subscription of a topic have different types"
+SUMMARY: Final = (
+    "publisher and subscription of a topic, or client and server of a service, have different types"
+)
 
 INVALID: Final = (
     """
@@ -152,20 +157,29 @@ VALID: Final = (
 )
 
 
+# role of an end → role of the other end, and what the message says about both
+_ROLES: Final[tuple[tuple[Role, Role, str, str], ...]] = (
+    ("subscribes", "publishes", "subscribes to", "publishes"),
+    ("calls", "serves", "calls", "offers"),
+    ("asks", "performs", "sends goals to", "performs"),
+)
+
+
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each subscription whose type no publisher of its topic has."""
-    for name, who, end in system.named("subscribes"):
-        others = {
-            (them.name, beyond)
-            for other, them, beyond in system.named("publishes")
-            if other == name and len(beyond.names) == 1 and not exclusive(who.node, them.node)
-        }
-        if len(end.names) == 1 and others and all(differ(end, beyond) for _, beyond in others):
-            alike = any(beyond.type == end.type for _, beyond in others)
-            published = sorted((node, _shown(beyond, alike)) for node, beyond in others)
-            theirs = " and ".join(f"{node} publishes {kind}" for node, kind in dict.fromkeys(published))
-            message = f"{who.name} subscribes to {name} as {_shown(end, alike)}, but {theirs}"
-            yield at_end(CODE, who, end, message, topic_text(end.in_code))
+    """Yield a hazard for each subscription or client whose type no other end of its topic or service has."""
+    for role, opposite, does, others_do in _ROLES:
+        for name, who, end in system.named(role):
+            others = {
+                (them.name, beyond)
+                for other, them, beyond in system.named(opposite)
+                if other == name and len(beyond.names) == 1 and not exclusive(who.node, them.node)
+            }
+            if len(end.names) == 1 and others and all(differ(end, beyond) for _, beyond in others):
+                alike = any(beyond.type == end.type for _, beyond in others)
+                offered = sorted((node, _shown(beyond, alike)) for node, beyond in others)
+                theirs = " and ".join(f"{node} {others_do} {kind}" for node, kind in dict.fromkeys(offered))
+                message = f"{who.name} {does} {name} as {_shown(end, alike)}, but {theirs}"
+                yield at_end(CODE, who, end, message, topic_text(end.in_code))
 
 
 def _shown(endpoint: Endpoint, alike: bool) -> str:

@@ -16,16 +16,9 @@ from typing import Final
 
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
-from tarl_lint.system.hazards import (
-    at_end,
-    in_private_names,
-    longer_alike,
-    single,
-    spelled_alike,
-    under_own_name,
-)
-from tarl_lint.system.model import System
-from tarl_lint.workspace.conditions import exclusive
+from tarl_lint.system.hazards import at_end, single
+from tarl_lint.system.lonely_ends import Lonely, near
+from tarl_lint.system.model import Role, System
 
 CODE: Final = "TARL304"
 SUMMARY: Final = "a service that is called has no server, and a server with a similar name is never called"
@@ -79,27 +72,24 @@ VALID: Final = (
 )
 
 
+# role of a client → role of its server, and what the message says about both
+_ROLES: Final[tuple[tuple[Role, Role, str, str], ...]] = (
+    ("calls", "serves", "calls", "offers"),
+    ("asks", "performs", "sends goals to", "performs"),
+)
+
+
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each client whose service differs from that of a server only in its name."""
-    served, called = ({name for name, _, _ in system.named(role)} for role in ("serves", "calls"))
-    for name, who, end in system.ends("calls"):
-        near = sorted(
-            (other, them.name, under_own_name(name, other, them))
-            for other, them, beyond in system.ends("serves")
-            if other not in called
-            and single(beyond) == single(end)
-            and (
-                spelled_alike(name, other)
-                or longer_alike(name, other)
-                or in_private_names(name, other, who, them)
-                or under_own_name(name, other, them)
-            )
-            and not exclusive(who.node, them.node)
-        )
-        # only the node itself offers its private names, and this node was read
-        own = [one for one in near if one[1] == name.rpartition("/")[0] or one[2]]
-        near = near if system.complete(end) else own
-        if name not in served and near and single(end):
-            message = f"{who.name} calls {name} ({end.type}), which no node offers; "
-            message += " and ".join(f"{node} offers {other}" for other, node, _ in near)
-            yield at_end(CODE, who, end, message, topic_text(end.in_code))
+    """Yield a hazard for each client whose service or action differs from that of a server only in its name."""
+    for client, server, calls, offers in _ROLES:
+        served, called = ({name for name, _, _ in system.named(role)} for role in (server, client))
+        lonely = [Lonely(*one) for one in system.ends(server) if one[0] not in called]
+        for name, who, end in system.ends(client):
+            if name in served or not single(end):
+                continue
+            offered = [one for one in lonely if single(one.end) == single(end)]
+            alike = near(system, Lonely(name, who, end), offered, longer=True)
+            if alike:
+                message = f"{who.name} {calls} {name} ({end.type}), which no node {offers}; "
+                message += " and ".join(f"{one.node.name} {offers} {one.name}" for one in alike)
+                yield at_end(CODE, who, end, message, topic_text(end.in_code))

@@ -17,9 +17,9 @@ from collections.abc import Iterator
 from typing import Final
 
 from tarl_lint.model import Finding
+from tarl_lint.system.command_topics import is_command
 from tarl_lint.system.hazards import at_node
 from tarl_lint.system.model import Endpoint, Instance, System, place_of
-from tarl_lint.system.command_topics import is_command
 
 CODE: Final = "TARL305"
 SUMMARY: Final = "two nodes publish commands on the same topic"
@@ -138,5 +138,7 @@ def _of_known_programs(system: System) -> Iterator[tuple[str, Instance, Endpoint
     """Yield the commands of programs that are known without source, such as teleoperation and multiplexers."""
     for topic, instance, end in system.named("publishes"):
         known = instance.interface is None and not instance.node.condition and end.span == place_of(instance)
-        if known and is_command(end.type, (topic,)):
+        # a bridge in both directions publishes what others publish
+        both = any(name == topic for name, _ in instance.named("subscribes"))
+        if known and not both and is_command(end.type, (topic,)):
             yield topic, instance, end

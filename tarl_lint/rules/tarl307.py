@@ -25,8 +25,9 @@ from collections.abc import Collection, Iterable, Iterator
 from typing import Any, Final
 
 from tarl_lint.model import Finding
-from tarl_lint.system.hazards import at_node, spelled_alike
+from tarl_lint.system.hazards import at_node
 from tarl_lint.system.model import Instance, System
+from tarl_lint.system.similar_names import spelled_alike
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content, dotted, is_wildcard, matches, sections

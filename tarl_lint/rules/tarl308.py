@@ -179,6 +179,10 @@ _OF_ROS: Final = frozenset(
 )
 
 
+_ACTIONS: Final[tuple[Role, ...]] = ("asks", "performs")
+_PARTS: Final = ("goal", "cancel", "status", "feedback", "result")  # topics of an action in ROS 1
+
+
 def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each remapping that matches nothing in any node that has it."""
     carriers: dict[tuple[str, str, str], list[Instance]] = {}
@@ -222,11 +226,14 @@ def _unmatched(instance: Instance, old: str) -> bool:
         return False
     own, namespace = instance.name.rpartition("/")[2], instance.node.namespace
     names = {name for end in instance.certain for name in end.names}
+    names |= {f"{name}/{part}" for end in instance.certain if end.role in _ACTIONS for name in end.names
+              for part in _PARTS}  # fmt: skip
     used = {resolved(name, namespace, own) for name in names}
     words = frozenset[str]()
     if instance.interface is not None:
-        words = instance.interface.words - instance.interface.private
+        own_names = names | {name.strip("~/") for name in names}
+        words = instance.interface.words - instance.interface.private - own_names
     # the end of a name may be put below a namespace; a longer name is another one
     whole = resolved(old, namespace, own)
-    said = any(whole.endswith(f"/{word.strip('/')}") for word in words - names if word.strip("/"))
+    said = any(whole.endswith(f"/{word.strip('/')}") for word in words if word.strip("/"))
     return not said and whole not in used

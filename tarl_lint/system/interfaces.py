@@ -190,13 +190,17 @@ def _clients(machine: Linker, module: Module, outline: Outline, texts: Texts) ->
     """Yield the services that a module calls in functions that run; names may be computed."""
     ran = {frame.function.qualname for frame in machine.frames.values() if frame.program.path == module.path}
     made = _made(machine, "service", [module.path])
-    for (_, pos), clients in made.items():
+    asking = _made(machine, "action", [module.path])
+    for pos, clients, role in (
+        *((pos, one, "calls") for (_, pos), one in made.items()),
+        *((pos, one, "asks") for (_, pos), one in asking.items()),
+    ):
         names = tuple(sorted({topic for one in clients for topic in one.topics}))
         kind = " | ".join(sorted({kind for one in clients for kind in one.types}))
         if names:
             span = texts[module.path].stretch(pos)
             whole = imported_type(module.tree, kind)
-            yield Endpoint("calls", names, kind, span, None, outline.qualname(pos[0]), whole_type=whole)
+            yield Endpoint(role, names, kind, span, None, outline.qualname(pos[0]), whole_type=whole)
     for call, name, kind in called_services(outline):
         place = outline.qualname(call.lineno)
         known = any(one.topics for one in made.get((module.path, position(call)), []))

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from tarl_lint.model import Span
+from tarl_lint.system.command_topics import COMMANDS
 from tarl_lint.system.model import Endpoint, Instance, Role, Seen, place_of
 from tarl_lint.workspace.launch_model import LaunchedNode
 from tarl_lint.workspace.ros_arguments import plain
@@ -119,9 +120,29 @@ _TYPED: Final[Mapping[str, _Typed]] = {
     "usb_cam/usb_cam_node": ("", "~image_raw:Image ~camera_info:CameraInfo"),
     "v4l2_camera/v4l2_camera_node": ("", "image_raw:Image camera_info:CameraInfo"),
 }  # fmt: skip
+# packages whose programs have no further topics of velocities and joysticks than those above
+_TOLD: Final = ("joy", "joy_linux", "teleop_twist_joy", "teleop_twist_keyboard", "move_base")
+_TOLD_TYPES: Final = frozenset(["Twist", "TwistStamped", "Joy"])
 # parameters with which a program publishes TwistStamped in place of Twist
 _STAMPED: Final = ("use_stamped", "publish_stamped_twist", "stamped")
 _UNSTAMPED: Final = "Twist"
+
+
+_SENSOR: Final = re.compile(
+    r"(?<![a-z])(camera|cam|lidar|ladar|laser|scanner|sick|hokuyo|velodyne|ouster|livox|imu|gps|gnss|radar|sonar|"
+    r"ultrasonic|microstrain|xsens|realsense|zed|tof|thermal|ublox|novatel|septentrio|barometer|rfid|barcode)(?![a-z])"
+)
+# what makes a package more than the driver of a sensor
+_ACTIVE: Final = re.compile(
+    r"follow|control|nav|track|servo|drive(?!r)|slam|pilot|guard|safe|stop|avoid|teleop|plan|fus|filter|base|robot|sim|odom"
+)
+_SENSED_NEVER: Final = COMMANDS | {"Joy", "Path", "OccupancyGrid", "JointState", "PoseArray"}
+
+
+def unlikely(node: LaunchedNode) -> frozenset[str]:
+    """Return types that a program of an unknown package does not use: the driver of a sensor commands nothing."""
+    text = "/".join(identity(node)).lower()
+    return _SENSED_NEVER if _SENSOR.search(text) and not _ACTIVE.search(text) else frozenset()
 
 
 def kinds(node: LaunchedNode) -> frozenset[str] | None:
@@ -129,7 +150,9 @@ def kinds(node: LaunchedNode) -> frozenset[str] | None:
     package, program = identity(node)
     if f"{package}/{program}" in _QUIET or node.kind == "container":
         return frozenset()
-    return of_package(package)
+    found = of_package(package)
+    told = package in _TOLD and f"{package}/{program}" in _TYPED
+    return found - _TOLD_TYPES if found is not None and told else found
 
 
 def of_package(package: str) -> frozenset[str] | None:

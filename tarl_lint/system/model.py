@@ -17,8 +17,8 @@ from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.ros_names import joined, remapped
 
 Role = Literal[
-    "publishes", "subscribes", "serves", "calls", "performs"
-]  # what a node does with a topic, service or action
+    "publishes", "subscribes", "serves", "calls", "performs", "asks"
+]  # what a node does with a topic, service or action; it asks the server of an action
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,13 +105,14 @@ class Seen:
 
     `certain` says that the node has no others, except those of transforms and parameters. `through` says that data of
     each subscribed topic may reach each published one. `kinds` are all types of messages and services that the node may
-    use; None if they are unknown.
+    use; None if they are unknown. `never` are types that it does not use in any case.
     """
 
     ends: tuple[Endpoint, ...] = ()
     certain: bool = False
     through: bool = True
     kinds: frozenset[str] | None = None
+    never: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -154,7 +155,7 @@ class Instance:
         if self.whole:
             return False
         if self.interface is None:
-            return self.known.kinds is None or kind in self.known.kinds
+            return kind in self.known.kinds if self.known.kinds is not None else kind not in self.known.never
         unnamed = [one.type.split(" | ") for one in self.interface.endpoints if not one.names]
         return not self.interface.complete or any(
             kind in types or not {"", "AnyMsg"}.isdisjoint(types) for types in unnamed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tarl_lint.model import Finding, Flow
@@ -63,6 +63,7 @@ class _Program:
         self._handlers = {name.rpartition(".")[2] for name in callbacks}
         self._timed: set[str] = set()  # functions that timers call
         self._ticks: list[ast.expr] = []  # callbacks of timers that are no names
+        self._named: dict[str, set[str]] = {}  # function → names in it, which may be properties and methods
         self._texts = {module.path: module.text for module in modules}
         self._trees = {module.path: module.tree for module in modules}
         self._functions: dict[str, list[tuple[str, _Function | ast.Module]]] = {}
@@ -82,6 +83,8 @@ class _Program:
             if isinstance(child, ast.Call):
                 self._callers.setdefault(last_name(child.func), []).append((inside, looped))
                 self._registered(child)
+            elif isinstance(child, ast.Attribute | ast.Name):
+                self._named.setdefault(inside, set()).add(last_name(child))
             again = looped or (isinstance(child, ast.While) and not isinstance(node, ast.expr))
             self._read(path, child, inside, looped=again)
 
@@ -176,24 +179,19 @@ class _Program:
         found = {name for name in self._timed if name in self._functions}
         found |= {name for name, callers in self._callers.items() if name in self._functions and any(
             looped and caller not in self._handlers for caller, looped in callers)}  # fmt: skip
+        return self._reached(found)
+
+    def _reached(self, found: set[str]) -> set[str]:
+        """Return functions, and all that they may call or read as properties."""
         pending = [*found]
         while pending:
-            one = pending.pop()
-            for name, callers in self._callers.items():
-                if (
-                    name in self._functions
-                    and name not in found
-                    and any(caller == one for caller, _ in callers)
-                ):
-                    found.add(name)
-                    pending.append(name)
+            fresh = (self._named.get(pending.pop(), set()) & self._functions.keys()) - found
+            found |= fresh
+            pending += fresh
         return found
 
     def _checks_time(self, running: set[str]) -> bool:
-        called = {
-            name for name, callers in self._callers.items() if any(one in running for one, _ in callers)
-        }
-        for name in running | called:
+        for name in self._reached({*running}):
             for path, function in self._functions.get(name, ()):
                 if _TIMES.search(_SLEEPS.sub("", self._text(path, function))):
                     return True
@@ -208,7 +206,7 @@ class _Program:
         return "\n".join("\n".join(lines[one.lineno - 1 : one.end_lineno]) for one in loops)
 
     def _cleared(self, name: str, running: set[str]) -> bool:
-        """Return whether code sets a stored value to None, or a function that runs again changes it without a message."""
+        """Return whether code sets a stored value to None, or changes it again and again without a message."""
         for where, functions in self._functions.items():
             if where in _SETUP or where == "":
                 continue

@@ -11,8 +11,9 @@ from typing import Any
 import pytest
 
 from tarl_lint.model import Span
-from tarl_lint.system.hazards import longer_alike, single, spelled_alike
+from tarl_lint.system.hazards import single
 from tarl_lint.system.model import Endpoint, Instance, Interface, Misfit, Qos, System
+from tarl_lint.system.similar_names import longer_alike, spelled_alike
 from tarl_lint.workspace.launch_model import LaunchedNode, Setting
 
 FILE = Path("robot.launch")
@@ -61,7 +62,7 @@ def messages(rule: int, *instances: Instance, file: Path = FILE) -> list[str]:
         ("/scan_x", "/scanx_", False),
         ("/scans", "/scan", False),
         ("/imu_a", "/imu_b", False),
-        ("/image_a", "/image_b", True),
+        ("/image_a", "/image_b", False),
         ("/left_1", "/left_2", False),
         ("/left_12", "/left_21", False),
         ("/left1", "/left", False),
@@ -126,12 +127,20 @@ def test_the_report_of_a_subscription_without_a_publisher_names_a_similar_topic(
         [node("/b", SAYS), node("/c", end("subscribes", "cmd_val"))],
         [node("/b", end("publishes", "cmd_val", "Pose"))],
         [node("/b", end("publishes", "other"))],
-        [node("/b", SAYS), node("/c", unread=True)],
-        [node("/b", SAYS), node("/c", interface=Interface("c.py"))],
+        [node("/b", SAYS), node("/c", unread=True, remaps=(("x", "cmd_vel"),))],
+        [node("/b", SAYS), node("/c", unread=True, arguments="--out cmd_val")],
+        [node("/b", SAYS), node("/c", interface=Interface("c.py", words=frozenset(["cmd_vel"])))],
+        [node("/b", end("publishes", "/left/cmd_vel")), node("/c", unread=True)],
     ],
 )
 def test_a_subscription_that_may_have_a_publisher_is_not_reported(others):
     assert messages(301, node("/a", HEARS), *others) == []
+
+
+@pytest.mark.parametrize("other", [node("/c", unread=True), node("/c", interface=Interface("c.py"))])
+def test_a_misspelt_name_is_reported_beside_unread_nodes_that_do_not_mention_it(other):
+    assert len(messages(301, node("/a", HEARS), node("/b", SAYS), other)) == 1
+    assert misspelt("/cmd_vel", "/cmd_val") and not misspelt("/cmd_vel", "/left/cmd_vel")
 
 
 def test_a_subscription_of_unknown_type_or_name_or_of_the_publisher_itself_is_not_compared():

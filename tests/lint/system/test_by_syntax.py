@@ -12,9 +12,9 @@ from tarl_lint.evidence import Outline
 from tarl_lint.model import Finding, SiteId, Span, Step
 from tarl_lint.parameter_names import ARGUMENTS
 from tarl_lint.read.source import Module
+from tarl_lint.system.command_topics import is_command
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Endpoint, Qos
-from tarl_lint.system.command_topics import is_command
 from tarl_lint.system.parameters import deciding, reads_named_parameters, words
 from tarl_lint.system.qos import of_call
 from tarl_lint.system.staleness import stale

@@ -125,6 +125,7 @@ def test_fields_of_messages_are_read_from_their_definitions(tmp_path):
     expected = {
         "header": "Header",
         "poses": "",
+        "poses[]": "Pose",
         "pose": "Pose",
         "label": "",
         "position": "",

@@ -1,0 +1,78 @@
+"""Find the ends that were probably meant for an end without another one, by their names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import Final, NamedTuple
+
+from tarl_lint.system.model import Endpoint, Instance, System
+from tarl_lint.system.similar_names import (
+    in_private_names,
+    longer_alike,
+    misspelt,
+    spelled_alike,
+    under_own_name,
+)
+from tarl_lint.workspace.conditions import exclusive
+
+_GENERAL: Final = frozenset(["Trigger", "SetBool", "Empty"])  # types of services that many nodes offer
+
+
+class Lonely(NamedTuple):
+    """An end of a topic, service or action, by its launched name, of which the other end is not known."""
+
+    name: str
+    node: Instance
+    end: Endpoint
+
+
+def near(system: System, one: Lonely, others: Iterable[Lonely], *, longer: bool = False) -> list[Lonely]:
+    """Return the ends that were probably meant for an end, each node and name once, sorted.
+
+    Nodes that were not read may be the other end of both names. They do not matter for private names, which only the
+    node itself uses, and for misspelt names, unless they mention one of the names. `longer` says that names may also
+    differ by whole words; in the root, only those of special types.
+    """
+    complete = system.complete(one.end)
+    found = {
+        (other.name, other.node.name): other
+        for other in others
+        if not exclusive(one.node.node, other.node.node)
+        and _alike(one, other, longer=longer)
+        and (complete or _certain(system, one, other))
+    }
+    return [found[key] for key in sorted(found)]
+
+
+def _alike(one: Lonely, other: Lonely, *, longer: bool) -> bool:
+    return (
+        spelled_alike(one.name, other.name)
+        or (longer and longer_alike(one.name, other.name, rooted=one.end.type not in _GENERAL))
+        or in_private_names(one.name, other.name, one.node, other.node)
+        or under_own_name(one.name, other.name, other.node)
+    )
+
+
+def _certain(system: System, one: Lonely, other: Lonely) -> bool:
+    """Return whether two ends belong together, even if a node that was not read may use their type."""
+    if other.node.name == one.name.rpartition("/")[0] or under_own_name(one.name, other.name, other.node):
+        return True
+    if not misspelt(one.name, other.name):
+        return False
+    unread = (
+        node for node in system.instances if node not in (one.node, other.node) and node.may_use(one.end.type)
+    )
+    lasts = [name.rpartition("/")[2] for name in (one.name, other.name)]
+    mention = re.compile("|".join(rf"(?<!\w){re.escape(last)}(?!\w)" for last in lasts))
+    return not any(mention.search(text) for node in unread for text in _texts(node))
+
+
+def _texts(node: Instance) -> Iterator[str]:
+    """Yield the texts in which a node may mention topics: its remappings, arguments, parameters and strings."""
+    launched = node.node
+    yield launched.arguments
+    yield from (name for pair in launched.remaps for name in pair)
+    yield from (text for one in launched.settings for text in (str(one.value), one.yaml or ""))
+    if node.interface is not None:
+        yield from node.interface.words
