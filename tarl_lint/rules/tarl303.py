@@ -7,7 +7,9 @@ subscription with the number 10 therefore receives nothing from a laser scanner
 (https://github.com/ros2/ros2_documentation/issues/569).
 
 The rule reports a connection only if both profiles are constant in the code. They may come from another module, from a
-function, or from the row of a table that also names the topic.
+function, or from the row of a table that also names the topic. In C++ programs of the workspace, the profile must be
+stated in the call that names the topic, or be a variable. Profiles that a launch file may override
+(`qos_overriding_options`) are not compared.
 """
 
 from __future__ import annotations
@@ -151,8 +153,8 @@ VALID: Final = (
 
 def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each subscription that ROS 2 does not connect with a publisher of its topic."""
-    for name, who, end in system.ends("subscribes"):
-        for other, them, offered in system.ends("publishes"):
+    for name, who, end in system.named("subscribes"):
+        for other, them, offered in system.named("publishes"):
             if other == name and not exclusive(who.node, them.node):
                 for policies in _refused(offered, end):
                     message = (

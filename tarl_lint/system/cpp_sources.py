@@ -14,6 +14,7 @@ from typing import Final
 
 from tarl_lint.files import shown
 from tarl_lint.model import Span
+from tarl_lint.system.cpp_qos import after_name
 from tarl_lint.system.image_transport import CAMERA, IMAGE
 from tarl_lint.system.model import Endpoint, Role
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
@@ -110,7 +111,8 @@ def _named(path: Path, text: str) -> Iterator[Endpoint]:
         kind = _of_message(found["type"] or "", text)
         if who in images:
             kind = CAMERA if "amera" in found["call"] else IMAGE
-        yield Endpoint(role, (name,), kind, span)
+        qos = after_name(text, found.end()) if found["call"].startswith("create_") else None
+        yield Endpoint(role, (name,), kind, span, qos)
 
 
 def _of_message(written: str, text: str) -> str:

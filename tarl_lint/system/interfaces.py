@@ -179,7 +179,7 @@ def _profile(
     made: SourceRecord | Publisher, topics: Collection[str], outlines: Mapping[str, Outline]
 ) -> Qos | None:
     """Return the quality of service of a publisher or subscription of rclpy; None if it is not constant."""
-    if not made.api.startswith("rclpy"):
+    if not made.api.startswith(("rclpy", "message_filters")):
         return None
     via = made.via if isinstance(made, SourceRecord) else ()
     inside = [(outlines[path], pos) for path, pos in via if path in outlines]

@@ -25,7 +25,10 @@ _PRESETS: Final = {
     "SYSTEM_DEFAULT": Qos(),
     "BEST_AVAILABLE": Qos(),
 }
-_PLACES: Final = {"create_publisher": 2, "create_subscription": 3}
+_PLACES: Final = {"create_publisher": 2, "create_lifecycle_publisher": 2, "create_subscription": 3}
+_FILTER: Final = "Subscriber"  # of message_filters, whose profile is a keyword
+_OF_NODE: Final = 3  # arguments of a filter in ROS 2: node, type and topic
+_DEPTH: Final = 10  # profile of a filter without any
 _ROW: Final = 3  # minimum length of a row: topic, type and profile
 _RELIABILITY: Final = {"RELIABLE": True, "BEST_EFFORT": False}
 _DURABILITY: Final = {"TRANSIENT_LOCAL": True, "VOLATILE": False}
@@ -49,7 +52,7 @@ def of_call(
     call = outline.call(pos)
     if call is None:
         return None
-    if last_name(call.func) not in _PLACES:
+    if last_name(call.func) not in (*_PLACES, _FILTER):
         made = ((where, where.call(at)) for where, at in inside)
         return next(
             (_through(call, outline, where, one, others) for where, one in made if one and _given(one)), None
@@ -66,9 +69,14 @@ def of_call(
 def _given(call: ast.Call) -> ast.expr | None:
     """Return the profile in a call that makes a publisher or subscription; None for other calls."""
     place = _PLACES.get(last_name(call.func))
-    if place is None:
-        return None
     named = next((one.value for one in call.keywords if one.arg in ("qos_profile", "qos")), None)
+    if last_name(call.func) == _FILTER:
+        if len(call.args) < _OF_NODE:
+            return None
+        return named if named is not None else ast.Constant(_DEPTH)
+    # a launch file may change a profile whose call allows it
+    if place is None or any(one.arg == "qos_overriding_options" for one in call.keywords):
+        return None
     return named if named is not None else call.args[place] if len(call.args) > place else None
 
 
@@ -127,6 +135,16 @@ def _beside(topics: Collection[str], outline: Outline, others: Collection[Outlin
     return profiles[0] if alike else None
 
 
+def _either(one: Qos | None, other: Qos | None) -> Qos | None:
+    """Return what two possible profiles have in common."""
+    if one is None or other is None:
+        return None
+    return Qos(
+        one.reliable if one.reliable == other.reliable else None,
+        one.latched if one.latched == other.latched else None,
+    )
+
+
 def _passed(name: str, call: ast.Call, outline: Outline, others: Collection[Outline]) -> Qos | None:
     """Return the only quality of service that calls pass for a parameter of the function around a call."""
     function = _function_around(call, outline)
@@ -166,6 +184,8 @@ def _of(expr: ast.expr, outline: Outline, depth: int) -> Qos | None:
         return _profile(expr, outline)
     if isinstance(expr, ast.Call) and depth < 3:
         return _returned(expr, outline, depth)
+    if isinstance(expr, ast.IfExp):
+        return _either(_of(expr.body, outline, depth + 1), _of(expr.orelse, outline, depth + 1))
     if isinstance(expr, ast.Name | ast.Attribute) and depth < 3:
         values = outline.assigned.get(last, [])
         if len(values) == 1:

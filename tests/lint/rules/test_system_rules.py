@@ -13,7 +13,7 @@ import pytest
 from tarl_lint.model import Span
 from tarl_lint.system.hazards import single
 from tarl_lint.system.model import Endpoint, Instance, Interface, Misfit, Qos, System
-from tarl_lint.system.similar_names import longer_alike, spelled_alike
+from tarl_lint.system.similar_names import longer_alike, misspelt, spelled_alike
 from tarl_lint.workspace.launch_model import LaunchedNode, Setting
 
 FILE = Path("robot.launch")
@@ -140,7 +140,8 @@ def test_a_subscription_that_may_have_a_publisher_is_not_reported(others):
 @pytest.mark.parametrize("other", [node("/c", unread=True), node("/c", interface=Interface("c.py"))])
 def test_a_misspelt_name_is_reported_beside_unread_nodes_that_do_not_mention_it(other):
     assert len(messages(301, node("/a", HEARS), node("/b", SAYS), other)) == 1
-    assert misspelt("/cmd_vel", "/cmd_val") and not misspelt("/cmd_vel", "/left/cmd_vel")
+    assert misspelt("/cmd_vel", "/cmd_val")
+    assert not misspelt("/cmd_vel", "/left/cmd_vel")
 
 
 def test_a_subscription_of_unknown_type_or_name_or_of_the_publisher_itself_is_not_compared():
