@@ -6,7 +6,8 @@ those of the node (https://github.com/manankharwar/fusioncore/issues/134).
 
 In a parameter file of ROS 2, a section `gate:` is for the node `/gate` and not for `/robot/gate`, so a node that is
 started in a namespace gets none of the values. The rule reports this if the section has the node's name
-without a namespace, and no other section of the file gives the node these parameters.
+without a namespace, and no other section of the file gives the node these parameters. The same holds for a section with
+the name in the code, if the launch file renames the node. A section without `ros__parameters` is reported as well.
 
 A parameter of a node is reported only if the node's program and all its imports could be read, and the program states
 the names of all parameters that it reads: as literals, in tables and lists, as arguments of its functions, as fields
@@ -16,7 +17,9 @@ over `range(4)`. If some parts are not known, any name that its words and digits
 If a group sets a parameter for all its nodes, the rule reports the parameter only if none of the nodes has it.
 
 In ROS 1, parameters that are set outside a node but below its name are its private ones. They are reported if
-the node has another parameter of the same file, or one with a similar name.
+the node has another parameter of the same file, or one with a similar name. A private parameter is also reported if the
+program reads this name only in its namespace (`get_param("gain")` for `~gain`), and a parameter in the namespace if the
+only programs that have the name read it as their own, and every program of the launch file was read.
 """
 
 from __future__ import annotations
@@ -30,7 +33,15 @@ from tarl_lint.system.model import Instance, System
 from tarl_lint.system.similar_names import spelled_alike
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Setting
-from tarl_lint.workspace.parameter_yaml import NoYamlError, content, dotted, is_wildcard, matches, sections
+from tarl_lint.workspace.parameter_yaml import (
+    SECTION,
+    NoYamlError,
+    content,
+    dotted,
+    is_wildcard,
+    matches,
+    sections,
+)
 
 CODE: Final = "TARL307"
 SUMMARY: Final = "a launch file sets a parameter that the node does not have"
@@ -173,7 +184,9 @@ def findings(system: System) -> Iterator[Finding]:
         for setting in instance.node.settings:
             carriers.setdefault(setting, []).append(instance)
     for setting, instances in carriers.items():
-        given = _given(setting, instances) if setting.name.startswith("~") else ()
+        untitled = list(_untitled(setting, instances)) if system.ros2 else []
+        yield from untitled
+        given = _given(setting, instances) if setting.name.startswith("~") and not untitled else ()
         for name, receivers, certain in dict.fromkeys(given):
             if all(_lacks(instance, name) for instance in receivers) and (
                 certain or _misspelt(name, receivers)
@@ -181,8 +194,9 @@ def findings(system: System) -> Iterator[Finding]:
                 first = receivers[0]
                 message = f"{first.name} has no parameter {name}: the launch file sets it without effect"
                 yield at_node(CODE, first, message, name)
-        yield from _elsewhere(setting, instances)
+        yield from _elsewhere(setting, instances, system)
     yield from _above(system)
+    yield from _beside(system)
 
 
 def _above(system: System) -> Iterator[Finding]:
@@ -217,8 +231,49 @@ def _absolute(setting: Setting) -> Iterator[str]:
         yield from (f"{setting.name.rstrip('/')}/{one.replace('.', '/')}" for one in dotted(parsed))
 
 
-def _elsewhere(setting: Setting, instances: list[Instance]) -> Iterator[Finding]:
-    """Yield a hazard for each section without a namespace that has the name of a node in a namespace."""
+def _untitled(setting: Setting, instances: list[Instance]) -> Iterator[Finding]:
+    """Yield a hazard for each node whose section of a parameter file of ROS 2 has no `ros__parameters`."""
+    parsed = _parsed(setting) if setting.file.suffix in (".yaml", ".yml") else None
+    if not isinstance(parsed, dict) or list(sections(parsed)):
+        return
+    for key in (str(key) for key, values in parsed.items() if isinstance(values, dict)):
+        meant = [
+            one
+            for one in instances
+            if matches(key, one.name) or key.strip("/") == one.name.rpartition("/")[2]
+        ]
+        if meant:
+            message = (f"{meant[0].name} gets no parameter of {setting.file.name}: "
+                       f"the section {key} has no {SECTION}")  # fmt: skip
+            yield at_node(CODE, meant[0], message, f"{key} in {setting.file.name}")
+
+
+def _beside(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each parameter of ROS 1 in a namespace that a node there reads only as its own.
+
+    No other node of the system may read it, so all programs must be read.
+    """
+    if system.ros2 or any(one.interface is None and not one.silent for one in system.instances):
+        return
+    for setting in system.settings:
+        for whole in _absolute(setting):
+            above, _, name = whole.rpartition("/")
+            readers = [one for one in system.instances if one.interface and name in one.interface.words]
+            meant = [one for one in readers if one.interface and name in one.interface.private
+                     and one.node.namespace.rstrip("/") == above]  # fmt: skip
+            given = {one.name.lstrip("~").strip("/") for reader in readers for one in reader.node.settings}
+            if meant and len(meant) == len(readers) and name not in given and "" not in given:
+                message = (
+                    f"{meant[0].name} reads its own ~{name}: the launch file sets {whole} without effect"
+                )
+                yield at_node(CODE, meant[0], message, name)
+
+
+def _elsewhere(setting: Setting, instances: list[Instance], system: System) -> Iterator[Finding]:
+    """Yield a hazard for each section without a namespace that has the name of a node in a namespace.
+
+    If a launch file gives a node another name than its code, the section may have the name in the code.
+    """
     named = list(sections(_parsed(setting)))
     for pattern, values in named:
         own = pattern.strip("/")
@@ -228,14 +283,18 @@ def _elsewhere(setting: Setting, instances: list[Instance]) -> Iterator[Finding]
         meant = next(
             (one for one in instances if one.name.rpartition("/")[2] == own and "$(" not in one.name), None
         )
+        if meant is None and all(one.name != f"/{own}" for one in system.instances):
+            named_so = (one for one in instances if one.interface is not None and one.interface.name == own)
+            meant = next((one for one in named_so if "$(" not in one.name), None)
         if meant is None:
             continue
         given = {name for other, more in named if matches(other, meant.name) for name in dotted(more)}
         lost = sorted(dotted(values).keys() - given)
         if lost:
             shown = f"{', '.join(lost[:3])}{' …' if len(lost) > 3 else ''}"
+            wild = f" or /**/{own}" if meant.name.endswith(f"/{own}") else ""
             message = (f"{meant.name} does not get {shown}: the section {pattern} of {setting.file.name} is for "
-                       f"/{own}; name it {meant.name} or /**/{own}")  # fmt: skip
+                       f"/{own}; name it {meant.name}{wild}")  # fmt: skip
             yield at_node(CODE, meant, message, f"{pattern} in {setting.file.name}")
 
 
@@ -244,6 +303,8 @@ def _lacks(instance: Instance, name: str) -> bool:
     interface = instance.interface
     if interface is None or not interface.parameters or name.partition(".")[0] in _OF_ROS:
         return False
+    if name in interface.public:
+        return True  # the program reads it in its namespace, not as its own
     spellings = {name, name.replace(".", "/"), name.replace("/", ".")}
     known = interface.exact if interface.exact is not None else frozenset[str]()
     words = interface.words | known
@@ -282,7 +343,7 @@ def _misspelt(name: str, instances: Iterable[Instance]) -> bool:
         spelled_alike(f"/{name}", f"/{word}")
         for one in instances
         if one.interface is not None
-        for word in one.interface.words
+        for word in (*one.interface.words, *_OF_ROS)
     )
 
 

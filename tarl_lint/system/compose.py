@@ -63,6 +63,7 @@ def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: 
         tuple(hops(instances)),
         problems,
         messages=fields(used, workspace),
+        ros2=launch.ros2,
         packages=frozenset(one.name for one in workspace.packages),
         included={
             one.package: kinds_of for one in problems if (kinds_of := of_package(one.package)) is not None

@@ -54,7 +54,9 @@ def _stated(value: str, *, declared: bool) -> Qos | None:
         return _changed(_SENSORS, value)
     if "SystemDefaultsQoS" in value or "ServicesQoS" in value or "from_rmw" in value:
         return None
-    if re.match(r"(?:rclcpp::)?QoS\s*[({]", value) or (declared and re.match(r"\d+\)|(?:rclcpp::)?KeepLast", value)):
+    if re.match(r"(?:rclcpp::)?QoS\s*[({]", value) or (
+        declared and re.match(r"\d+\)|(?:rclcpp::)?KeepLast", value)
+    ):
         return _changed(_DEFAULT, value)
     return None
 

@@ -67,6 +67,8 @@ _PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "words": frozenset,
     "private": frozenset,
     "exact": lambda names: None if names is None else frozenset(names),
+    "private_words": frozenset,
+    "public": frozenset,
     "misfits": lambda entries: tuple(map(_misfit, entries)),
     "uses": lambda entries: tuple(map(_misfit, entries)),
     "deciding": tuple,

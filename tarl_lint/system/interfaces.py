@@ -29,7 +29,14 @@ from tarl_lint.settings.config import Config
 from tarl_lint.system.composed_names import composed_names
 from tarl_lint.system.fields import misfits, uses
 from tarl_lint.system.model import Endpoint, Interface, Qos, Role
-from tarl_lint.system.parameters import configurations, deciding, private_words, reads_named_parameters, words
+from tarl_lint.system.parameters import (
+    configurations,
+    deciding,
+    private_words,
+    reads_named_parameters,
+    scopes,
+    words,
+)
 from tarl_lint.system.qos import of_call
 from tarl_lint.system.quiet_imports import closed
 from tarl_lint.system.service_calls import CLIENTS, called_services
@@ -80,6 +87,7 @@ def interface(
     named = all(one.names for one in endpoints) and not any(topicless(one) for one in flows)
     heard = _heard(machine)
     configured, exact = configurations(modules), composed_names(machine, modules, outlines)
+    private, public = scopes(modules)
     return Interface(
         path=script.path,
         name=next((name for one in modules if (name := node_name(one.tree))), ""),
@@ -87,7 +95,7 @@ def interface(
         endpoints=endpoints,
         flows=found,
         words=words(modules),
-        private=private_words(modules),
+        private_words=private_words(modules),
         parameters=closed(modules, of_parameters=True)
         and imports_read
         and configured is not None
@@ -96,6 +104,8 @@ def interface(
         closed=quiet,
         whole=quiet and named and not machine.cut,
         complete=quiet and not machine.cut,
+        private=private,
+        public=public,
         stale=stale(found, modules),
         deciding=deciding(modules),
         in_names=tuple(parameters),
@@ -187,14 +197,12 @@ def _profile(
 
 
 def _clients(machine: Linker, module: Module, outline: Outline, texts: Texts) -> Iterator[Endpoint]:
-    """Yield the services that a module calls in functions that run; names may be computed."""
+    """Yield the services and actions that a module calls in functions that run; names may be computed."""
     ran = {frame.function.qualname for frame in machine.frames.values() if frame.program.path == module.path}
     made = _made(machine, "service", [module.path])
     asking = _made(machine, "action", [module.path])
-    for pos, clients, role in (
-        *((pos, one, "calls") for (_, pos), one in made.items()),
-        *((pos, one, "asks") for (_, pos), one in asking.items()),
-    ):
+    for (_, pos), clients in (*made.items(), *asking.items()):
+        role: Role = "asks" if clients[0].kind == "action" else "calls"
         names = tuple(sorted({topic for one in clients for topic in one.topics}))
         kind = " | ".join(sorted({kind for one in clients for kind in one.types}))
         if names:

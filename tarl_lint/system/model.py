@@ -75,8 +75,9 @@ class Interface:
     type lacks. `uses` are uses of fields of types `package/Name` that are unknown here; their fields are dotted paths.
     `configured` are the classes `PACKAGE.cfg.NAMEConfig`, whose `.cfg` files name further parameters.
     `complete` says that the endpoints are all that the program has, though some may have no known name.
-    `private` are the words that only private names (`~path`) contain.
+    `private_words` are the words that only private names (`~path`) contain.
     `exact` are the names of all parameters that the program reads, without `~`; None if some of them are not known.
+    `private` are the parameters that a program of rospy reads only as its own, `public` those only in its namespace.
     """
 
     path: str
@@ -96,7 +97,9 @@ class Interface:
     configured: tuple[str, ...] = ()
     complete: bool = False
     exact: frozenset[str] | None = None
+    private_words: frozenset[str] = frozenset()
     private: frozenset[str] = frozenset()
+    public: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -221,7 +224,7 @@ class System:
 
     `messages` are the fields of types `package/Name` of the workspace that the nodes use, each with its type or "".
     `packages` are the packages of the workspace. `included` are the types that well-known packages use whose launch
-    files are included, but not in the workspace.
+    files are included, but not in the workspace. `ros2` says that the launch file is for ROS 2.
     """
 
     file: Path
@@ -234,6 +237,7 @@ class System:
     messages: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     packages: frozenset[str] = frozenset()
     included: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    ros2: bool = False
 
     def complete(self, end: Endpoint) -> bool:
         """Return whether a topic or service with one known end certainly has no other in this system.

@@ -72,6 +72,31 @@ def _texts(node: ast.AST) -> Iterator[str]:
             yield from (one.arg for one in keywords if one.arg)
 
 
+def scopes(modules: Sequence[Module]) -> tuple[frozenset[str], frozenset[str]]:
+    """Return the parameters that a program of rospy reads only as its own (`~gain`), and those only in its namespace.
+
+    A name counts only if each of its strings in the program is the literal name in such a call.
+    """
+    if not any("rospy" in module.text for module in modules) or any(
+        "rclpy" in module.text for module in modules
+    ):
+        return frozenset(), frozenset()
+    forms: dict[str, set[str]] = {}
+    for module in modules:
+        nodes = list(ast.walk(module.tree))
+        read = {id(node.args[0]) for node in nodes
+                if isinstance(node, ast.Call) and node.args and last_name(node.func) in READERS}  # fmt: skip
+        for node in nodes:
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                text = node.value
+                plain = id(node) in read and "/" not in text
+                form = "own" if text.startswith("~") else "namespace"
+                forms.setdefault(text.strip("~/"), set()).add(form if plain else "")
+    own, namespace = (frozenset(name for name, found in forms.items() if found == {form})
+                      for form in ("own", "namespace"))  # fmt: skip
+    return own, namespace
+
+
 def reads_named_parameters(modules: Sequence[Module]) -> bool:
     """Return whether a program reads only parameters whose names it states: literally, in tables, or as arguments."""
     if any(OPEN.search(module.text) for module in modules):
