@@ -60,7 +60,7 @@ class _Program:
 
     def __init__(self, modules: Sequence[Module], callbacks: set[str]) -> None:
         self._callbacks = callbacks
-        self._handlers = {name.rpartition(".")[2] for name in callbacks}
+        self._handlers = {_last(name) for name in callbacks}
         self._timed: set[str] = set()  # functions that timers call
         self._ticks: list[ast.expr] = []  # callbacks of timers that are no names
         self._named: dict[str, set[str]] = {}  # function → names in it, which may be properties and methods
@@ -109,29 +109,30 @@ class _Program:
         explicit = flow.kind == "explicit" and "ubscri" in flow.source.api
         if not explicit or not is_command(flow.sink.type, flow.sink.topics):
             return False
-        callbacks = _callbacks(flow)
-        stored = self._stored(flow, callbacks)
-        after = [step for step in flow.steps if step.site.qualname not in callbacks]
-        used = [one for one in stored if any(re.search(_word(one), step.code) for step in after)]
-        publishing = {
-            name
-            for step in after
-            for name in [step.site.qualname.rpartition(".")[2]]
-            if step.role != "register"
-        }
-        if not used or flow.sink.qualname in self._callbacks or not self._again(flow):
+        if flow.sink.qualname in self._callbacks or not self._again(flow):
             return False
-        running = (
-            self._running() | {flow.sink.qualname.rpartition(".")[2]} | (publishing - _SETUP - self._handlers)
+        # functions that callbacks call may store the message
+        storing = self._reached({_last(one) for one in _callbacks(flow)}) - self._running()
+        after = [step for step in flow.steps if _last(step.site.qualname) not in storing]
+        used = [
+            one
+            for one in self._stored(flow, storing)
+            if any(re.search(_word(one), step.code) for step in after)
+        ]
+        publishing = {_last(step.site.qualname) for step in after if step.role != "register"}
+        running = self._running() | {_last(flow.sink.qualname)} | (publishing - _SETUP - self._handlers)
+        return (
+            bool(used)
+            and not self._checks_time(running)
+            and not any(self._cleared(one, running) for one in used)
         )
-        return not self._checks_time(running) and not any(self._cleared(one, running) for one in used)
 
-    def _stored(self, flow: Flow, callbacks: set[str]) -> set[str]:
-        """Return the attributes, globals and elements of tables in which the callbacks store the message."""
+    def _stored(self, flow: Flow, storing: set[str]) -> set[str]:
+        """Return the attributes, globals and elements of tables in which these functions store the message."""
         found: set[str] = set()
         for step in flow.steps:
             name = re.match(r"(self\.\w+|\w+)\s*(\[[^\]]*\])*(\.\w+)*\s*=(?!=)", step.code)
-            if name is None or step.site.qualname not in callbacks or step.role != "assign":
+            if name is None or _last(step.site.qualname) not in storing or step.role != "assign":
                 continue
             if name[1].startswith("self.") or name[2] or self._shared(name[1], step.span.path):
                 found.add(name[1])
@@ -143,7 +144,7 @@ class _Program:
 
     def _again(self, flow: Flow) -> bool:
         """Return whether a timer or a loop makes the publish call, directly or through functions."""
-        name, line, path = flow.sink.qualname.rpartition(".")[2], flow.sink.span.line, flow.sink.span.path
+        name, line, path = _last(flow.sink.qualname), flow.sink.span.line, flow.sink.span.path
         if any(one.lineno <= line <= (one.end_lineno or 0) for one in self._ticks) or self._looped(
             name, path, line
         ):
@@ -222,6 +223,10 @@ class _Program:
                     ):
                         return True
         return False
+
+
+def _last(qualname: str) -> str:
+    return qualname.rpartition(".")[2]
 
 
 def _word(name: str) -> str:
