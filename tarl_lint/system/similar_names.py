@@ -7,6 +7,7 @@ from typing import Final
 
 from tarl_lint.system.model import Instance
 
+_CODE: Final = 2  # maximum length of words such as `fl`, which stand for a place
 _SYNONYMS: Final = (
     frozenset(["state", "status"]),
     frozenset(["odom", "odometry"]),
@@ -32,8 +33,8 @@ def misspelt(one: str, other: str) -> bool:
     A letter may be missing, wrong, or in the wrong place; underscores and upper case make no difference, and words may
     be in another order. A slash may stand for an underscore (`water/current`). Words of the same meaning, such as
     `state` and `status`, are alike in the same namespace. Names that differ in a digit (`left_1`, `left_2`) or in a
-    word of one letter (`imu_a`, `imu_b`) are different names, and so are names with fewer than five letters, unless
-    two letters are exchanged.
+    word of one or two letters (`imu_a`, `imu_b`; `wheel_fl`, `wheel_fr`) are different names, and so are names with
+    fewer than five letters, unless two letters are exchanged.
     """
     (above, last), (beyond, end) = (name.rpartition("/")[::2] for name in (one, other))
     if last == end:
@@ -49,7 +50,7 @@ def misspelt(one: str, other: str) -> bool:
     words, others = last.split("_"), end.split("_")
     if len(words) == len(others):
         apart = [(a, b) for a, b in zip(words, others, strict=True) if a != b]
-        if any(min(len(a), len(b)) == 1 for a, b in apart):
+        if any(max(len(a), len(b)) <= _CODE or min(len(a), len(b)) == 1 for a, b in apart):
             return False
         if above and len(apart) == 1 and any(set(apart[0]) == pair for pair in _SYNONYMS):
             return True

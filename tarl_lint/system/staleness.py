@@ -246,7 +246,11 @@ def _changes(function: ast.AST) -> Iterator[tuple[ast.expr, ast.expr | None]]:
     for node in ast.walk(function):
         match node:
             case ast.Assign(targets=targets, value=value):
-                yield from ((one, value) for one in targets)
+                for target in targets:
+                    if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+                        yield from zip(target.elts, value.elts, strict=False)
+                    else:
+                        yield target, value
             case ast.AugAssign(target=target):
                 yield target, None
             case ast.Delete(targets=targets):
