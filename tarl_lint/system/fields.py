@@ -6,7 +6,7 @@ Fields of types of the workspace are known only when a system is composed; their
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final, NamedTuple
 
 from tarl_lint.evidence import Outline
@@ -18,7 +18,7 @@ from tarl_lint.system.held_messages import Heard, HeldMessages
 from tarl_lint.system.imported_types import ImportedTypes, path
 from tarl_lint.system.message_callbacks import HANDLE
 from tarl_lint.system.model import Misfit
-from tarl_lint.trees import last_name
+from tarl_lint.trees import last_name, walk
 
 _METHODS: Final = frozenset(
     ["serialize", "deserialize", "serialize_numpy", "deserialize_numpy", "get_fields_and_field_types",
@@ -36,24 +36,24 @@ class _Use(NamedTuple):
     node: ast.expr
 
 
-def misfits(module: Module, outline: Outline, texts: Texts, heard: Heard = _NONE) -> Iterator[Misfit]:
-    """Yield the uses of absent fields, of messages that a callback receives, and of new messages.
+def examined(
+    module: Module, outline: Outline, texts: Texts, heard: Heard = _NONE
+) -> tuple[tuple[Misfit, ...], tuple[Misfit, ...]]:
+    """Return the uses of absent fields, and the uses of fields of unknown types `package/Name` as dotted paths.
 
     `heard` are the types `package/Name` of the messages that the analysis passes to each function, by its name.
     """
     types = ImportedTypes(module.tree)
     known = {**KNOWN_FIELDS, **BY_RELEASE.get(types.ros, {})}
+    absent: list[Misfit] = []
+    unknown: list[Misfit] = []
     for use in _uses(module.tree, outline, types, heard):
-        absent = lacking(use.type, use.path, known)
-        if absent is not None:
-            yield _found(*absent, use.node, module, outline, texts)
-
-
-def uses(module: Module, outline: Outline, texts: Texts, heard: Heard = _NONE) -> Iterator[Misfit]:
-    """Yield the uses of fields of types `package/Name` that are not known; the field is a dotted path."""
-    for use in _uses(module.tree, outline, ImportedTypes(module.tree), heard):
+        found = lacking(use.type, use.path, known)
+        if found is not None:
+            absent.append(_found(*found, use.node, module, outline, texts))
         if "/" in use.type and use.type not in KNOWN_FIELDS:
-            yield _found(use.type, ".".join(use.path), use.node, module, outline, texts)
+            unknown.append(_found(use.type, ".".join(use.path), use.node, module, outline, texts))
+    return tuple(absent), tuple(unknown)
 
 
 def lacking(kind: str, path: tuple[str, ...], fields: _Fields) -> tuple[str, str] | None:
@@ -76,20 +76,21 @@ def _uses(tree: ast.Module, outline: Outline, types: ImportedTypes, heard: Heard
     """Yield the uses of fields of messages whose types the module imports, or that a callback receives."""
     if not types.used and not heard:
         return
-    yield from _arguments(tree, types)
+    nodes = list(walk(tree))
+    yield from _arguments(nodes, types)
     held = HeldMessages(tree, outline, types, heard)
-    tried = _tried(tree)
-    for node in ast.walk(tree):
+    tried = _tried(nodes)
+    for node in nodes:
         if isinstance(node, ast.Attribute) and node.attr not in tried:
             message = held.of(node.value)
             if message is not None and not message.type.endswith(HANDLE):
                 yield _Use(message.type, (*message.path, node.attr), node)
 
 
-def _tried(tree: ast.Module) -> set[str]:
+def _tried(nodes: Sequence[ast.AST]) -> set[str]:
     """Return the fields that the code looks up by name, or in a `try` that handles AttributeError."""
     found: set[str] = set()
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Call) and last_name(node.func) in ("hasattr", "getattr", "setattr"):
             found |= {
                 one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)
@@ -97,17 +98,17 @@ def _tried(tree: ast.Module) -> set[str]:
         elif isinstance(node, ast.Try) and any(
             one.type is not None and "AttributeError" in ast.unparse(one.type) for one in node.handlers
         ):
-            inside = (one for statement in node.body for one in ast.walk(statement))
+            inside = walk(*node.body)
             found |= {one.attr for one in inside if isinstance(one, ast.Attribute)}
     return found
 
 
-def _arguments(tree: ast.Module, types: ImportedTypes) -> Iterator[_Use]:
+def _arguments(nodes: Sequence[ast.AST], types: ImportedTypes) -> Iterator[_Use]:
     """Yield the keyword arguments of calls that create a message."""
-    bound = {one.name for one in ast.walk(tree) if isinstance(one, ast.ClassDef | ast.FunctionDef)} | {
-        one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    bound = {one.name for one in nodes if isinstance(one, ast.ClassDef | ast.FunctionDef)} | {
+        one.id for one in nodes if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
     }
-    for call in (one for one in ast.walk(tree) if isinstance(one, ast.Call)):
+    for call in (one for one in nodes if isinstance(one, ast.Call)):
         kind = types.of(call.func)
         if kind and path(call.func)[0] not in bound:
             yield from (_Use(kind, (one.arg,), call) for one in call.keywords if one.arg)

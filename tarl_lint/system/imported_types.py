@@ -6,6 +6,7 @@ import ast
 from typing import Final
 
 from tarl_lint.message_fields import PACKAGES
+from tarl_lint.trees import walk
 
 _KINDS: Final = ("msg", "srv", "action")
 # parts of services and actions: classes inside the type in ROS 2, and names with this ending in ROS 1
@@ -40,7 +41,7 @@ class ImportedTypes:
         self._modules: dict[str, tuple[str, str]] = {}  # dotted name in the code → package, and its part
         self.ros: str = ""  # "1" or "2", by the client library that the module imports
         found: set[str] = set()
-        for node in ast.walk(tree):
+        for node in walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 package, _, rest = node.module.partition(".")
                 found.add(package)

@@ -27,7 +27,7 @@ from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
 from tarl_lint.system.composed_names import composed_names
-from tarl_lint.system.fields import misfits, uses
+from tarl_lint.system.fields import examined
 from tarl_lint.system.model import Endpoint, Interface, Qos, Role
 from tarl_lint.system.parameters import (
     configurations,
@@ -86,6 +86,7 @@ def interface(
     quiet = closed(modules) and imports_read
     named = all(one.names for one in endpoints) and not any(topicless(one) for one in flows)
     heard = _heard(machine)
+    fields = [examined(each, outlines[each.path], texts, heard) for each in modules]
     configured, exact = configurations(modules), composed_names(machine, modules, outlines)
     private, public = scopes(modules)
     return Interface(
@@ -109,9 +110,9 @@ def interface(
         stale=stale(found, modules),
         deciding=deciding(modules),
         in_names=tuple(parameters),
-        misfits=tuple(one for each in modules for one in misfits(each, outlines[each.path], texts, heard)),
+        misfits=tuple(one for absent, _ in fields for one in absent),
         configured=configured or (),
-        uses=tuple(one for each in modules for one in uses(each, outlines[each.path], texts, heard)),
+        uses=tuple(one for _, unknown in fields for one in unknown),
     )
 
 

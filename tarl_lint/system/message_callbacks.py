@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from tarl_lint.system.imported_types import ImportedTypes, short
-from tarl_lint.trees import last_name
+from tarl_lint.trees import last_name, walk
 
 # functions that register a callback: places and keywords of the type and the callback, and what is passed
 _REGISTERS: Final[Mapping[str, tuple[tuple[int, str], tuple[int, str], tuple[str, ...]]]] = {
@@ -24,7 +24,7 @@ HANDLE: Final = "@"  # end of the type of a goal handle, whose `request` is the 
 def received(tree: ast.Module, types: ImportedTypes) -> dict[str, set[tuple[str, int]]]:
     """Return function name → the types of what it receives, with their positions; a type is "" if it is unknown."""
     found: dict[str, set[tuple[str, int]]] = {}
-    for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
+    for call in _calls(tree):
         for callback, kinds in _registered(call, types):
             name, number = _called(callback)
             found.setdefault(name, set()).update((kind, number + i) for i, kind in enumerate(kinds))
@@ -36,9 +36,13 @@ def received(tree: ast.Module, types: ImportedTypes) -> dict[str, set[tuple[str,
 
 def received_by_lambdas(tree: ast.Module, types: ImportedTypes) -> dict[ast.Lambda, tuple[str, ...]]:
     """Return the lambda functions that are callbacks, with the types of what they receive."""
-    calls = (node for node in ast.walk(tree) if isinstance(node, ast.Call))
+    calls = _calls(tree)
     pairs = (pair for call in calls for pair in _registered(call, types))
     return {callback: kinds for callback, kinds in pairs if isinstance(callback, ast.Lambda)}
+
+
+def _calls(tree: ast.Module) -> list[ast.Call]:
+    return [node for node in walk(tree) if isinstance(node, ast.Call)]
 
 
 def _registered(call: ast.Call, types: ImportedTypes) -> Iterator[tuple[ast.expr, tuple[str, ...]]]:
@@ -60,12 +64,12 @@ def _synchronized(tree: ast.Module, types: ImportedTypes) -> dict[str, list[str]
 
     A function that several synchronizers call is left out.
     """
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    calls = _calls(tree)
     calls = [one for one in calls if last_name(one.func) == "registerCallback" and one.args]
     if not calls:
         return {}
     assigned: dict[str, list[ast.expr]] = {}
-    for node in ast.walk(tree):
+    for node in walk(tree):
         if isinstance(node, ast.Assign):
             for target in node.targets:
                 assigned.setdefault(ast.unparse(target), []).append(node.value)

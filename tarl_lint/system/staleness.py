@@ -10,7 +10,7 @@ from typing import Final
 from tarl_lint.model import Finding, Flow
 from tarl_lint.read.source import Module
 from tarl_lint.system.command_topics import is_command
-from tarl_lint.trees import last_name
+from tarl_lint.trees import children, last_name
 
 _TIMES: Final = re.compile(
     r"\bnow\(|\b(get_time|get_rostime|Time|time|monotonic|stamp|clock|timeout|wait_for_message|Duration)\b|watchdog|stale|"
@@ -45,9 +45,9 @@ def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Findi
     flows = [one.flow for one in findings if one.flow is not None]
     if not any(is_command(one.sink.type, one.sink.topics) for one in flows):
         return ()
-    program = _Program(modules, {name for one in flows for name in _callbacks(one)})
     if any(_WATCHDOGS.search(_SLEEPS.sub("", module.text)) for module in modules):
         return ()
+    program = _Program(modules, {name for one in flows for name in _callbacks(one)})
     return tuple(one for one in findings if one.flow is not None and program.goes_on(one.flow))
 
 
@@ -75,7 +75,7 @@ class _Program:
             self._read(module.path, module.tree, "", looped=False)
 
     def _read(self, path: str, node: ast.AST, inside: str, *, looped: bool) -> None:
-        for child in ast.iter_child_nodes(node):
+        for child in children(node):
             if isinstance(child, _Function):
                 self._functions.setdefault(child.name, []).append((path, child))
                 self._read(path, child, child.name, looped=False)

@@ -10,7 +10,7 @@ import pytest
 from tarl_lint.evidence import Outline
 from tarl_lint.flows.statement_text import Texts
 from tarl_lint.read.source import Module
-from tarl_lint.system.fields import misfits, uses
+from tarl_lint.system.fields import examined
 from tarl_lint.system.service_calls import called_services, part
 
 HEAD = """\
@@ -24,7 +24,7 @@ def absent(text: str) -> list[tuple[str, str]]:
     """Return the absent fields of a program with their message types."""
     whole = HEAD + dedent(text)
     module = Module("node.py", "node", whole, ast.parse(whole))
-    found = misfits(module, Outline(module.tree), Texts({module.path: module}))
+    found, _ = examined(module, Outline(module.tree), Texts({module.path: module}))
     return [(one.type, one.field) for one in found]
 
 
@@ -121,9 +121,9 @@ def test_the_analysis_may_tell_which_messages_a_function_receives(kinds, functio
     module = Module("a.py", "a", function, ast.parse(function))
     outline, texts = Outline(module.tree), Texts({"a.py": module})
     heard = {"on": frozenset(kinds)}
-    assert [(one.type, one.field) for one in misfits(module, outline, texts, heard)] == found
-    unknown = [one.type for one in uses(module, outline, texts, heard)]
-    assert unknown == (["demo/Own"] if kinds == ["demo/Own"] else [])
+    absent, unknown = examined(module, outline, texts, heard)
+    assert [(one.type, one.field) for one in absent] == found
+    assert [one.type for one in unknown] == (["demo/Own"] if kinds == ["demo/Own"] else [])
 
 
 TWICE = """a = m.Synchronizer([image])
@@ -160,7 +160,7 @@ def test_no_field_counts_as_absent_if_the_message_type_is_unknown():
     module = Module(
         "a.py", "a", "", ast.parse("from demo.msg import Twist\ndef f():\n    t = Twist()\n    t.x = 1")
     )
-    assert list(misfits(module, Outline(module.tree), Texts({}))) == []
+    assert examined(module, Outline(module.tree), Texts({"a.py": module}))[0] == ()
 
 
 @pytest.mark.parametrize(
