@@ -6,16 +6,20 @@ this reason, the keyboard teleoperation of the Kobuki had no effect (https://git
 Robots also stand still if they are launched in a namespace but their code publishes on `/cmd_vel`
 (https://github.com/UoY-RoboStar/AURO/issues/5).
 
-Names are similar as well if a slash stands for an underscore (`/water/current` and `/water_current`), or if words are
-abbreviated (`/cmd` and `/command`). Two private names of the same node are similar, such as `/speech/finished` and
-`/speech/finish`. If the launch file names the node `lift` of the code `elevator`, its topic `~floor` is
-`/elevator/floor`, and `/lift/floor` has no publisher.
+Names are similar as well if a slash stands for an underscore (`/water/current` and `/water_current`), if words are
+abbreviated (`/cmd` and `/command`) or in another order (`/scan_filtered` and `/filtered_scan`), or if they have the
+same meaning (`/gripper/state` and `/gripper/status`). Two private names of the same node are similar, such as
+`/speech/finished` and `/speech/finish`. If the launch file names the node `lift` of the code `elevator`, its topic
+`~floor` is `/elevator/floor`, and `/lift/floor` has no publisher. Names that differ in a word of one or two letters,
+such as `wheel_fl` and `wheel_fr`, are not similar, nor are names with fewer than five letters, unless two letters are
+exchanged (`/sacn`).
 
-The rule reports nothing if a node of the launch file was not read and may use the type, or computes the names of its
-topics, or if an included launch file is not in the workspace, because the other end might be there. The types of
-well-known packages are known: a laser driver does not publish `Twist`. C++ programs of the workspace use only types
-that their files name. The rule also reports nothing if no publisher has a similar name, because sensors and simulators
-are often started elsewhere.
+A node that was not read, that computes the names of its topics, or that a missing launch file may start, might be the
+other end. Then the rule reports only misspelt names, not different namespaces and abbreviations, and only if no such
+node mentions one of the names in its remappings, parameters, arguments or strings. Such a node counts only if it may
+use the type: a laser driver publishes no `Twist`, the types of well-known packages are known, and C++ programs of the
+workspace use only types that their files name. The rule also reports nothing if no publisher has a similar name,
+because sensors and simulators are often started elsewhere.
 """
 
 from __future__ import annotations

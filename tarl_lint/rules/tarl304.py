@@ -4,8 +4,11 @@ The client waits forever, or its calls fail. As with topics, a namespace or a pr
 service `~home` of the node `arm` is `/arm/home`, not `/home`. In one namespace, `open` and `open_door` are similar as
 well. If the launch file gives a node another name than its code, the names of its private services change, too.
 
-The rule reports nothing if a node of the launch file was not read and may use the type, or if an included launch file
-is not in the workspace. The rule also reports nothing if no server has a similar name, because the server may be
+Actions are compared in the same way as services. In the root namespace, `dock` and `dock_robot` are similar only if
+the type is not one that many nodes offer, such as `Trigger`.
+
+Beside nodes that were not read, and with missing launch files, the rule reports only misspelt names that no such node
+mentions, as TARL301 does. The rule also reports nothing if no server has a similar name, because the server may be
 started elsewhere.
 """
 
