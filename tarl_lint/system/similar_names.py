@@ -7,6 +7,7 @@ from typing import Final
 
 from tarl_lint.system.model import Instance
 
+_LONG: Final = 5  # minimum length of names of which a letter may be wrong
 _CODE: Final = 2  # maximum length of words such as `fl`, which stand for a place
 _SYNONYMS: Final = (
     frozenset(["state", "status"]),
@@ -22,9 +23,9 @@ def spelled_alike(one: str, other: str) -> bool:
     part may be abbreviated (`vel`, `cmd`). For differences of letters, see `misspelt`.
     """
     (above, last), (beyond, end) = (name.rpartition("/")[::2] for name in (one, other))
-    if last == end:
-        return one != other and _within(*sorted((above.split("/"), beyond.split("/")), key=len))
-    return misspelt(one, other) or (above == beyond and _abbreviated(last, end))
+    if last == end and one != other and _within(*sorted((above.split("/"), beyond.split("/")), key=len)):
+        return True
+    return one != other and (misspelt(one, other) or (above == beyond and _abbreviated(last, end)))
 
 
 def misspelt(one: str, other: str) -> bool:
@@ -34,11 +35,12 @@ def misspelt(one: str, other: str) -> bool:
     be in another order. A slash may stand for an underscore (`water/current`). Words of the same meaning, such as
     `state` and `status`, are alike in the same namespace. Names that differ in a digit (`left_1`, `left_2`) or in a
     word of one or two letters (`imu_a`, `imu_b`; `wheel_fl`, `wheel_fr`) are different names, and so are names with
-    fewer than five letters, unless two letters are exchanged.
+    fewer than five letters, unless two letters are exchanged. A letter may also differ in a word of the namespace that
+    has at least five letters.
     """
     (above, last), (beyond, end) = (name.rpartition("/")[::2] for name in (one, other))
     if last == end:
-        return False
+        return _namespace_apart(above.split("/"), beyond.split("/"))
     if one.strip("/").replace("/", "_") == other.strip("/").replace("/", "_"):
         return True
     if above != beyond:
@@ -56,7 +58,7 @@ def misspelt(one: str, other: str) -> bool:
             return True
     if len(words) > 1 and sorted(words) == sorted(others):
         return True
-    return _one_apart(last, end) if min(len(last), len(end)) >= 5 else _exchanged(last, end)
+    return _one_apart(last, end) if min(len(last), len(end)) >= _LONG else _exchanged(last, end)
 
 
 def _abbreviated(one: str, other: str) -> bool:
@@ -108,6 +110,17 @@ def _within(few: list[str], many: list[str]) -> bool:
     """Return whether another namespace contains all parts of this one, in the same order."""
     rest = iter(many)
     return all(part in rest for part in few)
+
+
+def _namespace_apart(few: list[str], many: list[str]) -> bool:
+    """Return whether one word of one part of a namespace is misspelt in another namespace."""
+    if len(few) != len(many):
+        return False
+    parts = [(a.split("_"), b.split("_")) for a, b in zip(few, many, strict=True) if a != b]
+    if len(parts) != 1 or len(parts[0][0]) != len(parts[0][1]):
+        return False
+    words = [(a, b) for a, b in zip(*parts[0], strict=True) if a != b]
+    return len(words) == 1 and min(map(len, words[0])) >= _LONG and _one_apart(*words[0])
 
 
 def _exchanged(one: str, other: str) -> bool:

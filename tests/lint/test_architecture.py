@@ -55,6 +55,8 @@ def test_rules_report_their_invalid_snippets_and_nothing_in_valid_ones(code, nam
         ("/obstacle", "/obstacles", True), ("/cmd_vel", "/cmd_vel", False), ("/left_1", "/left_2", False),
         ("/odom", "/oдom", False), ("/left", "/lift", False), ("/a/scan", "/b/scan", False),
         ("/a/b/scan", "/a/scan", True), ("/imu_a", "/imu_b", False), ("/a_imu", "/b_imu", False),
+        ("/front/scan", "/frnot/scan", True), ("/robot1/scan", "/robot2/scan", False),
+        ("/left_arm/cmd", "/lift_arm/cmd", False), ("/a/front/x", "/frnot/x", False),
         ("/odoma", "/odoxa", True), ("/arm_xy", "/arm_xz", False), ("/scan_x", "/scanx_", False),
         ("/a/obstacle", "/b/obstacles", False), ("/imu/data", "/gps/data", False),
         ("/c/image_rect/compressed", "/c/image_calib/compressed", False),
