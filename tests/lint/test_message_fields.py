@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 from rosbags.typesys import Stores, get_typestore
 
-from tarl_lint.message_fields import ALL_FIELDS, FIELDS
+from tarl_lint.message_fields import ALL_FIELDS, BY_RELEASE, ELEMENTS, FIELDS, KNOWN_FIELDS
+from tarl_lint.message_fields import PACKAGES as PACKAGES_OF
 
 PACKAGES = ("std_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs")
 EMPTY = "structure_needs_at_least_one_member"  # the field of a message without fields
@@ -42,3 +45,28 @@ def test_the_fields_of_types_whose_copies_are_tracked_are_the_same_in_every_rele
             name: set(fields) - {"seq"} for name, fields in defined([store]).items() if name in FIELDS
         }
         assert {name: set(FIELDS[name]) for name in expected} == expected
+
+
+def elements() -> dict[str, dict[str, str]]:
+    """Return type → `field[]` → type of the elements, for all known types of all releases."""
+    found: dict[str, dict[str, str]] = {}
+    for store in Stores:
+        for full, (_, fields) in get_typestore(store).fielddefs.items():
+            package, _, name = full.split("/")
+            for field, (kind, described) in fields if name in PACKAGES_OF.get(package, ()) else ():
+                inner = re.search(r"\w+/msg/(\w+)", str(described))
+                if kind.name in ("ARRAY", "SEQUENCE") and inner is not None and inner[1] in KNOWN_FIELDS:
+                    found.setdefault(name, {})[f"{field}[]"] = inner[1]
+    return found
+
+
+def test_the_types_of_elements_are_those_in_the_definitions() -> None:
+    assert elements() == ELEMENTS
+
+
+def test_the_fields_that_only_one_release_has_are_absent_in_the_other_one() -> None:
+    for release, store in (("1", Stores.ROS1_NOETIC), ("2", Stores.ROS2_JAZZY)):
+        expected = {
+            name: set(fields) for name, fields in defined([store]).items() if name in BY_RELEASE[release]
+        }
+        assert {name: set(BY_RELEASE[release][name]) for name in expected} == expected
