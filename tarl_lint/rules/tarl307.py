@@ -262,6 +262,7 @@ def _beside(system: System) -> Iterator[Finding]:
             meant = [one for one in readers if one.interface and name in one.interface.private
                      and one.node.namespace.rstrip("/") == above]  # fmt: skip
             given = {one.name.lstrip("~").strip("/") for reader in readers for one in reader.node.settings}
+            given |= _OF_ROS
             if meant and len(meant) == len(readers) and name not in given and "" not in given:
                 message = (
                     f"{meant[0].name} reads its own ~{name}: the launch file sets {whole} without effect"
