@@ -58,6 +58,7 @@ class HeldMessages:
         self._scopes: dict[ast.AST, _Scope] = {}
         self._tested: dict[_Scope, set[str]] = {}  # variables whose class the code tests
         self._functions: dict[str, list[_Function]] = {}
+        self._found: dict[tuple[ast.AST, str], Held | None] = {}  # what variables and attributes hold
         self._read(tree)
         by_name = received(tree, types)
         lambdas = received_by_lambdas(tree, types)
@@ -153,7 +154,7 @@ class HeldMessages:
             if known is not None:
                 return None if values else known
             if values or name in _argument_names(scope):
-                return self._common(values, depth)
+                return self._common((scope, name), values, depth)
             scope = self._outer(scope)
         return None
 
@@ -161,15 +162,25 @@ class HeldMessages:
         around = self._outline.around(scope)
         return next((one for one in around if isinstance(one, _Scope)), None)
 
-    def _common(self, values: list[_Value], depth: int) -> Held | None:
-        """Return what all values hold; None if they differ or one is unknown."""
-        found: set[Held | None] = set()
+    def _common(self, key: tuple[ast.AST, str], values: list[_Value], depth: int) -> Held | None:
+        """Return what all values of a variable or attribute hold; None if they differ or one is unknown.
+
+        Each variable is examined once; one whose values depend on itself is unknown.
+        """
+        if key in self._found:
+            return self._found[key]
+        self._found[key] = None
+        found: set[Held] = set()
         for value in values:
             if isinstance(value.expr, ast.Constant) and value.expr.value is None:
                 continue
             held = self.of(value.expr, depth - 1) if value.expr is not None else None
-            found.add(_element(held) if held is not None and value.element else held)
-        return found.pop() if len(found) == 1 else None
+            held = _element(held) if held is not None and value.element else held
+            if held is None:
+                return None
+            found.add(held)
+        self._found[key] = found.pop() if len(found) == 1 else None
+        return self._found[key]
 
     def _class_of(self, expr: ast.Attribute) -> ast.ClassDef | None:
         """Return the class of `self`, if the attribute is one of `self` that only its methods set."""
@@ -180,7 +191,8 @@ class HeldMessages:
 
     def _attribute(self, expr: ast.Attribute, depth: int) -> Held | None:
         owner = self._class_of(expr)
-        return None if owner is None else self._common(self._attributes.get((owner, expr.attr), []), depth)
+        key = (owner, expr.attr) if owner is not None else None
+        return None if key is None else self._common(key, self._attributes.get(key, []), depth)
 
     def _arguments(self, function: _Function, given: set[tuple[str, int]], heard: Heard) -> dict[str, Held]:
         """Return the messages in the arguments of a function: as a callback, as the analysis knows, or annotated."""

@@ -52,6 +52,8 @@ MADE = [
     ("t = Twist() if a else Own()\nt.speed", []),
     ("t = copy.deepcopy(Twist())\nt.speed", [("Twist", "speed")]),
     ("t = rospy.wait_for_message('a', Twist)\nt.speed", [("Twist", "speed")]),
+    # variables that are assigned many times from each other
+    ("\n".join(["t = u[0]", "u = t[1]"] * 30) + "\nt.speed", []),
     ("for i, t in enumerate(Own().poses):\n    t.speed", []),
     ("ts = [t.speed for t in P().positions]", [("Pose", "positions")]),
 ]
