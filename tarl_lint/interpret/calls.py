@@ -176,6 +176,14 @@ def call_value(
     return result
 
 
+def _converted(ctx: Interpreter, made: Value, arguments: Arguments, frame: Frame) -> Value:
+    """Return the result of `Phase(msg.data)`: the data decide which member it is, and whether there is one."""
+    decides = call_contexts.all_used(ctx, arguments)
+    if decides:
+        ctx.ops.may_fail(ctx, decides, "ValueError", frame)
+    return Value(made.deps | decides, made.pts, made.consts)
+
+
 def call_object(
     ctx: Interpreter, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call, carriers: Nodes = NONE
 ) -> Value:
@@ -194,7 +202,8 @@ def call_object(
             ctx, closure, ([Value(carriers, frozenset([receiver])), *plain], named), frame, call, owner
         )
     if kind == "class":
-        return call_contexts.instantiate(ctx, target, arguments, frame, call)
+        made = call_contexts.instantiate(ctx, target, arguments, frame, call)
+        return _converted(ctx, made, arguments, frame) if expressions.enumerates(target) else made
     if kind == "ext":
         return ctx.ops.call_library(ctx, target.name, arguments, frame, call)
     if kind == "partial" and isinstance(target.info, tuple):
