@@ -7,7 +7,7 @@ from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, joins
+from tarl_lint.memory import enumerations, heap, joins
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, in_order, join, join_all, pointer
 from tarl_lint.models import sizes
@@ -203,7 +203,7 @@ def call_object(
         )
     if kind == "class":
         made = call_contexts.instantiate(ctx, target, arguments, frame, call)
-        return _converted(ctx, made, arguments, frame) if expressions.enumerates(target) else made
+        return _converted(ctx, made, arguments, frame) if enumerations.enumerates(target) else made
     if kind == "ext":
         return ctx.ops.call_library(ctx, target.name, arguments, frame, call)
     if kind == "partial" and isinstance(target.info, tuple):

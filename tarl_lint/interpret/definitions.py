@@ -9,7 +9,7 @@ from tarl_lint.interpret import calls, descriptors, expressions
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import control_dependence
-from tarl_lint.memory import recency
+from tarl_lint.memory import enumerations, heap, recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.function_attributes import DECORATED, attribute_of
 from tarl_lint.memory.values import ClassInfo, Obj, Value, const, function_of, join, lineage, pointer
@@ -148,10 +148,21 @@ def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
     body.depth_of_layers = frame.depth_of_layers
     ctx.ops.block(ctx, statement.body, body)
     frame.statement = statement
+    if enumerations.enumerates(cls):
+        _make_members(ctx, cls, statement, frame)
     descriptors.name_all(ctx, cls, frame, statement.pos)
     _subclassed(ctx, cls, statement, frame)
     made = decorated(ctx, pointer(cls), statement.decorators, statement, frame)
     ctx.ops.assign(ctx, statement.target, made if made.pts else pointer(cls), frame)
+
+
+def _make_members(ctx: Interpreter, cls: Obj, statement: ir.Class, frame: Frame) -> None:
+    """Call `__init__` for each member of an enumeration whose value is a sequence, with the elements as arguments."""
+    for number, (member, elements) in enumerate(enumerations.mark(ctx, cls)):
+        init = ctx.store.get((cls, "__init__"))
+        if init is not None:
+            call = ir.Call(ir.Const(None, statement.pos), (), (), statement.pos, -1 - number)
+            ctx.ops.call_value(ctx, heap.bind(ctx, init, member, cls), (elements, {}), frame, call)
 
 
 def _subclassed(ctx: Interpreter, cls: Obj, statement: ir.Class, frame: Frame) -> None:

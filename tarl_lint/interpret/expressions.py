@@ -10,21 +10,19 @@ from tarl_lint.catalog import fact
 from tarl_lint.interpret import descriptors, dunder_methods, literals, operators
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, recency
+from tarl_lint.memory import enumerations, heap, recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY
 from tarl_lint.memory.values import (
     BOTTOM,
     NONE,
     UNKNOWN,
-    ClassInfo,
     Obj,
     Value,
     const,
     function_of,
     join,
     join_all,
-    lineage,
     pointer,
 )
 from tarl_lint.models import environment, sizes
@@ -101,7 +99,8 @@ def read_attribute(ctx: Interpreter, base: Value, expr: ir.Attribute, frame: Fra
     """Return an attribute of an evaluated object; call the getter of a property or descriptor."""
     if expr.name == "value" and base.consts and not base.pts:
         return base  # a member of an enumeration, which is represented by its value
-    value = heap.read_or_hold(ctx, base, expr.name)
+    of_member = enumerations.attribute(ctx, base, expr.name) if ctx.members else None
+    value = heap.read_or_hold(ctx, base, expr.name) if of_member is None else of_member
     for obj in value.objects:
         if obj.kind == "bound" and is_property(obj):
             call = ir.Call(expr, (), (), expr.pos, -expr.slot)
@@ -163,7 +162,7 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
     result = Value(extra, consts=frozenset())
     for obj in base.objects:
         if obj.kind == "class":
-            found = member(ctx, obj, index) if enumerates(obj) else pointer(obj)
+            found = member(ctx, obj, index) if enumerations.enumerates(obj) else pointer(obj)
             result = join(result, heap.arrive(ctx, found, base.deps))
         elif keys := index.item_keys():
             for key in keys:
@@ -174,13 +173,6 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
                 found = ctx.ops.missing(ctx, obj, ANY)
             result = join(result, heap.arrive(ctx, found, base.deps))
     return Value(result.deps | extra, result.pts, result.consts)
-
-
-def enumerates(cls: Obj) -> bool:
-    """Return whether `Class[x]` may be a member of an enumeration; of other classes, it is the class itself."""
-    infos = [owner.info for owner in lineage(cls)]
-    names = {e.rpartition(".")[2] for i in infos if isinstance(i, ClassInfo) for e in i.external}
-    return any(name.endswith(("Enum", "Flag")) for name in names)
 
 
 def member(ctx: Interpreter, cls: Obj, name: Value) -> Value:

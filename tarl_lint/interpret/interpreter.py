@@ -78,6 +78,7 @@ class Interpreter:
         self.doubts: dict[int, dict[Root, None]] = {}
         # conditions inside the current expression (as in `a if b else c`) that decide what is evaluated
         self.guards: list[tuple[int, str]] = []
+        self.members = False  # whether a class is an enumeration whose members are sequences
         self.counting: ir.Stmt | None = None  # the statement in which numbers are followed one by one
         self.repeating = False  # whether the element of a comprehension is evaluated again
         self.work = Work()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap, recency
 from tarl_lint.memory.heap import ANY, HOLLOW, KEYS, RENAMING, item_field
-from tarl_lint.memory.values import Obj, Value, in_order, join
+from tarl_lint.memory.values import MEMBER, Obj, Value, in_order, join
 
 # maximum number of possible keys of one store into a mapping; with more, the store may change any element
 MAX_KEYS = 8
@@ -52,7 +52,7 @@ def add_element(ctx: Interpreter, base: Value, value: Value) -> None:
 def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
     """Store into an element."""
     keys = ctx.use(index)
-    classes = frozenset(o for o in index.pts if o.kind == "class")
+    classes = frozenset(o for o in index.pts if o.kind == "class" or o.name == MEMBER)
     for obj in base.objects if keys or classes else ():
         if obj.kind == "mapping":
             weaken(ctx, obj, KEYS, Value(keys, classes))

@@ -146,9 +146,12 @@ Key = tuple[Obj, str]
 
 @dataclass(frozen=True, slots=True)
 class ClassKey:
-    """A class as the key of a mapping."""
+    """A class, or a member of an enumeration, as the key of a mapping."""
 
     key: object
+
+
+MEMBER: Final = "member of an enumeration"  # name of the sequence that represents such a member
 
 
 class Symbolic(str):
@@ -204,12 +207,11 @@ class Value:
         return None if self.consts and any(type(c) is Symbolic for c in self.consts) else self.consts
 
     def item_keys(self) -> Consts:
-        """Return its constants and classes as indices; None if it may be anything else."""
+        """Return its constants, classes and members as indices; None if it may be anything else."""
         if not self.pts:
             return self.keys()
-        return (
-            frozenset(ClassKey(o.key) for o in self.pts) if all(o.kind == "class" for o in self.pts) else None
-        )
+        known = all(o.kind == "class" or o.name == MEMBER for o in self.pts)
+        return frozenset(ClassKey(o.key) for o in self.pts) if known else None
 
     def consts_in(self, other: Value) -> bool:
         """Return whether the constants of this value are a subset of another's."""

@@ -7,11 +7,11 @@ from ast import literal_eval
 from tarl_lint.interpret.budget import MAX_ROWS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap
+from tarl_lint.memory.enumerations import enumerates, is_member
 from tarl_lint.memory.heap import KEYS
-from tarl_lint.memory.values import BOTTOM, ClassInfo, Obj, Value, const, pointer
+from tarl_lint.memory.values import BOTTOM, Obj, Value, const, pointer
 
 MAX_MEMBERS = 100  # maximum number of attributes of an object or class over which a loop is unrolled
-ENUMERATIONS = ("Enum", "Flag")  # endings of the names of base classes of enumerations
 CONTAINERS = frozenset(["sequence", "mapping"])
 
 
@@ -63,11 +63,10 @@ def attributes(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | Non
 
 def _members(ctx: Interpreter, cls: Obj) -> list[Value]:
     """Return the members of an enumeration, which are represented by their values."""
-    if not isinstance(cls.info, ClassInfo) or not any(
-        name.endswith(ENUMERATIONS) for name in cls.info.external
-    ):
+    if not enumerates(cls):
         return []
-    found = [value for _, value in attributes(ctx, pointer(cls)) or () if value.fixed()]
+    values = [value for _, value in attributes(ctx, pointer(cls)) or ()]
+    found = [one for one in values if one.fixed() or (one.pts and all(map(is_member, one.pts)))]
     return found if 1 < len(found) <= MAX_ROWS else []
 
 
