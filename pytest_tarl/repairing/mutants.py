@@ -7,7 +7,8 @@ from pathlib import Path
 
 from pytest_tarl.errors import RepairError, StaleTextError, TarlError
 from pytest_tarl.model import Guard
-from pytest_tarl.patching.mutate import Mutation, is_integral, mutations
+from pytest_tarl.patching.crossed_limits import crosses
+from pytest_tarl.patching.mutate import Mutation, analysed_document, is_integral, mutations
 from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.recording import sound
 from pytest_tarl.repairing.request import Order
@@ -30,8 +31,12 @@ class Mutants:
         self._sources: dict[Candidate, Mapping[Path, str]] = {}
 
     def mutate(self, operand: Operand, factor: float) -> Mutation | None:
-        """Return the mutation of an operand by a factor, or None if it changes nothing."""
-        return mutations(operand, factor, is_integral(self.order.analysis, operand))
+        """Return the mutation of an operand by a factor; None if it changes nothing or crosses the opposite limit."""
+        found = mutations(operand, factor, is_integral(self.order.analysis, operand))
+        if found is None or not operand.literal or isinstance(found.value, bool):
+            return found
+        source = analysed_document(self.order.analysis, operand.span.path)
+        return None if crosses(source, source.find(operand.span), float(found.value)) else found
 
     def source(self, candidate: Candidate) -> Mapping[Path, str]:
         """Return the text of every file that a candidate changes, by path. Raise RepairError."""

@@ -1,0 +1,57 @@
+"""Limits that cross: `max(1.2, min(1.0, x))` is 1.2 whatever x is.
+
+A changed limit that lies beyond the opposite limit makes a clamp a constant. The node then ignores what it computes,
+and may command a value that the opposite limit forbids. Even if all missions pass, nobody would merge such a change.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import Final
+
+from pytest_tarl.patching.document import Document
+
+OPPOSITE: Final = {"max": "min", "min": "max"}  # `max` has a lower limit as an argument, `min` an upper one
+CLAMPS: Final = frozenset(["clip", "clamp", "constrain", "saturate", "bound"])  # called as f(x, low, high)
+
+
+def crosses(source: Document, node: ast.expr, value: float) -> bool:
+    """Return whether a limit with this value would lie beyond a literal limit on the other side."""
+    node = _with_sign(source, node)
+    call = source.parents.get(node)
+    if not isinstance(call, ast.Call) or node not in call.args or isinstance(value, bool):
+        return False
+    name = _name(call)
+    if name in CLAMPS and len(call.args) == 3:
+        place = call.args.index(node)
+        other = _number(call.args[3 - place]) if place else None
+        return other is not None and (value > other if place == 1 else value < other)
+    if name not in OPPOSITE or len(call.args) != 2:
+        return False
+    others = [_limit(one, OPPOSITE[name]) for one in (*call.args, source.parents.get(call))]
+    return any(one is not None and (value > one if name == "max" else value < one) for one in others)
+
+
+def _limit(node: ast.AST | None, name: str) -> float | None:
+    """Return the literal argument of a call of `min` or `max` with two arguments; None for anything else."""
+    if not isinstance(node, ast.Call) or _name(node) != name or len(node.args) != 2:
+        return None
+    return next((found for one in node.args if (found := _number(one)) is not None), None)
+
+
+def _name(call: ast.Call) -> str:
+    return ast.unparse(call.func).rpartition(".")[2]
+
+
+def _number(node: ast.expr) -> float | None:
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        inner = _number(node.operand)
+        return None if inner is None else -inner
+    known = isinstance(node, ast.Constant) and isinstance(node.value, int | float)
+    return float(node.value) if known and not isinstance(node.value, bool) else None  # type: ignore[attr-defined]
+
+
+def _with_sign(source: Document, node: ast.expr) -> ast.expr:
+    """Return the expression that is the argument: a negative literal is an operation on a positive one."""
+    parent = source.parents.get(node)
+    return parent if isinstance(parent, ast.UnaryOp) else node
