@@ -20,6 +20,7 @@ from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate
+from tarl_lint.api import analyse
 from tests.plugin.searching.test_search import GAIN
 from tests.plugin.workers.test_protocol import RUN
 
@@ -179,3 +180,22 @@ def test_files_outside_the_analysis_are_read_once(texts: list[Any], tmp_path: Pa
     of.order.analysis.sources["gains.yaml"] = ""
     of.source(Candidate((Mutation(GAIN, 5.0, place=place),), ALWAYS))
     assert of.texts == {}
+
+
+def test_a_limit_is_not_moved_beyond_the_opposite_limit(tmp_path: Path) -> None:
+    (tmp_path / "node.py").write_text(
+        "import rospy\nfrom std_msgs.msg import Float64\n"
+        'pub = rospy.Publisher("/out", Float64, queue_size=1)\n'
+        "def on(msg):\n    pub.publish(max(0.2, min(1.0, 0.5 * msg.data)))\n"
+        'rospy.Subscriber("/in", Float64, on)\n'
+    )
+    analysis = analyse([tmp_path / "node.py"], root=tmp_path)
+    operands = {one.code: one for step in analysis.sites for one in analysis.operands(step.site)}
+    mutants = Mutants(SimpleNamespace(analysis=analysis, rollout=Rollout()))  # type: ignore[arg-type]
+    values = {
+        code: [found and found.value for factor in (0.1, 4.0, 8.0) for found in [mutants.mutate(one, factor)]]
+        for code, one in operands.items()
+    }
+    assert values["0.2"] == [pytest.approx(0.02), pytest.approx(0.8), None]
+    assert values["1.0"] == [None, 4.0, 8.0]
+    assert values["0.5"] == [0.05, 2.0, 4.0]
