@@ -231,8 +231,7 @@ def _unmatched(instance: Instance, old: str) -> bool:
     used = {resolved(name, namespace, own) for name in names}
     words = frozenset[str]()
     if instance.interface is not None:
-        own_names = names | {name.strip("~/") for name in names}
-        words = instance.interface.words - instance.interface.private_words - own_names
+        words = instance.interface.words - instance.interface.private_words - names
     # the end of a name may be put below a namespace; a longer name is another one
     whole = resolved(old, namespace, own)
     said = any(whole.endswith(f"/{word.strip('/')}") for word in words if word.strip("/"))

@@ -84,7 +84,8 @@ out.publish(l[-1])  # data
 out.publish(l[-2])  # clean
 ### a slice
 l = [1.0, 2.0, msg.data]
-out.publish(l[1:][0])  # data
+out.publish(l[1:][0])  # clean
+out.publish(l[1:][1])  # data
 out.publish([1.0, 2.0][:1][0])  # clean
 out.publish(len(l[1:]))  # clean
 out.publish(len([1.0, 2.0][:msg.count]))  # data
