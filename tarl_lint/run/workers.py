@@ -44,7 +44,9 @@ def in_processes(
         try:
             answers = dict(zip(order, done, strict=True))
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
+            # Wait for the pool's own thread: at the end of Python 3.11, it may close the pipe that the interpreter
+            # writes to, which prints a traceback.
+            pool.shutdown(wait=True, cancel_futures=True)
             raise
     return [answers[number] for number in range(len(work))]
 
