@@ -73,7 +73,9 @@ def ours(stage: Stage, seed: int, search: str = "sweep") -> dict[str, Any]:
         "reason": fixed.reason,
         "guard": fixed.guard,
         "permanent": stage.permanent,
-        "edits": [f"{edit.path}:{edit.line} {edit.code} → {edit.value:g}" for edit in fixed.edits],
+        "edits": [
+            f"{edit.path}:{edit.line} {edit.what or f'{edit.code} → {edit.value:g}'}" for edit in fixed.edits
+        ],
         "episodes": {"comparison": order.online.recorded.sample.episodes, **outcome.episodes},
         **judged(order, overlay if fixed.accepted else None),
     }
