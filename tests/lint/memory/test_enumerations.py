@@ -1,0 +1,76 @@
+"""Members of enumerations: which classes have them, and what a member with a sequence as its value shows."""
+
+from __future__ import annotations
+
+import pytest
+
+from tarl_lint.memory import enumerations, recency
+from tarl_lint.memory.heap import item_field
+from tarl_lint.memory.values import ClassKey, Obj, Value, const, pointer
+from tests.lint.memory.test_heap import ONE, a_class, made
+
+
+def sequence(ctx, key: str, *elements: Value) -> Obj:
+    obj = made(ctx, "sequence", key)
+    for number, element in enumerate(elements):
+        ctx.store.put((obj, item_field(number)), element)
+    return obj
+
+
+@pytest.fixture
+def channel(ctx):
+    """An enumeration with a member of two values, a member that is a number, and a function."""
+    cls = a_class(ctx, "Channel", external=("enum.Enum",))
+    ctx.store.put((cls, "SCAN"), pointer(sequence(ctx, "scan", const("/scan"), ONE)))
+    ctx.store.put((cls, "LEVEL"), const(3))
+    ctx.store.put((cls, "_ignored"), pointer(sequence(ctx, "private", const("/private"))))
+    made_of = {obj.info[1]: elements for obj, elements in enumerations.mark(ctx, cls)}
+    return cls, made_of
+
+
+@pytest.mark.parametrize(
+    ("external", "enumerates"),
+    [(("enum.Enum",), True), (("enum.IntFlag",), True), (("builtins.object",), False), ((), False)],
+)
+def test_a_class_enumerates_if_a_base_is_an_enumeration(ctx, external, enumerates):
+    base = a_class(ctx, "Base", external=external)
+    assert enumerations.enumerates(base) is enumerates
+    assert enumerations.enumerates(a_class(ctx, "Derived", base)) is enumerates
+
+
+def test_sequences_in_the_class_become_marked_members(ctx, channel):
+    cls, made_of = channel
+    assert made_of == {"SCAN": [const("/scan"), ONE]}
+    assert ctx.members
+    (member,) = ctx.store.get((cls, "SCAN")).pts
+    assert enumerations.is_member(member)
+    assert ctx.store.get((member, item_field(0))) == const("/scan")
+    assert ctx.store.get((cls, "LEVEL")) == const(3)
+    (private,) = ctx.store.get((cls, "_ignored")).pts
+    assert not enumerations.is_member(private)
+
+
+def test_a_member_is_a_key_of_its_own(ctx, channel):
+    cls, _ = channel
+    member = ctx.store.get((cls, "SCAN"))
+    assert member.item_keys() == frozenset([ClassKey(next(iter(member.pts)).key)])
+    assert pointer(sequence(ctx, "other", const("/scan"))).item_keys() is None
+
+
+def test_a_member_has_its_value_its_name_and_the_attributes_of_its_class(ctx, channel):
+    cls, _ = channel
+    member = ctx.store.get((cls, "SCAN"))
+    (obj,) = member.pts
+    assert enumerations.attribute(ctx, member, "value") == pointer(obj)
+    assert enumerations.attribute(ctx, member, "name") == const("SCAN")
+    ctx.store.put((cls, "shared"), ONE)
+    assert enumerations.attribute(ctx, member, "shared") == ONE
+    ctx.store.put((obj, "shared"), const(5))  # set by `__init__`
+    assert enumerations.attribute(ctx, member, "shared") == const(5)
+    assert enumerations.attribute(ctx, member, "absent") == Value()
+
+
+def test_other_objects_are_no_members(ctx, channel):
+    other = recency.intern(ctx, "sequence", "plain")
+    assert enumerations.attribute(ctx, pointer(other), "value") is None
+    assert not enumerations.is_member(recency.intern(ctx, "instance", "x", "member of an enumeration"))
