@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 Work = TypeVar("Work")
 Answer = TypeVar("Answer")
+MOMENT = 1.0  # s that the thread of an ended pool gets
 
 
 def in_processes(
@@ -44,9 +45,7 @@ def in_processes(
         try:
             answers = dict(zip(order, done, strict=True))
         except BaseException:
-            # Wait for the pool's own thread: at the end of Python 3.11, it may close the pipe that the interpreter
-            # writes to, which prints a traceback.
-            pool.shutdown(wait=True, cancel_futures=True)
+            _end(pool)
             raise
     return [answers[number] for number in range(len(work))]
 
@@ -61,6 +60,18 @@ def _pool(workers: int) -> ProcessPoolExecutor | None:
         return ProcessPoolExecutor(workers, context, end_silently)
     except (ImportError, NotImplementedError, OSError):  # raised if the system has no semaphores
         return None
+
+
+def _end(pool: ProcessPoolExecutor) -> None:
+    """End a pool without waiting for its tasks, and give its own thread a moment to end.
+
+    If that thread closes its pipe while the interpreter ends, Python 3.11 writes to the closed pipe and prints a
+    traceback. The thread ends at once unless a task is still running.
+    """
+    thread = getattr(pool, "_executor_manager_thread", None)
+    pool.shutdown(wait=False, cancel_futures=True)
+    if thread is not None:
+        thread.join(MOMENT)
 
 
 def _context() -> BaseContext | None:

@@ -87,7 +87,7 @@ def test_many_tasks_are_divided_into_sixteen_chunks_for_each_process(pool, count
 def test_a_failing_task_ends_the_other_tasks(pool):
     with pytest.raises(ValueError, match="no 1"):
         in_processes(failing, [1, 2], [1, 1], 2, silent)
-    assert pool.shut == {"wait": True, "cancel_futures": True}
+    assert pool.shut == {"wait": False, "cancel_futures": True}
     assert "PYTHONSAFEPATH" not in os.environ
 
 
