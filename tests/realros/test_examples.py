@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import shutil
 import subprocess
 import sys
@@ -17,13 +18,13 @@ HERE = [
     pytest.param(
         "shuttle",
         "test_shuttle.py::test_delivers",
-        "accepted: 5 →",
+        r"accepted: 5 →",
         marks=pytest.mark.skipif(not ROSPY, reason="rospy is not installed here: make test-ros1"),
     ),
     pytest.param(
         "line_follower",
         "test_line_follower.py::test_follows_the_line",
-        "accepted: KP →",
+        r"accepted: (KP →|scale KP\s+by\s+\(light)",  # both suit the weaker light
         marks=pytest.mark.skipif(not RCLPY, reason="rclpy is not installed here: make test-ros2"),
     ),
 ]
@@ -62,5 +63,5 @@ def test_recording_comparing_and_repairing_an_example_gives_the_results_of_the_e
         tmp_path / "real", test, "--tarl-online", "--tarl-repair", "--tarl-ros=real", "--tarl-episodes=16"
     )
     assert ": degraded" in told, told
-    assert repair in told, told
+    assert re.search(repair, told), told
     assert told.splitlines()[-1].startswith("git apply "), told
