@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.document import Document, Edit, Function, Loop, document
+from pytest_tarl.patching.document import Document, Edit, Function, Loop, called, document
 from pytest_tarl.patching.imports import top_imports
 from tarl_lint.model import SiteId
 
@@ -169,7 +169,7 @@ def _is_node_class(source: Document, place: ast.AST) -> bool:
 
 
 def _called(call: ast.expr) -> str:
-    return ast.unparse(call.func).rpartition(".")[2] if isinstance(call, ast.Call) else ""
+    return called(call) if isinstance(call, ast.Call) else ""
 
 
 def _until_function(source: Document, statement: ast.stmt) -> Iterator[ast.stmt]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 from typing import Final
 
-from pytest_tarl.patching.document import Document
+from pytest_tarl.patching.document import Document, called
 
 OPPOSITE: Final = {"max": "min", "min": "max"}  # `max` has a lower limit as an argument, `min` an upper one
 CLAMPS: Final = frozenset(["clip", "clamp", "constrain", "saturate", "bound"])  # called as f(x, low, high)
@@ -21,7 +21,7 @@ def crosses(source: Document, node: ast.expr, value: float) -> bool:
     call = source.parents.get(node)
     if not isinstance(call, ast.Call) or node not in call.args or isinstance(value, bool):
         return False
-    name = _name(call)
+    name = called(call)
     if name in CLAMPS and len(call.args) == 3:
         place = call.args.index(node)
         other = _number(call.args[3 - place]) if place else None
@@ -34,21 +34,17 @@ def crosses(source: Document, node: ast.expr, value: float) -> bool:
 
 def _limit(node: ast.AST | None, name: str) -> float | None:
     """Return the literal argument of a call of `min` or `max` with two arguments; None for anything else."""
-    if not isinstance(node, ast.Call) or _name(node) != name or len(node.args) != 2:
+    if not isinstance(node, ast.Call) or called(node) != name or len(node.args) != 2:
         return None
     return next((found for one in node.args if (found := _number(one)) is not None), None)
 
 
-def _name(call: ast.Call) -> str:
-    return ast.unparse(call.func).rpartition(".")[2]
-
-
 def _number(node: ast.expr) -> float | None:
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        inner = _number(node.operand)
-        return None if inner is None else -inner
-    known = isinstance(node, ast.Constant) and isinstance(node.value, int | float)
-    return float(node.value) if known and not isinstance(node.value, bool) else None  # type: ignore[attr-defined]
+    try:
+        value = ast.literal_eval(node)
+    except ValueError:
+        return None
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
 
 
 def _with_sign(source: Document, node: ast.expr) -> ast.expr:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.document import Document, Edit, document, parse
+from pytest_tarl.patching.document import Document, Edit, called, document, parse
 from pytest_tarl.patching.expressions import number
 from pytest_tarl.patching.launch_numbers import computed, numerals
 from tarl_lint.model import Operand
@@ -77,9 +77,9 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
     around = [node, *source.ancestors(node)] if node is not None else []
     entry = next((each for each in around if isinstance(each, ast.Tuple | ast.List)), None)
     for each in around:
-        if isinstance(each, ast.Call) and ast.unparse(each.func).rpartition(".")[2] == SEVERAL:
+        if isinstance(each, ast.Call) and called(each) == SEVERAL:
             return _entry_name(each, entry)
-        if isinstance(each, ast.Call) and ast.unparse(each.func).rpartition(".")[2] in PARAMETER_CALLS:
+        if isinstance(each, ast.Call) and called(each) in PARAMETER_CALLS:
             first = each.args[0] if each.args else None
             named = isinstance(first, ast.Constant) and isinstance(first.value, str)
             return str(first.value) if named and isinstance(first, ast.Constant) else ""

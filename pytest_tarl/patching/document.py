@@ -19,6 +19,11 @@ _NEWLINE = re.compile(r"\r\n|\r|\n")
 _COMMENT = re.compile(r"[ \t\f]*(#[^\r\n]*)?")
 
 
+def called(call: ast.Call) -> str:
+    """Return the last part of the name of a called function."""
+    return ast.unparse(call.func).rpartition(".")[2]
+
+
 @dataclass(frozen=True, slots=True)
 class Edit:
     """Replace the characters from `start` to `end` by `text`; lines in `text` end with a line feed."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from pytest_tarl.patching.document import Document, parse_expression
+from pytest_tarl.patching.document import Document, called, parse_expression
 
 DIGITS = 4  # number of significant digits of numbers in a repair
 
@@ -151,7 +151,7 @@ def _counts(parent: ast.AST, child: ast.AST) -> bool:
     if isinstance(parent, ast.Subscript):
         return child is parent.slice
     if isinstance(parent, ast.Call):
-        return _is_integer_vector(child) or ast.unparse(parent.func).rpartition(".")[2] in _COUNTED_BY
+        return _is_integer_vector(child) or called(parent) in _COUNTED_BY
     if isinstance(parent, ast.keyword):
         return parent.arg in _COUNTS
     return isinstance(parent, ast.Compare) and any(isinstance(op, _IDENTITIES) for op in parent.ops)

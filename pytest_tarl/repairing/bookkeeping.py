@@ -10,7 +10,7 @@ import ast
 from collections.abc import Iterator
 from functools import cache
 
-from pytest_tarl.patching.document import Document
+from pytest_tarl.patching.document import Document, called
 from tarl_lint.api import Analysis
 
 STAMPS = ("Time", "Time.from_sec", "Time.from_seconds")  # endings of names of calls that create time stamps
@@ -75,7 +75,7 @@ def _of_call(analysis: Analysis, call: ast.Call, inner: ast.AST) -> bool:
 
 def _only_logs(analysis: Analysis, call: ast.Call) -> bool:
     """Return whether a call makes a timer whose callback reaches no statement that influences what is published."""
-    at = TIMERS.get(ast.unparse(call.func).rpartition(".")[2])
+    at = TIMERS.get(called(call))
     if at is None:
         return False
     given = [one.value for one in call.keywords if one.arg == "callback"] or call.args[at : at + 1]

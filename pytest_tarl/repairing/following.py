@@ -26,10 +26,8 @@ from pytest_tarl.sensors import Sensor
 
 ABOVE, BELOW = "above", "below"
 APART = 1.25  # minimum ratio of a sensor's usual values in the two worlds
-LEAST, MOST = (
-    0.2,
-    4.0,
-)  # powers beyond these say that the sensor hardly matters, or that it changes too little
+# smallest and largest size of a power; with others, the sensor hardly matters or changes too little
+LEAST, MOST = 0.2, 4.0
 SENSORS, VARIABLES = 2, 1  # maximum number of sensors and of variables that are tried
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pytest_tarl.errors import RepairError
 from pytest_tarl.instrumentation.sites import plan
 from pytest_tarl.instrumentation.trace import Trace
-from pytest_tarl.patching.document import Document, document
+from pytest_tarl.patching.document import Document, called, document
 from pytest_tarl.repairing.mission_pairs import Recorded, series
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.limits_in_turn import Limit
@@ -116,7 +116,7 @@ def _times(holds: Bools) -> Ints:
 
 
 def _stays(pair: Pair, bound: float) -> int | None:
-    """Return the first step at which a value is at a bound, if it often is, and rarely as designed, or else None."""
+    """Return the first step at which a value is at a bound; None unless it often is there, and rarely as designed."""
     at = _at(pair.drifted, bound)
     often = at.mean() >= OFTEN and _at(pair.designed, bound).mean() <= RARELY
     return int(pair.drifted.step[np.flatnonzero(at)[0]]) if often else None
@@ -165,4 +165,4 @@ def _is_bound(source: Document, node: ast.expr) -> bool:
     around = source.parents.get(node)
     if isinstance(around, ast.UnaryOp):
         around = source.parents.get(around)
-    return isinstance(around, ast.Call) and ast.unparse(around.func).rpartition(".")[2] in BOUNDS
+    return isinstance(around, ast.Call) and called(around) in BOUNDS

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from pytest_tarl.patching.document import Document, document
+from pytest_tarl.patching.document import Document, called, document
 from pytest_tarl.patching.mutate import Mutation, form_values
 from pytest_tarl.patching.structures import Form, described
 from pytest_tarl.patching.templates import FIELD, FIXED, OF_SENSORS, Template
@@ -90,7 +90,7 @@ def _limited(node: ast.expr) -> bool:
     """Return whether an expression limits a value to a range, as `max(low, min(high, x))` or `clamp(x)` do."""
     if not isinstance(node, ast.Call):
         return False
-    name = ast.unparse(node.func).rpartition(".")[2]
+    name = called(node)
     inner = [ast.unparse(each.func) for each in node.args if isinstance(each, ast.Call)]
     return name in CLAMPS or (name in ("max", "min") and {"max", "min"} - {name} <= set(inner))
 

@@ -9,11 +9,11 @@ from itertools import combinations
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.built_fields import built_fields
-from pytest_tarl.patching.document import Document, document
+from pytest_tarl.patching.document import Document, called, document
 from pytest_tarl.patching.templates import FIELD
 from pytest_tarl.repairing.labels import is_member
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repairing.typical_sizes import TypicalSizes, called, threshold
+from pytest_tarl.repairing.typical_sizes import TypicalSizes, threshold
 from tarl_lint.model import SiteId, Span, Step
 
 _NUMERIC = ("abs", "float", "int", "max", "min", "pow", "round", "sum")

@@ -10,7 +10,7 @@ import numpy as np
 from pytest_tarl.errors import RepairError
 from pytest_tarl.finite_numbers import finite_number
 from pytest_tarl.learning.tables import START, Sample
-from pytest_tarl.patching.document import document
+from pytest_tarl.patching.document import called, document
 from pytest_tarl.repairing.request import Order
 from tarl_lint.model import SiteId
 
@@ -64,11 +64,6 @@ class TypicalSizes:
         if isinstance(node.op, ast.Mult):
             return left * right
         return left / right if isinstance(node.op, ast.Div) else None
-
-
-def called(call: ast.Call) -> str:
-    """Return the last part of the name of a called function."""
-    return ast.unparse(call.func).rpartition(".")[2]
 
 
 def threshold(node: ast.expr) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 
+from pytest_tarl.patching.document import called
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
@@ -33,4 +34,4 @@ def _called(operand: Operand) -> str:
         return ""
     if not isinstance(node, ast.Call):
         return ""
-    return ast.unparse(node.func).rpartition(".")[2]
+    return called(node)

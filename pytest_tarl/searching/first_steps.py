@@ -133,7 +133,7 @@ class FirstSteps:
     def _limits(self, guard: Guard) -> Iterator[Candidate]:
         """Relax the limits that missions reach, once; start also from the changes after which they last longest.
 
-        What a wrong reading shows is corrected before.
+        Corrections of wrong readings are tried first.
         """
         tries, reached = self.attempts, self._reached
         self._reached = None
