@@ -57,6 +57,12 @@ def last_name(expr: ast.expr) -> str:
     return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
 
 
+def argument(call: ast.Call, place: int, *names: str) -> ast.expr | None:
+    """Return an argument of a call by its keyword, or else by its place; None if the call does not pass it."""
+    named = next((one.value for one in call.keywords if one.arg in names), None)
+    return named if named is not None else call.args[place] if len(call.args) > place else None
+
+
 def _holding(kind: type[ast.AST]) -> tuple[str, ...]:
     if kind is ast.Constant:
         return ()

@@ -60,7 +60,7 @@ def named_first(flows: Iterable[Flow]) -> Iterator[Flow]:
 
 
 def named_sinks_first(flows: Iterable[Flow]) -> Iterator[Flow]:
-    """Yield flows, but of the sinks at one line those without topics only if no named one has a flow like theirs."""
+    """Yield flows. A flow to a sink without topics is left out if a named sink of its line has a flow like it."""
     found = list(flows)
     kinds: dict[object, set[str]] = {}
     for flow in found:

@@ -65,17 +65,18 @@ def decorated(
     for decorator in reversed(decorators):
         wrapper = expressions.evaluate(ctx, decorator, frame)
         maker = decorator.function if isinstance(decorator, ir.Call) else decorator
+        package = expressions.evaluate(ctx, maker, frame) if isinstance(decorator, ir.Call) else wrapper
         later = [o for o in value.objects if o.kind in LATER]
         if isinstance(maker, ir.Attribute) and _of_library(expressions.evaluate(ctx, maker.base, frame)):
             for target in later:
                 subscriptions.call_later(ctx, target, ())
-        elif later and _of_unknown_package(expressions.evaluate(ctx, maker, frame)):
+        elif later and _of_unknown_package(package):
             ctx.handed_over.update(later)
-        if later and not ctx.nothing_yet(wrapper) and not any(wraps(ctx, o) for o in wrapper.pts):
-            _note_library(ctx, later, expressions.evaluate(ctx, maker, frame))
         if any(wraps(ctx, o) for o in wrapper.pts):
             call = ir.Call(decorator, (), (), s.pos, -1)
             value = calls.call_value(ctx, wrapper, ([value], {}), frame, call)
+        elif not ctx.nothing_yet(wrapper) and not _of_known_package(package):
+            _note_library(ctx, later)
     frame.statement = s
     return value
 
@@ -94,10 +95,10 @@ def _of_known_package(value: Value) -> bool:
     return bool(value.pts) and all(o.kind == "ext" and o.name.partition(".")[0] in KNOWN for o in value.pts)
 
 
-def _note_library(ctx: Interpreter, functions: Sequence[Obj], maker: Value) -> None:
+def _note_library(ctx: Interpreter, functions: Sequence[Obj]) -> None:
     """Note that a decorator of a library, or an unknown one, may have added attributes to functions."""
     for one in functions:
-        if one.kind == "closure" and not _of_known_package(maker):
+        if one.kind == "closure":
             ctx.store.put((one, attribute_of(DECORATED)), const(value=True))
 
 

@@ -1,9 +1,8 @@
 """Find code that registers something (an input, a publisher, a timer) or makes objects of the analysed files.
 
-A loop over such code is unrolled, so that each iteration has its own topics, callbacks and objects. So is a loop that
-publishes with a publisher that depends on the element. Functions and
-classes are told apart by their names only: code that calls one of two functions with the same name is assumed to call
-both, and is then unrolled without need.
+A loop over such code is unrolled, so that each iteration has its own topics, callbacks and objects. A loop whose
+element chooses the publisher is unrolled as well. Functions and classes are told apart by their names only: code that
+calls one of two functions with the same name is assumed to call both, and is then unrolled without need.
 """
 
 from __future__ import annotations
@@ -47,7 +46,7 @@ class Registrations:
         return found
 
     def publishes(self, loop: ir.Loop) -> Literal["direct", "helper", ""]:
-        """Return whether the element of a loop chooses a publisher: in its body, in a function that it calls, or not.
+        """Return where the element of a loop chooses a publisher: in its body, in a function that it calls, or nowhere.
 
         A loop over publishers, which all get the same message, does not count.
         """

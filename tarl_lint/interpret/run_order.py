@@ -1,4 +1,4 @@
-"""Parts of state machines and behaviour trees, of which the outcome of one decides whether another one runs.
+"""Parts of state machines and behaviour trees: the outcome of one part decides whether others run.
 
 A tree of groups is flattened into one graph, whose edges are the outcomes of parts. A part depends on the outcomes of
 another one as a statement depends on a condition (Ferrante, Ottenstein and Warren 1987).

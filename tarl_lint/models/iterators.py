@@ -17,7 +17,7 @@ from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, join_all
 from tarl_lint.models import rows as possible_rows
 from tarl_lint.models import sizes
 
-MAX_ROWS = 8  # maximum number of elements to which `map` is applied one by one
+MAX_MAPPED = 8  # maximum number of elements to which `map` is applied one by one
 
 
 def listed(ctx: Interpreter, element: Value, length: Nodes, it: Invocation) -> Value:
@@ -124,7 +124,7 @@ def mapped_elements(ctx: Interpreter, it: Invocation) -> Value:
     function, *rest = it.arguments[0] or [UNKNOWN]
     known = [sizes.unpacked(ctx, v) for v in rest]
     rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
-    if it.name == "map" and rows and len(rows) <= MAX_ROWS:
+    if it.name == "map" and rows and len(rows) <= MAX_MAPPED:
         return _each(ctx, function, rows, it)
     parts = [heap.elements(ctx, v) for v in rest]
     length = lengths(ctx, rest)

@@ -105,10 +105,9 @@ def _lacks(ctx: Interpreter, obj: Obj, name: str) -> bool:
     if obj.kind == "instance" and isinstance(obj.info, Obj):
         dynamic = heap.read_field(ctx, obj, "__getattr__").pts or heap.replaced_attributes(ctx, obj)
         return not dynamic and not _opaque(obj.info) and heap.read_field(ctx, obj, name) is BOTTOM
-    closure = obj.info[0] if obj.kind == "bound" and isinstance(obj.info, tuple) else obj
-    if function_of(closure) is None or function_attributes.may_have_more(ctx, pointer(closure)):
+    if function_of(obj) is None or function_attributes.may_have_more(ctx, pointer(obj)):
         return False
-    return function_attributes.attribute(ctx, closure, name) is None
+    return function_attributes.attribute(ctx, obj, name) is None
 
 
 def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared signature

@@ -1,7 +1,7 @@
 """Infer which expressions of a module hold messages, or parts of them.
 
-Followed are variables, attributes of `self`, elements of lists, arguments of callbacks, annotations, and responses of
-services. A variable holds a message only if every value that it is assigned holds one of the same type; None counts as
+Variables, attributes of `self`, elements of lists, arguments of callbacks, annotations and responses of services are
+followed. A variable holds a message only if every value that it is assigned holds one of the same type; None counts as
 no value.
 """
 
@@ -13,8 +13,8 @@ from typing import Final, NamedTuple
 
 from tarl_lint.evidence import Outline
 from tarl_lint.system.imported_types import ImportedTypes, short
-from tarl_lint.system.message_callbacks import HANDLE, argument, received, received_by_lambdas
-from tarl_lint.trees import children, last_name
+from tarl_lint.system.message_callbacks import HANDLE, received, received_by_lambdas
+from tarl_lint.trees import argument, children, last_name
 
 Heard = Mapping[str, frozenset[str]]
 _DEEPEST: Final = 12  # maximum number of variables in a chain
@@ -224,7 +224,7 @@ class HeldMessages:
         return Held(kind) if kind else None
 
     def _read(self, tree: ast.Module) -> None:
-        """Collect the scopes of names, and what they are bound to."""
+        """Collect the scopes, and the values to which names are bound in each."""
         pending: list[tuple[ast.AST, _Scope]] = [(tree, tree)]
         self._bound[tree] = {}
         declared: dict[_Scope, set[str]] = {}

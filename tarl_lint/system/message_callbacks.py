@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from tarl_lint.system.imported_types import ImportedTypes, short
-from tarl_lint.trees import last_name, walk
+from tarl_lint.trees import argument, last_name, walk
 
 # functions that register a callback: places and keywords of the type and the callback, and what is passed
 _REGISTERS: Final[Mapping[str, tuple[tuple[int, str], tuple[int, str], tuple[str, ...]]]] = {
@@ -128,12 +128,6 @@ def _filtered(made: ast.expr | None, types: ImportedTypes) -> str:
 def _class_of(made: ast.Call) -> ast.expr | None:
     """Return the second argument of a filter: the class of its messages in ROS 1 and ROS 2."""
     return made.args[1] if len(made.args) > 1 else None
-
-
-def argument(call: ast.Call, place: int, name: str) -> ast.expr | None:
-    """Return an argument of a call by its keyword, or else by its place."""
-    named = next((one.value for one in call.keywords if one.arg == name), None)
-    return named if named is not None else call.args[place] if len(call.args) > place else None
 
 
 def _called(callback: ast.expr) -> tuple[str, int]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tarl_lint.evidence import Outline
-from tarl_lint.trees import last_name
+from tarl_lint.trees import argument, last_name
 
 _PROXIES: Final = frozenset(["ServiceProxy"])
 _CLIENTS: Final = frozenset(["create_client"])
@@ -50,12 +50,7 @@ def called_services(outline: Outline) -> Iterator[tuple[ast.Call, str, str]]:
             places = (0, 1) if made in _PROXIES else (1, 0) if made in _CLIENTS else None
             if places is None:
                 continue
-            name = _argument(call, places[0], ("name", "srv_name"))
-            kind = _argument(call, places[1], ("service_class", "srv_type"))
+            name = argument(call, places[0], "name", "srv_name")
+            kind = argument(call, places[1], "service_class", "srv_type")
             if isinstance(name, ast.Constant) and isinstance(name.value, str):
                 yield call, name.value, last_name(kind) if kind is not None else ""
-
-
-def _argument(call: ast.Call, place: int, names: tuple[str, ...]) -> ast.expr | None:
-    named = next((one.value for one in call.keywords if one.arg in names), None)
-    return named if named is not None else call.args[place] if len(call.args) > place else None
