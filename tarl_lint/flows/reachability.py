@@ -109,7 +109,7 @@ class Tracer:
     def paths(
         self, record: SinkRecord, reaching: Iterable[Reaching]
     ) -> Iterator[Callable[[Set[int]], Sequence[int]]]:
-        """Yield the function that finds the shortest path of each source: only through data if data reaches it."""
+        """Yield for each source a function that finds its path: only through data if data leads to the sink."""
         ends = sorted(record.nodes)
         statement_of = self.statements.key_of.__getitem__
         through_data = ShortestPaths(ends, self.data_formers({}), statement_of)
