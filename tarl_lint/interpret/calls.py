@@ -9,7 +9,18 @@ from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap, joins
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, in_order, join, join_all, pointer
+from tarl_lint.memory.values import (
+    BOTTOM,
+    NO_CONSTANTS,
+    NONE,
+    Nodes,
+    Obj,
+    Value,
+    in_order,
+    join,
+    join_all,
+    pointer,
+)
 from tarl_lint.models import sizes
 
 # maximum number of library objects whose method is called for each object; more objects count as one receiver
@@ -176,8 +187,12 @@ def call_value(
     return result
 
 
-def _converted(ctx: Interpreter, made: Value, arguments: Arguments, frame: Frame) -> Value:
+def _converted(ctx: Interpreter, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
     """Return the result of `Phase(msg.data)`: the data decide which member it is, and whether there is one."""
+    given = arguments[0]
+    if len(given) == 1 and (known := enumerations.with_value(ctx, cls, given[0])) is not None:
+        return known
+    made = call_contexts.instantiate(ctx, cls, arguments, frame, call)
     decides = call_contexts.all_used(ctx, arguments)
     if decides:
         ctx.ops.may_fail(ctx, decides, "ValueError", frame)
@@ -199,11 +214,17 @@ def call_object(
         closure, receiver, owner = target.info
         plain, named = arguments
         return call_contexts.invoke(
-            ctx, closure, ([Value(carriers, frozenset([receiver])), *plain], named), frame, call, owner
+            ctx,
+            closure,
+            ([Value(carriers, frozenset([receiver]), NO_CONSTANTS), *plain], named),
+            frame,
+            call,
+            owner,
         )
     if kind == "class":
-        made = call_contexts.instantiate(ctx, target, arguments, frame, call)
-        return _converted(ctx, made, arguments, frame) if enumerations.enumerates(target) else made
+        if enumerations.enumerates(target):
+            return _converted(ctx, target, arguments, frame, call)
+        return call_contexts.instantiate(ctx, target, arguments, frame, call)
     if kind == "ext":
         return ctx.ops.call_library(ctx, target.name, arguments, frame, call)
     if kind == "partial" and isinstance(target.info, tuple):

@@ -9,7 +9,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import BOTTOM, Obj, Value, join, lineage
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, join, lineage
 
 METHOD_OF: Final[Mapping[str, str]] = {
     "+": "add", "-": "sub", "*": "mul", "/": "truediv", "//": "floordiv", "%": "mod", "**": "pow", "@": "matmul",
@@ -17,6 +17,7 @@ METHOD_OF: Final[Mapping[str, str]] = {
     "invert": "invert", "==": "eq", "!=": "ne", "<": "lt", "<=": "le", ">": "gt", ">=": "ge", "in": "contains",
     "not in": "contains",
 }  # fmt: skip
+TEXTS: Final = ("__format__", "__str__", "__repr__")
 FUNCTIONS: Final = frozenset(
     ["abs", "bool", "float", "int", "len", "next", "reversed", "round", "str", "format", "bytes", "hash"]
 )  # built-in functions that call the special method of the same name
@@ -69,6 +70,17 @@ def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], fram
     if made is None and rest:
         made = special(ctx, rest[0], f"__r{name}__", [first], frame, expr.pos)
     return made
+
+
+def as_text(ctx: Interpreter, value: Value, frame: Frame, pos: ir.Pos) -> Value:
+    """Return the text that an f-string makes of a value: the result of the method of an analysed class, if it has one."""
+    if not any(o.kind == "instance" for o in value.pts):
+        return value
+    for name in TEXTS:
+        said = special(ctx, value, name, [UNKNOWN] if name == TEXTS[0] else [], frame, pos)
+        if said is not None:
+            return said
+    return value
 
 
 def slot(name: str, pos: ir.Pos) -> int:

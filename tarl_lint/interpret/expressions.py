@@ -99,6 +99,8 @@ def read_attribute(ctx: Interpreter, base: Value, expr: ir.Attribute, frame: Fra
     """Return an attribute of an evaluated object; call the getter of a property or descriptor."""
     if expr.name == "value" and base.consts and not base.pts:
         return base  # a member of an enumeration, which is represented by its value
+    if expr.name == enumerations.MAPPING and (table := enumerations.by_name(ctx, base)) is not None:
+        return table
     of_member = enumerations.attribute(ctx, base, expr.name) if ctx.members else None
     value = heap.read_or_hold(ctx, base, expr.name) if of_member is None else of_member
     for obj in value.objects:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Hashable, Mapping
 from tarl_lint.interpret import dunder_methods, nullness
 from tarl_lint.interpret.interpreter import NONE_ONLY, Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, object_contents
+from tarl_lint.memory import enumerations, heap, object_contents
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import (
     BOTTOM,
@@ -74,6 +74,11 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
     values = [ctx.ops.evaluate(ctx, p, frame) for p in expr.parts]
     if expr.operator == "as":
         return narrowed(*values)
+    if expr.operator in ("text", "formatted"):
+        values = [
+            dunder_methods.as_text(ctx, value, frame, part.pos)
+            for value, part in zip(values, expr.parts, strict=True)
+        ]
     said = dunder_methods.operated(ctx, expr, values, frame)
     if said is not None:
         return said
@@ -224,6 +229,8 @@ def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] 
     function = FOLDED.get(name)
     if name in PRESENT and _certainly_set(values):
         return frozenset([name in ("is not", "!=")])
+    if name in PRESENT and (same := _same_member(values)) is not None:
+        return frozenset([same is (name in ("is", "=="))])
     if function is None or any(v.pts for v in values):
         return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()
     if not all(v.consts for v in values):
@@ -252,6 +259,16 @@ def _certainly_set(values: list[Value]) -> bool:
         and bool(first.pts)
         and all(o.kind == "instance" for o in first.pts)
     )
+
+
+def _same_member(values: list[Value]) -> bool | None:
+    """Return whether two members of enumerations are the same one; None if that is not known."""
+    if not all(
+        v.pts and v.consts == NO_CONSTANTS and all(map(enumerations.is_member, v.pts)) for v in values
+    ):
+        return None
+    first, second = (v.pts for v in values)
+    return False if first.isdisjoint(second) else True if len(first | second) == 1 else None
 
 
 def _fold_text(values: list[Value]) -> frozenset[object] | None:

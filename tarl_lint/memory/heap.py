@@ -327,6 +327,9 @@ def elements(ctx: Interpreter, value: Value) -> Value:
             result = join(result, Value(ctx.ops.deep(ctx, frozenset([obj]))))
         elif obj.kind == "mapping":
             result = join(result, keys(ctx, obj, value.deps))
+        elif obj.kind == "class":
+            for one in ctx.ops.unpacked(ctx, pointer(obj)) or ():
+                result = join(result, one)
         else:
             result = join(result, arrive(ctx, read_any(ctx, obj), value.deps))
     return result

@@ -11,7 +11,7 @@ from tarl_lint.interpret.dunder_methods import FUNCTIONS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import recency
+from tarl_lint.memory import enumerations, recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY
 from tarl_lint.memory.values import (
@@ -225,6 +225,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(("weakref.ref", "weakref.WeakMethod"), objects.weak_reference),
     **dict.fromkeys(("weakref.proxy", "vars", "typing.cast"), objects.same),
     "type": objects.type_of,
+    enumerations.AUTO: enumerations.automatic,
     "isinstance": type_queries.is_instance,
     "hasattr": type_queries.has_attribute,
     "callable": type_queries.is_callable,

@@ -7,9 +7,8 @@ from ast import literal_eval
 from tarl_lint.interpret.budget import MAX_ROWS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap
-from tarl_lint.memory.enumerations import enumerates, is_member
 from tarl_lint.memory.heap import KEYS
-from tarl_lint.memory.values import BOTTOM, Obj, Value, const, pointer
+from tarl_lint.memory.values import BOTTOM, Obj, Value, const
 
 MAX_MEMBERS = 100  # maximum number of attributes of an object or class over which a loop is unrolled
 CONTAINERS = frozenset(["sequence", "mapping"])
@@ -17,8 +16,6 @@ CONTAINERS = frozenset(["sequence", "mapping"])
 
 def of(ctx: Interpreter, source: Value) -> list[Value]:
     """Return the different elements that iteration over containers may yield; [] if they are unknown or too many."""
-    if len(source.pts) == 1 and (cls := next(iter(source.pts))).kind == "class":
-        return _members(ctx, cls)
     if not source.pts or any(o.kind not in CONTAINERS for o in source.pts):
         return []
     return parts(heap.elements(ctx, source))
@@ -59,15 +56,6 @@ def attributes(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | Non
         if value is not None:
             found.append((const(name), heap.arrive(ctx, value, base.deps)))
     return found if 0 < len(found) <= MAX_MEMBERS else None
-
-
-def _members(ctx: Interpreter, cls: Obj) -> list[Value]:
-    """Return the members of an enumeration, which are represented by their values."""
-    if not enumerates(cls):
-        return []
-    values = [value for _, value in attributes(ctx, pointer(cls)) or ()]
-    found = [one for one in values if one.fixed() or (one.pts and all(map(is_member, one.pts)))]
-    return found if 1 < len(found) <= MAX_ROWS else []
 
 
 def _entries_of(ctx: Interpreter, obj: Obj) -> list[tuple[object, Value]] | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, recency, updates
+from tarl_lint.memory import enumerations, heap, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, KEYS, LENGTH, SENT, item_field
 from tarl_lint.memory.values import (
@@ -137,10 +137,12 @@ def constants(ctx: Interpreter, value: Value) -> list[Value] | None:
 
 
 def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:
-    """Return the elements of a sequence with known elements."""
+    """Return the elements of a sequence with known elements, or the members of an enumeration."""
     if len(value.pts) != 1:
         return None
     obj = next(iter(value.pts))
+    if obj.kind == "class" and (members := enumerations.members(ctx, obj)) is not None:
+        return [heap.arrive(ctx, member, value.deps) for _, member in members]
     if obj.kind != "sequence" or heap.content(ctx, obj) is not BOTTOM:
         return None
     found: list[Value] = []

@@ -24,7 +24,7 @@ def channel(ctx):
     ctx.store.put((cls, "SCAN"), pointer(sequence(ctx, "scan", const("/scan"), ONE)))
     ctx.store.put((cls, "LEVEL"), const(3))
     ctx.store.put((cls, "_ignored"), pointer(sequence(ctx, "private", const("/private"))))
-    made_of = {obj.info[1]: elements for obj, elements in enumerations.mark(ctx, cls)}
+    made_of = {obj.key[2]: elements for obj, elements in enumerations.mark(ctx, cls)}
     return cls, made_of
 
 
@@ -40,12 +40,15 @@ def test_a_class_enumerates_if_a_base_is_an_enumeration(ctx, external, enumerate
 
 def test_sequences_in_the_class_become_marked_members(ctx, channel):
     cls, made_of = channel
-    assert made_of == {"SCAN": [const("/scan"), ONE]}
+    assert made_of == {"SCAN": [const("/scan"), ONE], "LEVEL": [const(3)]}
     assert ctx.members
     (member,) = ctx.store.get((cls, "SCAN")).pts
     assert enumerations.is_member(member)
     assert ctx.store.get((member, item_field(0))) == const("/scan")
-    assert ctx.store.get((cls, "LEVEL")) == const(3)
+    (level,) = ctx.store.get((cls, "LEVEL")).pts
+    assert (level.kind, level.info) == ("instance", cls)
+    assert ctx.store.get((level, "value")) == const(3)
+    assert ctx.store.get((level, "name")) == const("LEVEL")
     (private,) = ctx.store.get((cls, "_ignored")).pts
     assert not enumerations.is_member(private)
 
@@ -73,4 +76,54 @@ def test_a_member_has_its_value_its_name_and_the_attributes_of_its_class(ctx, ch
 def test_other_objects_are_no_members(ctx, channel):
     other = recency.intern(ctx, "sequence", "plain")
     assert enumerations.attribute(ctx, pointer(other), "value") is None
-    assert not enumerations.is_member(recency.intern(ctx, "instance", "x", "member of an enumeration"))
+    assert not enumerations.is_member(recency.intern(ctx, "mapping", "x", "member of an enumeration"))
+
+
+@pytest.mark.parametrize(
+    ("base", "before", "number"),
+    [("Enum", 4, 5), ("Enum", None, 1), ("IntFlag", 4, 8), ("Flag", None, 1), ("StrEnum", None, "low")],
+)
+def test_auto_is_the_value_after_the_last_one(ctx, base, before, number):
+    cls = a_class(ctx, "Level", external=(f"enum.{base}",))
+    if before is not None:
+        ctx.store.put((cls, "FIRST"), const(before))
+    ctx.store.put((cls, "LOW"), enumerations.automatic(ctx, None))
+    made_of = {obj.key[2]: elements for obj, elements in enumerations.mark(ctx, cls)}
+    if base == "Enum":
+        assert made_of["LOW"] == [const(number)]
+    else:
+        assert ctx.store.get((cls, "LOW")) == const(number)
+        assert made_of == {}
+
+
+def test_the_members_are_the_public_attributes_with_known_values(ctx, channel):
+    cls, _ = channel
+    assert [name for name, _ in enumerations.members(ctx, cls)] == ["SCAN", "LEVEL"]
+    assert enumerations.members(ctx, a_class(ctx, "Other")) is None
+    ctx.store.put((cls, "UNKNOWN"), ONE)  # after the members were marked
+    assert enumerations.members(ctx, cls) is None
+
+
+def test_a_constant_names_the_member_that_has_it_as_its_value(ctx, channel):
+    cls, _ = channel
+    assert enumerations.with_value(ctx, cls, const(3)) == ctx.store.get((cls, "LEVEL"))
+    assert enumerations.with_value(ctx, cls, const(4)) is None
+    assert enumerations.with_value(ctx, cls, ONE) is None
+
+
+def test_the_members_by_name_are_a_mapping(ctx, channel):
+    cls, _ = channel
+    (table,) = enumerations.by_name(ctx, pointer(cls)).pts
+    assert ctx.store.get((table, item_field("LEVEL"))) == ctx.store.get((cls, "LEVEL"))
+    assert enumerations.by_name(ctx, pointer(table)) is None
+
+
+def test_the_initialiser_of_a_base_class_is_bound_to_the_member(ctx):
+    base = a_class(ctx, "Named", external=("enum.Enum",))
+    cls = a_class(ctx, "Level", base)
+    member = made(ctx, "instance", "low")
+    assert enumerations.initialiser(ctx, cls, member) is None
+    function = made(ctx, "closure", "init")
+    ctx.store.put((base, "__init__"), pointer(function))
+    (bound,) = enumerations.initialiser(ctx, cls, member).pts
+    assert bound.info[:2] == (function, member)

@@ -24,6 +24,8 @@ rospy.Subscriber("in", Float64, on)
 rospy.spin()
 """
 MARK = re.compile(r"# (data|control|both|clean)$")
+TOPICS = re.compile(r"# (clean|\S+:(?:data|control)(?: \S+:(?:data|control))*)$")
+NAMES = {"explicit": "data", "implicit": "control"}
 KINDS = {"data": ["explicit"], "control": ["implicit"], "both": ["explicit", "implicit"], "clean": []}
 
 
@@ -59,4 +61,30 @@ def differing(text: str, found: Iterable[Flow] | None = None) -> dict[str, list[
         lines[number - 1].strip(): sorted(found)
         for number, found in kinds.items()
         if sorted(found) != wanted.get(number)
+    }
+
+
+def sections(texts: str) -> dict[str, str]:
+    """Return the texts below lines `### title`, by their titles."""
+    return dict(part.split("\n", 1) for part in texts.split("### ")[1:])
+
+
+def differing_topics(text: str, found: Iterable[Flow] | None = None) -> dict[str, str]:
+    """Return the lines whose flows differ from their mark, with the flows.
+
+    A mark names each topic whose messages reach the line, with the kind of the flow: `# scan:data stop:control`, or
+    `# clean`. A flow to a line without a mark differs.
+    """
+    lines = text.split("\n")
+    wanted = {n: mark[1] for n, line in enumerate(lines, 1) if (mark := TOPICS.search(line)) is not None}
+    assert wanted
+    kinds: dict[int, set[str]] = {number: set() for number in wanted}
+    for flow in flows(text) if found is None else found:
+        at = kinds.setdefault(flow.sink.span.line, set())
+        at |= {f"{topic.strip('/')}:{NAMES[flow.kind]}" for topic in flow.source.topics or ("?",)}
+    shown = {number: " ".join(sorted(ends)) or "clean" for number, ends in kinds.items()}
+    return {
+        lines[number - 1].strip(): ends
+        for number, ends in shown.items()
+        if sorted(ends.split()) != sorted(wanted.get(number, "").split())
     }

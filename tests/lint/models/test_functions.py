@@ -299,6 +299,15 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(pairs[1][1])  # data
         out.publish(pairs[0][1])  # clean
     """,
+    ("enum.auto",): """
+        class Side(enum.Enum):
+            LEFT = NAME()
+            RIGHT = NAME()
+        if Side.LEFT is Side.RIGHT:
+            out.publish(msg.data)  # clean
+        out.publish({Side.LEFT: msg.data, Side.RIGHT: 1.0}[Side.LEFT])  # data
+        out.publish({Side.LEFT: msg.data, Side.RIGHT: 1.0}[Side.RIGHT])  # clean
+    """,
     ("zip",): """
         pairs = list(NAME([0.0, msg.data], [0.0, 1.0]))
         out.publish(pairs[1][0])  # data
