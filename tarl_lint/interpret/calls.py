@@ -222,9 +222,8 @@ def call_object(
             owner,
         )
     if kind == "class":
-        if enumerations.enumerates(target):
-            return _converted(ctx, target, arguments, frame, call)
-        return call_contexts.instantiate(ctx, target, arguments, frame, call)
+        make = _converted if enumerations.enumerates(target) else call_contexts.instantiate
+        return make(ctx, target, arguments, frame, call)
     if kind == "ext":
         return ctx.ops.call_library(ctx, target.name, arguments, frame, call)
     if kind == "partial" and isinstance(target.info, tuple):

@@ -73,7 +73,7 @@ def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], fram
 
 
 def as_text(ctx: Interpreter, value: Value, frame: Frame, pos: ir.Pos) -> Value:
-    """Return the text that an f-string makes of a value: the result of the method of an analysed class, if it has one."""
+    """Return the text that an f-string makes of a value, by the method of an analysed class if it has one."""
     if not any(o.kind == "instance" for o in value.pts):
         return value
     for name in TEXTS:

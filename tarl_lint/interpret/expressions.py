@@ -12,7 +12,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap, recency
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.heap import ANY
+from tarl_lint.memory.heap import ANY, GIVEN_KEYS
 from tarl_lint.memory.values import (
     BOTTOM,
     NONE,
@@ -166,7 +166,7 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
         if obj.kind == "class":
             found = member(ctx, obj, index) if enumerations.enumerates(obj) else pointer(obj)
             result = join(result, heap.arrive(ctx, found, base.deps))
-        elif keys := index.item_keys():
+        elif keys := index.item_keys() or _default_keys(ctx, obj, index):
             for key in keys:
                 result = join(result, heap.arrive(ctx, element(ctx, obj, key), base.deps))
         else:
@@ -175,6 +175,15 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
                 found = ctx.ops.missing(ctx, obj, ANY)
             result = join(result, heap.arrive(ctx, found, base.deps))
     return Value(result.deps | extra, result.pts, result.consts)
+
+
+def _default_keys(ctx: Interpreter, obj: Obj, index: Value) -> frozenset[str]:
+    """Return the defaults of a key that only the robot gives if entries of the mapping were stored under them."""
+    defaults = index.default_keys() if obj.kind == "mapping" else frozenset[str]()
+    held = ctx.store.get((obj, GIVEN_KEYS)) if defaults else None
+    return (
+        defaults if held is not None and held.consts is not None and defaults <= held.consts else frozenset()
+    )
 
 
 def member(ctx: Interpreter, cls: Obj, name: Value) -> Value:

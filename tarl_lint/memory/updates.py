@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap, recency
-from tarl_lint.memory.heap import ANY, HOLLOW, KEYS, RENAMING, item_field
-from tarl_lint.memory.values import MEMBER, Obj, Value, in_order, join
+from tarl_lint.memory.heap import ANY, GIVEN_KEYS, HOLLOW, KEYS, RENAMING, item_field
+from tarl_lint.memory.values import BOTTOM, MEMBER, Obj, Value, in_order, join
 
 # maximum number of possible keys of one store into a mapping; with more, the store may change any element
 MAX_KEYS = 8
@@ -56,7 +56,7 @@ def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> Non
     for obj in base.objects if keys or classes else ():
         if obj.kind == "mapping":
             weaken(ctx, obj, KEYS, Value(keys, classes))
-    constants = index.item_keys()
+    constants = index.item_keys() or _default_key(ctx, base, index)
     if not constants or len(constants) > 1:
         _write_some(ctx, base, index, value)
         return
@@ -70,6 +70,17 @@ def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> Non
     for field in sorted(fields):
         kin = frozenset(o for o in base.pts if heap.attribute_of_item(o, key) == field)
         write_field(ctx, base if kin == base.pts else Value(base.deps, kin), field, value)
+
+
+def _default_key(ctx: Interpreter, base: Value, index: Value) -> frozenset[str]:
+    """Return the default of a key that only the robot gives; note in the mappings that it stands for the key."""
+    defaults = index.default_keys()
+    if len(defaults) != 1 or not base.pts or any(o.kind != "mapping" for o in base.pts):
+        return frozenset()
+    for obj in base.objects:
+        before = ctx.store.get((obj, GIVEN_KEYS))
+        ctx.store.put((obj, GIVEN_KEYS), Value(consts=join(before or BOTTOM, Value(consts=defaults)).consts))
+    return defaults
 
 
 def _write_some(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:

@@ -213,6 +213,14 @@ class Value:
         known = all(o.kind == "class" or o.name == MEMBER for o in self.pts)
         return frozenset(ClassKey(o.key) for o in self.pts) if known else None
 
+    def default_keys(self) -> frozenset[str]:
+        """Return its texts if only the robot gives the text, and these are the defaults; empty for other values."""
+        return (
+            frozenset(self.names())
+            if not self.pts and self.keys() is None and self.replaceable()
+            else frozenset()
+        )
+
     def consts_in(self, other: Value) -> bool:
         """Return whether the constants of this value are a subset of another's."""
         return other.consts is None or (self.consts is not None and self.consts <= other.consts)

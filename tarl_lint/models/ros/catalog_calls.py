@@ -15,7 +15,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.symbolic_names import text_of_parameter
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Consts, Value, join, pointer
-from tarl_lint.models import containers, launched, records, sizes, state_callbacks
+from tarl_lint.models import containers, default_values, launched, records, sizes, state_callbacks
 from tarl_lint.models.ros import publications, services, subscriptions
 from tarl_lint.parameter_names import DEFAULT, ELSEWHERE
 
@@ -169,6 +169,8 @@ def _default_of(
     if ctx.thorough and default.pts:
         # the default is an object, such as a mapping, and its entries must stay reachable
         return ctx.carry(default, node)
+    if (entries := default_values.replaceable(ctx, default, frame, slot)) is not None:
+        return Value(ctx.kept(node), entries.pts)
     return Value(ctx.kept(node), consts=consts)
 
 
