@@ -63,6 +63,9 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         registers = ctx.registrations.inside(s, s.nodes)
         way = "" if registers else ctx.registrations.publishes(s)
         source = sizes.counted(ctx, s.source, frame, each=registers or way == "direct")
+        registers = registers or (
+            ctx.registrations.calls_element(s, s.target, s.nodes) and rows.hold_classes(ctx, source)
+        )
         if elements := _told_apart(ctx, s, source, frame, each=registers or way != ""):
             return _turns(ctx, s, s.target, source, elements, frame)
         if registers and sizes.is_empty(ctx, source):

@@ -38,6 +38,6 @@ MAX_GENERATIONS = 1  # maximum number of nested restarts of a thread or callback
 # code outside the files passes to a function
 MAX_ALIKE = 6
 # maximum number of elements over which a loop is unrolled that registers something or makes objects of analysed classes
-MAX_ROWS = 16
-MAX_NESTED_ROWS = 64  # maximum number of iterations of unrolled loops that are nested in one function
-MAX_APART = 24  # maximum number of sources, or of sinks, at one call that are told apart by their topics
+MAX_ROWS = 48
+MAX_NESTED_ROWS = 96  # maximum number of iterations of unrolled loops that are nested in one function
+MAX_APART = 48  # maximum number of sources, or of sinks, at one call that are told apart by their topics

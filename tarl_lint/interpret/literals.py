@@ -71,6 +71,9 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
     kind = "mapping" if expr.key is not None else "sequence"
     registers = len(expr.loops) == 1 and ctx.registrations.inside(expr, (expr.node,))
     first = sizes.counted(ctx, expr.loops[0][1], frame, each=registers)
+    if not registers and len(expr.loops) == 1:
+        calls = ctx.registrations.calls_element(expr, expr.loops[0][0], (expr.node,))
+        registers = calls and rows.hold_classes(ctx, first)
     known = sizes.unpacked(ctx, first)
     single = len(expr.loops) == 1
     limit = MAX_ENTRIES if ctx.thorough else MAX_ROWS if registers else MAX_EACH

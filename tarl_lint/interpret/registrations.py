@@ -1,8 +1,9 @@
 """Find code that registers something (an input, a publisher, a timer) or makes objects of the analysed files.
 
-A loop over such code is unrolled, so that each iteration has its own topics, callbacks and objects. A loop whose
-element chooses the publisher is unrolled as well. Functions and classes are told apart by their names only: code that
-calls one of two functions with the same name is assumed to call both, and is then unrolled without need.
+A loop over such code is unrolled, so that each iteration has its own topics, callbacks and objects. Code that adds
+states and behaviours to others counts as well. A loop whose element chooses the publisher is unrolled, too. Functions
+and classes are told apart by their names only: code that calls one of two functions with the same name is assumed to
+call both, and is then unrolled without need.
 """
 
 from __future__ import annotations
@@ -15,7 +16,11 @@ from tarl_lint.interpret.node_starts import MAKES, REGISTERING
 from tarl_lint.ir import nodes as ir
 from tarl_lint.trees import children, last_name, walk
 
-REGISTRATIONS = REGISTERING | MAKES
+ADDS_STATE = "add a state"  # stands for the method `add` of a state machine
+ADDS_PART = frozenset([ADDS_STATE, "add_auto", "add_child", "add_children", "insert_child", "prepend_child"])
+MACHINES = frozenset(["StateMachine", "Sequence", "Concurrence", "Container"])
+STATE_KEYWORDS = frozenset(["transitions", "remapping"])
+REGISTRATIONS = REGISTERING | MAKES | ADDS_PART
 SENDING = frozenset(["publish"])
 CONSTRUCTORS = frozenset(["__init__", "__new__", "__post_init__"])
 # endings of the names of base classes whose objects hold no data of their own
@@ -35,6 +40,9 @@ class Registrations:
         )
         self.called: dict[str, frozenset[str]] = {}  # name → names that its code calls
         self.known: dict[Hashable, bool] = {}  # loop, comprehension or name → the answer
+        self.calling: dict[
+            Hashable, bool
+        ] = {}  # loop or comprehension → whether it calls a variable of the loop
         self.sending: dict[str, bool] = {}  # name → whether a call of it publishes
         self.rows: dict[ir.Loop, Literal["direct", "helper", ""]] = {}
 
@@ -43,6 +51,16 @@ class Registrations:
         found = self.known.get(code)
         if found is None:
             found = self.known[code] = self._search(_called(nodes), self.wanted, self.known)
+        return found
+
+    def calls_element(self, code: Hashable, target: ir.Expr | None, nodes: Sequence[ast.AST]) -> bool:
+        """Return whether code calls a variable of the loop around it, which may be a class."""
+        found = self.calling.get(code)
+        if found is None:
+            names = _names(target)
+            called = (one.func for one in walk(*nodes) if isinstance(one, ast.Call))
+            found = any(isinstance(one, ast.Name) and one.id in names for one in called)
+            self.calling[code] = found
         return found
 
     def publishes(self, loop: ir.Loop) -> Literal["direct", "helper", ""]:
@@ -137,4 +155,11 @@ def _called(nodes: Iterable[ast.AST]) -> Iterator[str]:
     """Yield the last parts of the names of called functions, except constructors of base classes."""
     for one in walk(*nodes):
         if isinstance(one, ast.Call) and (name := last_name(one.func)) and name not in CONSTRUCTORS:
-            yield name
+            yield ADDS_STATE if name == "add" and _adds_state(one) else name
+
+
+def _adds_state(call: ast.Call) -> bool:
+    """Return whether a call of a method `add` may add a state to a machine."""
+    if any(keyword.arg in STATE_KEYWORDS for keyword in call.keywords):
+        return True
+    return isinstance(call.func, ast.Attribute) and last_name(call.func.value) in MACHINES

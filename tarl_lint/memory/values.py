@@ -22,7 +22,7 @@ PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enu
 NUMBERS = count()  # counter that numbers objects in order of creation
 NUMBER: Final = attrgetter("number")
 MAX_CONSTS = 4
-MAX_TEXTS = 24  # maximum number of string constants of a value; enough for a table of topic names
+MAX_TEXTS = 64  # maximum number of string constants of a value; enough for a table of topic names
 MAX_DEPTH = 6  # maximum nesting depth of embedded objects
 # maximum depth to which nested elements are tracked separately; a larger one would create exponentially many objects
 MAX_ELEMENTS = 2

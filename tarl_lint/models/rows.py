@@ -21,6 +21,17 @@ def of(ctx: Interpreter, source: Value) -> list[Value]:
     return parts(heap.elements(ctx, source))
 
 
+def hold_classes(ctx: Interpreter, source: Value) -> bool:
+    """Return whether the elements of containers, or elements of these, may be classes of the files."""
+    if any(o.kind not in CONTAINERS for o in source.pts):
+        return False
+    for obj in heap.elements(ctx, source).objects:
+        inner = heap.read_any(ctx, obj).pts if obj.kind == "sequence" else frozenset([obj])
+        if any(o.kind == "class" for o in inner):
+            return True
+    return False
+
+
 def parts(value: Value) -> list[Value]:
     """Return a value as its different objects and constants; [] if it is not known, or has fewer than two of them."""
     constants = value.keys()

@@ -625,6 +625,12 @@ def test_a_table_of_many_rows_is_one_source():
     assert len(found) == 1
 
 
+def test_each_row_of_a_long_table_has_flows_of_its_own():
+    topics = [f"t{number}" for number in range(MAX_ROWS)]
+    found = flows(node(f"for topic in {topics}:\n    self.listen(topic, self.on_a)"))
+    assert sorted(flow.source.topics for flow in found) == sorted((topic,) for topic in topics)
+
+
 def test_nested_tables_are_told_apart_up_to_a_limit():
     wiring = """
         for side in ("l", "r"):

@@ -52,6 +52,16 @@ root.add_child(Second("second"))
 ### children by add_children, of a Selector: clean control
 root = py_trees.composites.Selector(name="root", memory=False)
 root.add_children([First(), py_trees.decorators.Inverter("not", Same()), Test(), Second()])
+### children by a loop over classes: clean control
+root = py_trees.composites.Sequence("root", memory=True)
+for make in (First, Test, Second):
+    root.add_child(make("child"))
+### children by a comprehension over classes: clean control
+root = py_trees.composites.Sequence("root", memory=True, children=[make("child") for make in (First, Test, Second)])
+### children by a loop over instances that always have the same status: clean clean
+root = py_trees.composites.Sequence("root", memory=True)
+for child in [First("first"), Same("test"), Second("second")]:
+    root.add_child(child)
 ### a prepended child: control clean
 root = py_trees.composites.Sequence("root", memory=False)
 root.add_child(First())

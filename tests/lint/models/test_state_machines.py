@@ -55,6 +55,39 @@ with machine:
     smach.StateMachine.add("TEST", Test(), transitions={"yes": "FIRST", "no": "end"})
     smach.StateMachine.add("FIRST", First(), transitions={"done": "end"})
 Second()
+### a table of states: control clean
+TABLE = [("TEST", Test, {"yes": "FIRST", "no": "end"}), ("FIRST", First, {"done": "end"})]
+with smach.StateMachine(outcomes=["end"]) as machine:
+    for label, state, transitions in TABLE:
+        smach.StateMachine.add(label, state(), transitions=transitions)
+Second()
+### a table of states whose outcomes lead to the same one: clean clean
+TABLE = [("TEST", Test(), {"yes": "FIRST", "no": "FIRST"})]
+TABLE += [("FIRST", First(), {"done": "SECOND"}), ("SECOND", Second(), {"done": "end"})]
+with smach.StateMachine(outcomes=["end"]) as machine:
+    for row in TABLE:
+        smach.StateMachine.add(*row)
+### a dictionary of states, added to the machine itself: control control
+STATES = {"TEST": Test, "FIRST": First, "SECOND": Second}
+WAYS = {"TEST": {"yes": "FIRST", "no": "SECOND"}, "FIRST": {"done": "end"}, "SECOND": {"done": "end"}}
+machine = smach.StateMachine(outcomes=["end"])
+machine.open()
+for name, make in STATES.items():
+    machine.add(name, make(), transitions=WAYS[name])
+machine.close()
+### a helper adds the states: control clean
+def add(machine, label, state, **ways):
+    with machine:
+        smach.StateMachine.add(label, state, transitions=ways)
+machine = smach.StateMachine(outcomes=["end"])
+for label, state, after in (("TEST", Test(), "FIRST"), ("FIRST", First(), "end")):
+    add(machine, label, state, yes=after, done=after, no="end")
+Second()
+### states of a list, joined by add_auto: control clean
+with smach.StateMachine(outcomes=["end"]) as machine:
+    for label, state, ways in [("TEST", Test(), ["yes"]), ("FIRST", First(), ["done"])]:
+        smach.StateMachine.add_auto(label, state, ways, transitions={"no": "end"})
+Second()
 ### all outcomes lead to the state, at once or later: clean clean
 with smach.StateMachine(outcomes=["end"]) as machine:
     smach.StateMachine.add("TEST", Test(), {"yes": "FIRST", "no": "FIRST"})
