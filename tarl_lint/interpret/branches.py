@@ -13,7 +13,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join
 from tarl_lint.models import context_managers as managers_of_generators
-from tarl_lint.models import rows, sizes, unpacking
+from tarl_lint.models import object_lists, rows, sizes, unpacking
 
 MAX_TURNS = 4  # maximum number of known elements over which a loop is unrolled
 MAX_EXACT_TURNS = 8  # value of MAX_TURNS in a run for one launched node
@@ -63,6 +63,7 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         registers = ctx.registrations.inside(s, s.nodes)
         way = "" if registers else ctx.registrations.publishes(s)
         source = sizes.counted(ctx, s.source, frame, each=registers or way == "direct")
+        source = object_lists.without_empty(ctx, source)
         registers = registers or (
             ctx.registrations.calls_element(s, s.target, s.nodes) and rows.hold_classes(ctx, source)
         )
@@ -122,14 +123,15 @@ def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame, *, ea
     if any(o.name == heap.MEMBERS for o in source.pts):
         return elements
     plain = len(s.body) <= SHORT and all(isinstance(one, ir.Assign | ir.Evaluate) for one in s.body)
-    limit = sizes.MAX_KNOWN if plain else MAX_EXACT_TURNS if ctx.exact else MAX_TURNS
+    asked = ctx.registrations.asks(s) and all(map(object_lists.is_object, elements))
+    limit = sizes.MAX_KNOWN if plain or asked else MAX_EXACT_TURNS if ctx.exact else MAX_TURNS
     if not 1 < len(elements) <= max(limit, MAX_ROWS):
         return []
     if each and len(elements) * frame.rows <= MAX_NESTED_ROWS:
         return elements
     if len(elements) > limit:
         return []
-    if ctx.exact:
+    if ctx.exact or asked:
         return elements  # such a loop iterates, for example, over groups of command-line arguments
     ctx.look(o for v in elements for o in v.pts)
     laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)
@@ -161,6 +163,7 @@ def _turns(
     the order of the elements is unknown, up to this number of times.
     """
     depth, before, outside = len(ctx.store.layers), frame.turn, frame.steps
+    turns, decides = frame.turns, not passes and frame.cls is None and ctx.registrations.asks(s)
     frame.steps = frozenset(s.body) if not passes and not _leaves(s.body) else frozenset()
     frame.rows *= len(elements)
     broken: list[Delta] = []
@@ -177,6 +180,7 @@ def _turns(
         table: dict[str, list[Delta]] = {"break": broken, "continue": []}
         frame.jumps.append((depth, table))
         frame.turn = (*before, -1 - s.id, number)
+        frame.turns = (*turns, (s, number)) if decides else turns
         frame.statement = s
         ctx.ops.bind_target(ctx, target, element, frame, "element", s.source)
         ends = [ctx.store.since(depth)] if ctx.ops.block(ctx, s.body, frame) else []
@@ -189,7 +193,7 @@ def _turns(
             break
         done = joins.joined(ctx, ends)
     frame.rows //= len(elements)
-    frame.turn, frame.steps = before, outside
+    frame.turn, frame.turns, frame.steps = before, turns, outside
     return _loop_end(ctx, s, [done] if ends else [], broken, frame)
 
 

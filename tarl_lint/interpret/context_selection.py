@@ -82,7 +82,7 @@ def _new_frame(
     frame = Frame(key, len(ctx.frames) + 1, function, program, ctx.module_objects[program.name])
     ctx.frames[key] = frame
     frame.caller, frame.call, frame.slot, frame.outer = caller, caller.statement, call.slot, outer
-    frame.call_pos = call.pos
+    frame.call_pos, frame.called_in = call.pos, caller.turns
     frame.owner = owner or cls
     frame.answer = caller.answer if caller.statement is None and caller.caller is None else None
     return frame

@@ -18,7 +18,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import Branch, Control, control_dependence
 from tarl_lint.ir.exception_types import exception_types
 from tarl_lint.ir.lower_statements import lower_body
-from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.frames import Frame, Turns, inside
 from tarl_lint.memory.shared import Root, Shared
 from tarl_lint.memory.store import Store
 from tarl_lint.memory.value_flow_graph import Graph, Place
@@ -202,36 +202,62 @@ class Interpreter:
 
     # --- places -----------------------------------------------------------------------------------------
 
-    def branches(self, frame: Frame, statement: ir.Stmt | None) -> Branches:
-        """Return all conditions of a statement, including those of callers."""
+    def branches(self, frame: Frame, statement: ir.Stmt | None, turns: Turns | None = None) -> Branches:
+        """Return all conditions of a statement, including those of callers; `turns` are the current ones by default."""
         if statement is None:
             return frame.base
-        known = frame.closures.get(statement.id)
+        turns = inside(statement, frame.turns if turns is None else turns)
+        key = (statement.id, turns)
+        known = frame.closures.get(key)
         if known is None:
-            local = self.control(frame).closure.get(statement.id, frozenset())
-            known = frame.base | {self.branch(frame, b) for b in local}
-            frame.closures[statement.id] = known
+            known = frame.closures[key] = self._conditions(frame, statement, turns)
         return known
 
-    def branch(self, frame: Frame, branch: Branch) -> tuple[int, str]:
-        """Return a branch of a function as seen in one of the function's frames."""
+    def _conditions(self, frame: Frame, statement: ir.Stmt, turns: Turns, but: ir.Loop | None = None) -> Branches:
+        """Return the conditions of a statement, which do not include those inside the loop `but`."""
+        control = self.control(frame)
+        if not turns:
+            local = control.closure.get(statement.id, frozenset())
+            return frame.base | {self.branch(frame, b, ()) for b in local if but is None or not but.has(b[0])}
+        # earlier iterations of an unrolled loop may decide, but not later ones
+        around, (loop, number) = turns[:-1], turns[-1]
+        iteration = control.iteration(loop)
+        local = iteration.closure.get(statement.id, frozenset())
+        found = {self.branch(frame, b, turns) for b in local if but is None or not but.has(b[0])}
+        for before in range(number):
+            found |= {self.branch(frame, b, (*around, (loop, before))) for b in iteration.onward}
+        found.add(self.branch(frame, (loop.id, "body"), around))
+        return self._conditions(frame, loop, around, loop) | found
+
+    def branch(self, frame: Frame, branch: Branch, turns: Turns | None = None) -> tuple[int, str]:
+        """Return a branch of a function as seen in one of the function's frames, and in iterations of unrolled loops."""
         number, way = branch
-        key = (frame.id, number, "condition")
+        turns = frame.turns if turns is None else turns
+        if turns:
+            turns = inside(self.control(frame).statements.get(number), turns)
+        key = (frame.id, number, "condition", *((loop.id, turn) for loop, turn in turns))
         node = self.graph.numbers.get(key)
         if node is None:
             place = Place(frame, None, "condition", (0, 0, 0, 0))
             node = self.graph.node(key, place, NONE)  # type: ignore[arg-type]
+            if turns:
+                # what follows the loop depends on the decision of each iteration
+                whole, _ = self.branch(frame, branch, ())
+                self.graph.depend(whole, [node])
         return node, way
 
-    def condition(self, frame: Frame, statement: ir.Stmt) -> int:
+    def condition(self, frame: Frame, statement: ir.Stmt, turns: Turns | None = None) -> int:
         """Return the node of a statement's decision."""
-        node, _ = self.branch(frame, (statement.id, ""))
+        turns = inside(statement, frame.turns if turns is None else turns)
+        node, _ = self.branch(frame, (statement.id, ""), turns)
         place = self.graph.places[node]
         if place.statement is None:
             self.graph.places[node] = Place(frame, statement, "condition", statement.pos)
-            self.graph.branches[node] = self.branches(frame, statement)
+            self.graph.branches[node] = self.branches(frame, statement, turns)
             if statement.id in self.control(frame).far:
                 self.graph.control[node].update(b for b, _ in self.graph.branches[node])
+            if turns:
+                self.condition(frame, statement, ())
         return node
 
     def control(self, frame: Frame) -> Control:

@@ -26,6 +26,7 @@ CONSTRUCTORS = frozenset(["__init__", "__new__", "__post_init__"])
 # endings of the names of base classes whose objects hold no data of their own
 VALUES = ("Error", "Exception", "Enum", "NamedTuple")
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+DECIDING = (ast.If, ast.IfExp, ast.Match, ast.While, ast.Try, ast.BoolOp)
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -43,6 +44,7 @@ class Registrations:
         self.calling: dict[
             Hashable, bool
         ] = {}  # loop or comprehension → whether it calls a variable of the loop
+        self.asking: dict[ir.Loop, bool] = {}
         self.sending: dict[str, bool] = {}  # name → whether a call of it publishes
         self.rows: dict[ir.Loop, Literal["direct", "helper", ""]] = {}
 
@@ -59,8 +61,24 @@ class Registrations:
         if found is None:
             names = _names(target)
             called = (one.func for one in walk(*nodes) if isinstance(one, ast.Call))
-            found = any(isinstance(one, ast.Name) and one.id in names for one in called)
+            found = any(_is_one(one, names) for one in called)
             self.calling[code] = found
+        return found
+
+    def asks(self, loop: ir.Loop) -> bool:
+        """Return whether a loop calls methods of its elements, and conditions decide what follows in the loop.
+
+        An earlier element may then decide whether a method of a later one is called, as in a tree of behaviours.
+        """
+        found = self.asking.get(loop)
+        if found is None:
+            names = _names(loop.target)
+            code = [*walk(*loop.nodes)]
+            called = (one.func for one in code if isinstance(one, ast.Call))
+            found = any(isinstance(one, ast.Attribute) and _is_one(one.value, names) for one in called) and any(
+                isinstance(one, DECIDING) for one in code
+            )
+            self.asking[loop] = found
         return found
 
     def publishes(self, loop: ir.Loop) -> Literal["direct", "helper", ""]:
@@ -145,6 +163,10 @@ def _names(target: ir.Expr | None) -> frozenset[str]:
     if isinstance(target, ir.SequenceDisplay):
         return frozenset().union(*map(_names, target.items))
     return frozenset([target.name]) if isinstance(target, ir.Name) else frozenset()
+
+
+def _is_one(expr: ast.expr, names: Set[str]) -> bool:
+    return isinstance(expr, ast.Name) and expr.id in names
 
 
 def _mentions(expr: ast.expr, names: Set[str]) -> bool:

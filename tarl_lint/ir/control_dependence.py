@@ -22,6 +22,7 @@ Raising = Mapping[int, Iterable[str]]
 # maximum number of branches stored for a statement; further branches are found through the stored ones
 NEAR: Final = 100
 NOTHING_RAISES: Raising = {}
+NEXT: Final = -2  # number of a pseudo-statement: the beginning of the next iteration
 
 
 @dataclass(slots=True)
@@ -37,6 +38,30 @@ class Control:
     far: frozenset[int]
     always: frozenset[int]  # numbers of the statements that run whenever the function is entered
     statements: Mapping[int, ir.Stmt]
+    raising: Raising
+    types: ExceptionTypes
+    iterations: dict[int, Iteration] = field(default_factory=dict)  # by the number of the loop, as far as asked for
+
+    def iteration(self, loop: ir.Loop) -> Iteration:
+        """Return the control dependence inside one iteration of a loop."""
+        found = self.iterations.get(loop.id)
+        if found is None:
+            found = self.iterations[loop.id] = _iteration(loop, self.raising, self.types)
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Iteration:
+    """Control dependence inside one iteration of a loop, on branches of the same iteration only.
+
+    `direct`, `closure` and `always` are those of the statements in the loop's body, as in `Control`. `onward` are the
+    branches that decide whether the next iteration begins.
+    """
+
+    direct: Mapping[int, frozenset[Branch]]
+    closure: Mapping[int, frozenset[Branch]]
+    always: frozenset[int]
+    onward: frozenset[Branch]
 
 
 @dataclass(slots=True)
@@ -96,10 +121,24 @@ def control_dependence(
     """
     graph = _Graph(raising=raising, types=types, waits=waits)
     entry = _block(graph, body, EXIT, _Exits())
+    return _control(graph, entry)
+
+
+def _iteration(loop: ir.Loop, raising: Raising, types: ExceptionTypes) -> Iteration:
+    graph = _Graph(raising=raising, types=types)
+    entry = _block(graph, loop.body, NEXT, _Exits(on_continue=NEXT))
+    graph.link(NEXT, "", EXIT)
+    control = _control(graph, entry)
+    return Iteration(control.direct, control.closure, control.always, control.closure.get(NEXT, frozenset()))
+
+
+def _control(graph: _Graph, entry: int) -> Control:
     order = _reachable(graph, [entry, *(begin for _, begin in graph.finals)])
     if not graph.finals and all(len(graph.edges[n]) < 2 for n in order):
         nothing = dict.fromkeys(order, frozenset[Branch]())
-        return Control(nothing, nothing, frozenset(), frozenset(order), graph.statements)
+        return Control(
+            nothing, nothing, frozenset(), frozenset(order), graph.statements, graph.raising, graph.types
+        )
     nearest = postdominators(graph.edges, order)
     direct = _direct(graph, order, nearest)
     for attempt, _ in reversed(graph.finals):
@@ -111,7 +150,7 @@ def control_dependence(
             always |= ours & {*passed(begin, EXIT, nearest)}
     closed = _closure(direct)
     far = frozenset(n for n, branches in closed.items() if len(branches) >= NEAR)
-    return Control(direct, closed, far, always, graph.statements)
+    return Control(direct, closed, far, always, graph.statements, graph.raising, graph.types)
 
 
 def _block(graph: _Graph, body: Sequence[ir.Stmt], follow: int, exits: _Exits) -> int:

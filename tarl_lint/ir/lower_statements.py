@@ -116,8 +116,9 @@ class Lowering(Expressions):
 
     def _for(self, node: ast.For | ast.AsyncFor, scope: Scope) -> list[ir.Stmt]:
         source, target, number = self.expr(node.iter, scope), self.expr(node.target, scope), scope.next()
-        body, orelse = self.block(node.body, scope), self.block(node.orelse, scope)
-        return [ir.Loop(number, position(node), source, target, body, orelse, nodes=node.body)]
+        body, end = self.block(node.body, scope), scope.next()
+        orelse = self.block(node.orelse, scope)
+        return [ir.Loop(number, position(node), source, target, body, orelse, nodes=node.body, end=end)]
 
     def _try(self, node: ast.Try, scope: Scope) -> list[ir.Stmt]:
         number = scope.next()

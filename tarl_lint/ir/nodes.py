@@ -252,6 +252,11 @@ class Loop(Stmt):
     orelse: Sequence[Stmt]
     endless: bool = False
     nodes: Sequence[ast.stmt] = ()  # the syntax trees of the body of a `for`
+    end: int = 0  # the numbers of the statements in the body of a `for` are between its own number and this one
+
+    def has(self, number: int) -> bool:
+        """Return whether a number is that of this `for` or of a statement in its body."""
+        return self.id <= number < self.end
 
 
 @dataclass(slots=True, eq=False)

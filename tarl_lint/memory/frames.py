@@ -10,6 +10,9 @@ from tarl_lint.ir.exception_types import ExceptionTypes, Handled
 from tarl_lint.memory.values import BOTTOM, Branches, Key, Obj, Value
 
 
+Turns = tuple[tuple[ir.Loop, int], ...]  # loops, outer ones first, with the number of the current iteration
+
+
 @dataclass(slots=True, eq=False)
 class Attempt:
     """A `try` whose body is running: what it handles, the states in which a handler can be entered, the exceptions.
@@ -58,6 +61,13 @@ class Leaving:
     cause: Escape | Value | Literal["break", "continue"]
 
 
+def inside(statement: ir.Stmt | None, turns: Turns) -> Turns:
+    """Return those of the loops that contain a statement; a loop contains itself, since it binds its target."""
+    if not turns or statement is None:
+        return ()
+    return tuple(turn for turn in turns if turn[0].has(statement.id))
+
+
 class Frame(Obj):
     """A frame, identified by its chain of calls. The fields of a frame are the local variables."""
 
@@ -68,6 +78,7 @@ class Frame(Obj):
         "call",
         "call_pos",
         "caller",
+        "called_in",
         "captured",
         "closures",
         "cls",
@@ -98,6 +109,7 @@ class Frame(Obj):
         "thrown",
         "tries",
         "turn",
+        "turns",
         "waypoints",
         "yielded",
     )  # fmt: skip
@@ -117,6 +129,8 @@ class Frame(Obj):
         self.turn: tuple[
             int, ...
         ] = ()  # numbers of the current elements of unrolled loops and comprehensions
+        self.turns: Turns = ()  # current iterations of the unrolled loops whose iterations decide about later ones
+        self.called_in: Turns = ()  # the `turns` of the caller at the call
         self.rows = 1  # number of iterations of the unrolled loops around the current statement
         # statements executed exactly once in each iteration of an unrolled loop
         self.steps: frozenset[ir.Stmt] = frozenset()
@@ -127,10 +141,10 @@ class Frame(Obj):
         self.cls: Obj | None = None  # the class under construction, if this is a class body
         self.base: Branches = frozenset()
         self.statement: ir.Stmt | None = None
-        self.closures: dict[int, Branches] = {}
+        self.closures: dict[tuple[int, Turns], Branches] = {}
         self.control: object = None
         # numbers of the conditions that are connected with the current `control` in the graph
-        self.waypoints: set[int] = set()
+        self.waypoints: set[tuple[int, Turns]] = set()
         self.entered: object = None  # the caller's control dependence, once it is connected with this call
         self.heads: dict[
             tuple[int, ...], dict[Key, Value]

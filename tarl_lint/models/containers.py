@@ -26,7 +26,7 @@ from tarl_lint.memory.values import (
     join_all,
     pointer,
 )
-from tarl_lint.models import iterators, launched, removal, rows, sizes
+from tarl_lint.models import iterators, launched, object_lists, removal, rows, sizes
 
 QUEUES = frozenset(
     f"{module}.{name}"
@@ -87,9 +87,13 @@ def mutate(
     elif name in ("extend", "extendleft"):
         for obj in base.objects if plain else ():
             sizes.lengthen(ctx, obj, plain[0])
+        if name == "extend" and plain and _appended(ctx, base, sizes.unpacked(ctx, plain[0]) or [], frame, call):
+            return
         insert_elements(ctx, base, [heap.elements(ctx, v) for v in plain], frame, call)
     elif name == "append" and (place := _next_place(ctx, base, plain, frame)) is not None:
         updates.write_item(ctx, base, const(place), through_statement(ctx, plain[0], frame, call))
+    elif name == "append" and _appended(ctx, base, plain, frame, call):
+        return
     elif name == "append" and _subscribers(plain):
         _append_subscriber(ctx, base, plain[0], frame, call)
     else:
@@ -126,6 +130,16 @@ def _next_place(ctx: Interpreter, base: Value, values: list[Value], frame: Frame
         return None
     known = sizes.unpacked(ctx, base)
     return len(known) if known is not None and len(known) < sizes.MAX_KNOWN else None
+
+
+def _appended(ctx: Interpreter, base: Value, news: Sequence[Value], frame: Frame, call: ir.Call) -> bool:
+    """Append objects of analysed classes at their own indices; return whether these are known."""
+    first = object_lists.place(ctx, base, news)
+    if first is None:
+        return False
+    passed = [through_statement(ctx, value, frame, call, number) for number, value in enumerate(news)]
+    object_lists.appended(ctx, base, first, passed)
+    return True
 
 
 def _subscribers(values: list[Value]) -> bool:

@@ -10,8 +10,9 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.interpret.run_order import Part
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import Control, Iteration
 from tarl_lint.memory import recency
-from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.frames import Frame, Turns, inside
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import UNKNOWN, Value, pointer
 from tarl_lint.models.ros.endpoints import Acceptance, DefaultName, Publisher, SinkRecord
@@ -127,24 +128,52 @@ def _answer(ctx: Interpreter, it: Invocation, value: Value) -> int:
     return node
 
 
-def under(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int) -> None:
-    """Make a node depend on the conditions of a statement, including those in callers."""
-    control = ctx.control(frame)
+def under(
+    ctx: Interpreter,
+    frame: Frame,
+    statement: ir.Stmt,
+    node: int,
+    turns: Turns | None = None,
+    but: ir.Loop | None = None,
+) -> None:
+    """Make a node depend on the conditions of a statement, including those in callers.
+
+    `turns` are the iterations of unrolled loops in which the statement runs; the current ones by default. Conditions
+    inside the loop `but` are left out.
+    """
+    turns = inside(statement, frame.turns if turns is None else turns)
+    whole = ctx.control(frame)
+    control: Control | Iteration = whole.iteration(turns[-1][0]) if turns else whole
     for branch in control.direct.get(statement.id, ()):
-        decision, _ = ctx.branch(frame, branch)
-        ctx.graph.depend(node, (decision,))
-        _reached(ctx, frame, control.statements[branch[0]], node)
-    if statement.id in control.always:
+        if but is None or not but.has(branch[0]):
+            decision, _ = ctx.branch(frame, branch, turns)
+            ctx.graph.depend(node, (decision,))
+            _reached(ctx, frame, whole.statements[branch[0]], node, turns)
+    if turns:
+        _begun(ctx, frame, turns, node)
+    elif statement.id in control.always:
         _entered(ctx, frame, node)
 
 
-def _reached(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int) -> None:
+def _begun(ctx: Interpreter, frame: Frame, turns: Turns, node: int) -> None:
+    """Make a node depend on the conditions under which an iteration of an unrolled loop begins."""
+    around, (loop, number) = turns[:-1], turns[-1]
+    onward = ctx.control(frame).iteration(loop).onward
+    decisions = [ctx.branch(frame, b, (*around, (loop, before))) for before in range(number) for b in onward]
+    decisions.append(ctx.branch(frame, (loop.id, "body"), around))
+    ctx.graph.depend(node, [decision for decision, _ in decisions])
+    under(ctx, frame, loop, node, around, loop)
+
+
+def _reached(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int, turns: Turns) -> None:
     """Make a node depend on the conditions under which a condition is evaluated, now or later."""
-    decision = ctx.condition(frame, statement)
-    waypoint = ctx.graph.node((frame.id, statement.id, "reached"), ctx.graph.places[decision], frozenset())
-    if statement.id not in frame.waypoints:
-        frame.waypoints.add(statement.id)
-        under(ctx, frame, statement, waypoint)
+    turns = inside(statement, turns)
+    decision = ctx.condition(frame, statement, turns)
+    key = (frame.id, statement.id, "reached", *((loop.id, turn) for loop, turn in turns))
+    waypoint = ctx.graph.node(key, ctx.graph.places[decision], frozenset())
+    if (statement.id, turns) not in frame.waypoints:
+        frame.waypoints.add((statement.id, turns))
+        under(ctx, frame, statement, waypoint, turns)
     if waypoint != node:
         ctx.graph.depend(node, (waypoint,))
 
@@ -162,7 +191,7 @@ def _entered(ctx: Interpreter, frame: Frame, node: int) -> None:
     control = ctx.control(caller)
     if frame.entered is not control:
         frame.entered = control
-        under(ctx, caller, call, waypoint)
+        under(ctx, caller, call, waypoint, frame.called_in)
         ctx.graph.depend(waypoint, [n for n, _ in frame.guards])
     ctx.graph.depend(node, (waypoint,))
 

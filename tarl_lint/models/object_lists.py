@@ -1,0 +1,48 @@
+"""Lists of objects of the analysed classes: their order is known as long as each object is appended once.
+
+The order matters if a loop calls the objects, and an earlier one decides whether later ones are called.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.memory import heap, recency
+from tarl_lint.memory.values import Value, pointer
+from tarl_lint.models import sizes
+
+
+def place(ctx: Interpreter, base: Value, news: Sequence[Value]) -> int | None:
+    """Return the index of the first of the objects that a call appends to a list; None if the order is not known."""
+    if len(base.pts) != 1 or not news or not all(map(is_object, news)):
+        return None
+    (obj,) = base.pts
+    known = sizes.unpacked(ctx, base) if obj.kind == "sequence" else None
+    if known is None or len(known) + len(news) > sizes.MAX_KNOWN or not all(map(is_object, known)):
+        return None
+    distinct = frozenset(o for value in (*known, *news) for o in value.pts)
+    ctx.look(distinct)
+    if len(distinct) < len(known) + len(news) or any(o.laden for o in distinct):
+        return None  # a loop or a callback appends again, or the objects carry data
+    return len(known) if recency.single(ctx, obj) else None
+
+
+def is_object(element: Value) -> bool:
+    """Return whether a value is certainly one object of an analysed class."""
+    return len(element.pts) == 1 and all(o.kind == "instance" for o in element.pts)
+
+
+def without_empty(ctx: Interpreter, source: Value) -> Value:
+    """Return a value without empty lists and tuples if it may also be another one, as in `children or []`."""
+    if len(source.pts) < 2 or any(o.kind != "sequence" for o in source.pts):
+        return source
+    full = frozenset(o for o in source.pts if not sizes.is_empty(ctx, pointer(o)))
+    return Value(source.deps, full, source.consts) if full else source
+
+
+def appended(ctx: Interpreter, base: Value, first: int, news: Sequence[Value]) -> None:
+    """Store objects at the end of a list, which `place` returned."""
+    (obj,) = base.pts
+    for number, value in enumerate(news):
+        ctx.store.put((obj, heap.item_field(first + number)), value)
