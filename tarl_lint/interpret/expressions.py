@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from tarl_lint.catalog import fact
-from tarl_lint.interpret import descriptors, dunder_methods, literals, operators
+from tarl_lint.interpret import descriptors, dunder_methods, literals, operators, short_circuits
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap, recency
@@ -334,7 +334,7 @@ EVALUATE: Mapping[type, Callable[[Any, Any, Frame], Value]] = {
     ir.Choice: _choice,
     ir.SequenceDisplay: literals.sequence_display,
     ir.MappingDisplay: literals.mapping_display,
-    ir.Comprehension: literals.comprehension,
+    ir.Comprehension: short_circuits.comprehension,
     ir.Starred: _starred,
     ir.Walrus: _walrus,
     ir.Yield: _yield,

@@ -213,7 +213,9 @@ class Interpreter:
             known = frame.closures[key] = self._conditions(frame, statement, turns)
         return known
 
-    def _conditions(self, frame: Frame, statement: ir.Stmt, turns: Turns, but: ir.Loop | None = None) -> Branches:
+    def _conditions(
+        self, frame: Frame, statement: ir.Stmt, turns: Turns, but: ir.Loop | None = None
+    ) -> Branches:
         """Return the conditions of a statement, which do not include those inside the loop `but`."""
         control = self.control(frame)
         if not turns:
@@ -230,7 +232,7 @@ class Interpreter:
         return self._conditions(frame, loop, around, loop) | found
 
     def branch(self, frame: Frame, branch: Branch, turns: Turns | None = None) -> tuple[int, str]:
-        """Return a branch of a function as seen in one of the function's frames, and in iterations of unrolled loops."""
+        """Return a branch of a function as seen in one of its frames, and in iterations of unrolled loops."""
         number, way = branch
         turns = frame.turns if turns is None else turns
         if turns:
@@ -242,7 +244,7 @@ class Interpreter:
             node = self.graph.node(key, place, NONE)  # type: ignore[arg-type]
             if turns:
                 # what follows the loop depends on the decision of each iteration
-                whole, _ = self.branch(frame, branch, ())
+                whole, _ = self.branch(frame, branch, turns[:-1])
                 self.graph.depend(whole, [node])
         return node, way
 
@@ -257,7 +259,7 @@ class Interpreter:
             if statement.id in self.control(frame).far:
                 self.graph.control[node].update(b for b, _ in self.graph.branches[node])
             if turns:
-                self.condition(frame, statement, ())
+                self.condition(frame, statement, turns[:-1])
         return node
 
     def control(self, frame: Frame) -> Control:

@@ -29,18 +29,24 @@ def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -
         (i, ctx.ops.evaluate(ctx, i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items
     ]
     where = pointer(obj)
-    exact = True
+    exact, count = True, 0
     for number, (item, value) in enumerate(items):
         value = entry(ctx, item, value, frame, (expr.slot, number))
         nullness.note_passed(ctx, (obj, item_field(number)), item, value, frame)
+        given = [value]
         if isinstance(item, ir.Starred):
-            exact = False
-            updates.add_element(ctx, where, heap.elements(ctx, value))
             sizes.lengthen(ctx, obj, value)
-        elif exact:
-            ctx.store.put((obj, item_field(number)), value)
-        else:
-            updates.add_element(ctx, where, value)
+            known = sizes.unpacked(ctx, value)
+            if known is None or count + len(known) > sizes.MAX_KNOWN:
+                exact, given = False, [heap.elements(ctx, value)]
+            else:
+                given = known
+        for one in given:
+            if exact:
+                ctx.store.put((obj, item_field(count)), one)
+            else:
+                updates.add_element(ctx, where, one)
+            count += 1
     return where
 
 

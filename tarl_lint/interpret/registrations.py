@@ -72,13 +72,8 @@ class Registrations:
         """
         found = self.asking.get(loop)
         if found is None:
-            names = _names(loop.target)
-            code = [*walk(*loop.nodes)]
-            called = (one.func for one in code if isinstance(one, ast.Call))
-            found = any(isinstance(one, ast.Attribute) and _is_one(one.value, names) for one in called) and any(
-                isinstance(one, DECIDING) for one in code
-            )
-            self.asking[loop] = found
+            decides = any(isinstance(one, DECIDING) for one in walk(*loop.nodes))
+            found = self.asking[loop] = decides and calls_method_of(loop.target, loop.nodes)
         return found
 
     def publishes(self, loop: ir.Loop) -> Literal["direct", "helper", ""]:
@@ -162,7 +157,16 @@ def _names(target: ir.Expr | None) -> frozenset[str]:
     """Return the variables that a loop assigns its elements to."""
     if isinstance(target, ir.SequenceDisplay):
         return frozenset().union(*map(_names, target.items))
-    return frozenset([target.name]) if isinstance(target, ir.Name) else frozenset()
+    if isinstance(target, ir.Name):
+        return frozenset([target.name.partition("<")[0]])  # variables of comprehensions have unique names
+    return frozenset()
+
+
+def calls_method_of(target: ir.Expr | None, nodes: Sequence[ast.AST]) -> bool:
+    """Return whether code calls a method of a variable of the loop around it."""
+    names = _names(target)
+    called = (one.func for one in walk(*nodes) if isinstance(one, ast.Call))
+    return any(isinstance(one, ast.Attribute) and _is_one(one.value, names) for one in called)
 
 
 def _is_one(expr: ast.expr, names: Set[str]) -> bool:

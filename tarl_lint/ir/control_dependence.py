@@ -40,7 +40,9 @@ class Control:
     statements: Mapping[int, ir.Stmt]
     raising: Raising
     types: ExceptionTypes
-    iterations: dict[int, Iteration] = field(default_factory=dict)  # by the number of the loop, as far as asked for
+    iterations: dict[int, Iteration] = field(
+        default_factory=dict
+    )  # by the number of the loop, as far as asked for
 
     def iteration(self, loop: ir.Loop) -> Iteration:
         """Return the control dependence inside one iteration of a loop."""

@@ -40,6 +40,7 @@ OPERATORS: dict[type[ast.AST], str] = {
     ast.Or: "or",
 }
 
+SHORT_CIRCUITS = frozenset(["any", "all", "next"])  # functions that may stop before the end of their argument
 AS_TEXT = (-1, ord("s"))  # f-string conversions equivalent to `str`
 
 
@@ -58,6 +59,9 @@ class Expressions:
 
     def __init__(self, module: str) -> None:
         self.module = module
+        self.lazy: ast.expr | None = (
+            None  # the first argument of the current call of a function that may stop early
+        )
 
     def expr(self, node: ast.expr, scope: Scope) -> ir.Expr:
         """Lower one expression; an expression without a form of its own becomes an operation on its parts."""
@@ -89,6 +93,8 @@ class Expressions:
 
     def _call(self, node: ast.Call, scope: Scope) -> ir.Expr:
         function = self.expr(node.func, scope)
+        if isinstance(node.func, ast.Name) and node.func.id in SHORT_CIRCUITS and node.args:
+            self.lazy = node.args[0]
         keywords = [(k.arg, self.expr(k.value, scope)) for k in node.keywords]
         return ir.Call(function, self.all(node.args, scope), keywords, position(node), scope.next())
 
@@ -143,6 +149,7 @@ class Expressions:
     ) -> ir.Expr:
         """Lower a comprehension in place: its targets become locals of the function, under unique names."""
         before, slot = dict(scope.renamed), scope.next()
+        lazy = isinstance(node, ast.GeneratorExp) and node is self.lazy
         loops: list[tuple[ir.Expr, ir.Expr, Sequence[ir.Expr]]] = []
         for generator in node.generators:
             source = self.expr(generator.iter, scope)
@@ -155,7 +162,8 @@ class Expressions:
         made = node.value if isinstance(node, ast.DictComp) else node.elt
         element = self.expr(made, scope)
         scope.renamed = before
-        return ir.Comprehension(loops, key, element, position(node), slot, made)
+        tests = [test for generator in node.generators for test in generator.ifs]
+        return ir.Comprehension(loops, key, element, position(node), slot, made, tests, lazy)
 
     def _starred(self, node: ast.Starred, scope: Scope) -> ir.Expr:
         return ir.Starred(self.expr(node.value, scope), position(node))

@@ -121,6 +121,10 @@ class Comprehension:
     pos: Pos
     slot: int
     node: ast.expr  # the syntax tree of the element
+    tests: Sequence[ast.expr] = ()  # the syntax trees of its conditions
+    lazy: bool = (
+        False  # whether it ends at an element that decides, as in `all(part.ready() for part in parts)`
+    )
 
 
 @dataclass(slots=True, eq=False)
@@ -252,7 +256,9 @@ class Loop(Stmt):
     orelse: Sequence[Stmt]
     endless: bool = False
     nodes: Sequence[ast.stmt] = ()  # the syntax trees of the body of a `for`
-    end: int = 0  # the numbers of the statements in the body of a `for` are between its own number and this one
+    end: int = (
+        0  # the numbers of the statements in the body of a `for` are between its own number and this one
+    )
 
     def has(self, number: int) -> bool:
         """Return whether a number is that of this `for` or of a statement in its body."""

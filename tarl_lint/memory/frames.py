@@ -9,7 +9,6 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.exception_types import ExceptionTypes, Handled
 from tarl_lint.memory.values import BOTTOM, Branches, Key, Obj, Value
 
-
 Turns = tuple[tuple[ir.Loop, int], ...]  # loops, outer ones first, with the number of the current iteration
 
 
@@ -77,8 +76,8 @@ class Frame(Obj):
         "base",
         "call",
         "call_pos",
-        "caller",
         "called_in",
+        "caller",
         "captured",
         "closures",
         "cls",

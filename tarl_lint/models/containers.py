@@ -85,19 +85,25 @@ def mutate(
     elif name == "update" and base.pts:
         _update(ctx, base, plain, named, frame, call)
     elif name in ("extend", "extendleft"):
-        for obj in base.objects if plain else ():
-            sizes.lengthen(ctx, obj, plain[0])
-        if name == "extend" and plain and _appended(ctx, base, sizes.unpacked(ctx, plain[0]) or [], frame, call):
-            return
-        insert_elements(ctx, base, [heap.elements(ctx, v) for v in plain], frame, call)
+        _extend(ctx, base, name, plain, frame, call)
     elif name == "append" and (place := _next_place(ctx, base, plain, frame)) is not None:
         updates.write_item(ctx, base, const(place), through_statement(ctx, plain[0], frame, call))
     elif name == "append" and _appended(ctx, base, plain, frame, call):
-        return
+        pass  # stored at its index
     elif name == "append" and _subscribers(plain):
         _append_subscriber(ctx, base, plain[0], frame, call)
     else:
         insert_elements(ctx, base, plain[-1:] if name == "insert" else plain, frame, call)
+
+
+def _extend(
+    ctx: Interpreter, base: Value, name: str, plain: list[Value], frame: Frame, call: ir.Call
+) -> None:
+    for obj in base.objects if plain else ():
+        sizes.lengthen(ctx, obj, plain[0])
+    news = sizes.unpacked(ctx, plain[0]) if plain and name == "extend" else None
+    if not news or not _appended(ctx, base, news, frame, call):
+        insert_elements(ctx, base, [heap.elements(ctx, v) for v in plain], frame, call)
 
 
 def _prepare(

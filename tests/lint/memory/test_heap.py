@@ -626,6 +626,7 @@ def test_the_default_of_a_parameter_is_a_name_that_the_robot_may_replace():
     value = Value(consts=texts)
     assert (value.names(), value.replaceable()) == (("scan",), True)
     assert not const("scan").replaceable()
+    assert (value.default_keys(), const("scan").default_keys()) == (frozenset(["scan"]), frozenset())
     assert symbolic_names.with_default(const(1)) is None
     assert symbolic_names.with_default(pointer(Obj("lib", 1))) is None
 
