@@ -61,6 +61,19 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
     "smach_ros.MonitorState": Fact(
         "monitor", "smach_ros.MonitorState", (0, "topic"), (1, "msg_type"), (2, "cond_cb")
     ),
+    **{
+        f"py_trees_ros.{name}": Fact(
+            "behaviour",
+            f"py_trees_ros.{name}",
+            (1, "topic_name"),
+            (2, "topic_type"),
+            extra=(4, "blackboard_variables"),
+        )
+        for name in ("subscribers.ToBlackboard", "subscribers.CheckData", "subscribers.Handler")
+    },
+    "py_trees_ros.battery.ToBlackboard": Fact(
+        "behaviour", "py_trees_ros.battery.ToBlackboard", (1, "topic_name")
+    ),
     "functools.partial": Fact("partial", "functools.partial", callback=(0, "func")),
     "copy.copy": Fact("copy", "copy.copy"),
     "copy.deepcopy": Fact("copy", "copy.deepcopy"),
@@ -226,6 +239,7 @@ SOURCE_WORDS: Final = (
     "InteractiveMarkerServer",
     "ImageTransport",
     "MonitorState",
+    "py_trees_ros",
 )  # a file that contains none of these words has no source
 SINK_WORDS: Final = ("publish", "Publisher")
 CLIENT_WORDS: Final = (

@@ -11,7 +11,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.trees import walk
 
 KINDS = frozenset(
-    ["subscribe", "receive", "filter", "service", "action"]
+    ["subscribe", "receive", "filter", "service", "action", "behaviour"]
 )  # names of calls that register an input
 FACTS = {**catalog.FUNCTIONS, **catalog.METHODS}
 REGISTERING = frozenset(name.rpartition(".")[2] for name, fact in FACTS.items() if fact.kind in KINDS)

@@ -162,7 +162,9 @@ def check(ctx: Interpreter, it: Invocation) -> Value:
         for name in names:
             ctx.graph.flow(ctx.use(blackboards.value_of(ctx, client, name)), node)
     for obj in made.objects:
-        parts.part_of(ctx, obj, it.frame).answers[node] = None
+        part = parts.part_of(ctx, obj, it.frame)
+        ctx.graph.depend(node, [part.runs])
+        part.answers[node] = None
     return made
 
 

@@ -40,7 +40,7 @@ from tarl_lint.models import (
 from tarl_lint.models.containers import is_device
 from tarl_lint.models.futures import READERS
 from tarl_lint.models.library_functions import dropped, new_object
-from tarl_lint.models.ros import senders
+from tarl_lint.models.ros import behaviour_subscribers, senders
 from tarl_lint.models.smach import LATER
 from tarl_lint.models.strings import TEXT_METHODS
 
@@ -256,6 +256,7 @@ def _built_by_base(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
     if isinstance(target.info, tuple):
         senders.inherit(ctx, target.info[1], it.arguments, it.frame, it.call)
         behaviour_trees.inherit(ctx, target.info[1], it)
+        behaviour_subscribers.inherit(ctx, target.info[1], it)
         callables.make_instances(
             ctx, it.arguments, Value(it.base.deps, frozenset([target.info[1]])), it.frame, it.call
         )

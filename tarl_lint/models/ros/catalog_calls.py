@@ -16,7 +16,7 @@ from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.symbolic_names import text_of_parameter
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Consts, Value, join, pointer
 from tarl_lint.models import containers, default_values, launched, records, sizes, state_callbacks
-from tarl_lint.models.ros import publications, services, subscriptions
+from tarl_lint.models.ros import behaviour_subscribers, publications, services, subscriptions
 from tarl_lint.parameter_names import DEFAULT, ELSEWHERE
 
 
@@ -268,6 +268,7 @@ ACTIONS: Mapping[str, Callable[..., Value]] = {
     "receive": subscriptions.receive,
     "configured": subscriptions.configured_source,
     "filter": subscriptions.message_filter,
+    "behaviour": behaviour_subscribers.behaviour,
     "monitor": state_callbacks.monitor,
     "feedback": subscriptions.feedback,
     "synchronizer": subscriptions.synchronizer,
