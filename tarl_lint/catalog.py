@@ -321,8 +321,6 @@ ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **{f"cv2.{name}": 0 for name in sorted(DRAWING)},
     "numpy.copyto": 0, "numpy.put": 0, "numpy.place": 0, "numpy.putmask": 0, "random.shuffle": 0,
     "numpy.fill_diagonal": 0, "setattr": 0, "struct.pack_into": 1,
-    **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
-    **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
     **dict.fromkeys(FILLS_MESSAGES, 0),
 }  # fmt: skip
 # method → position of the argument that it fills

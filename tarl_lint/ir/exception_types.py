@@ -19,6 +19,8 @@ Handled = frozenset[str]  # names of the classes that a handler catches; empty i
 UNKNOWN: Final = ""  # name of an exception whose class is not known
 OTHER: Final = "?"  # name of a handler's class that is not known
 GENERAL: Final = "Exception"
+GROUP: Final = "BaseExceptionGroup"
+PARTS: Final = "*"  # marks the handlers of `except*`, which may also catch exceptions inside a group
 ALL: Final = "BaseException"
 # builtin exceptions that no failing call raises
 NO_ERRORS: Final = frozenset(["KeyboardInterrupt", "SystemExit", "GeneratorExit"])
@@ -70,6 +72,8 @@ class ExceptionTypes:
         if not handled:
             return True
         above, whole = self._above(name)
+        if PARTS in handled:
+            return None if GROUP in above else self.catches(handled - {PARTS}, name)
         if not handled.isdisjoint(above):
             return None if above & self.several else True
         if not whole:  # by convention, classes of libraries inherit from Exception
@@ -78,7 +82,7 @@ class ExceptionTypes:
 
     def of_libraries(self, handled: Handled) -> list[str]:
         """Return the classes of a handler that are neither builtin nor of the files, sorted by name."""
-        unknown = {UNKNOWN, OTHER, *self.bases}
+        unknown = {UNKNOWN, OTHER, PARTS, *self.bases}
         return sorted(n for n in handled if n not in unknown and n.removeprefix(".") not in BUILTIN)
 
     def names(self, handled: Handled, name: str) -> bool:
@@ -136,6 +140,8 @@ def raised(expr: ir.Expr | None) -> str:
 
 def handled_by(types: ir.Expr | None) -> Handled:
     """Return the names of the classes that a handler catches; empty if it catches all."""
+    if isinstance(types, ir.Starred):  # `except*`
+        return handled_by(types.value) | {PARTS}
     parts = types.items if isinstance(types, ir.SequenceDisplay) else [types]
     names = frozenset(_called(part) or OTHER for part in parts if part is not None)
     return frozenset() if ALL in names else names

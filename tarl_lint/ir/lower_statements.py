@@ -125,6 +125,8 @@ class Lowering(Expressions):
         handlers: list[tuple[ir.Expr | None, ir.Name | None, Sequence[ir.Stmt]]] = []
         for handler in node.handlers:
             types = self.expr(handler.type, scope) if handler.type is not None else None
+            if types is not None and type(node).__name__ == "TryStar":  # `except*`
+                types = ir.Starred(types, position(handler))
             name = ir.Name(*scope.resolve(handler.name), position(handler)) if handler.name else None
             handlers.append((types, name, self.block(handler.body, scope)))
         parts = [self.block(b, scope) for b in (node.body, node.orelse, node.finalbody)]

@@ -350,7 +350,12 @@ def _read_pairs(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def new_container(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a new container with the elements of its argument."""
+    """Return a new container with the elements of its argument; `iter(function, end)` has the results of a function."""
+    if it.name == "iter" and len(it.arguments[0]) == 2:
+        made = ctx.ops.call_value(ctx, it.arguments[0][0], ([], {}), it.frame, it.call)
+        obj = recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot))
+        updates.add_element(ctx, pointer(obj), made)
+        return pointer(obj)
     given = [v for v in it.arguments[0][:1] if v is not BOTTOM]
     known = sizes.unpacked(ctx, given[0]) if given and it.name in IN_ORDER else None
     known = known[::-1] if known is not None and it.name == "reversed" else known

@@ -1,12 +1,25 @@
-"""Models of `heapq` that take elements out of a list."""
+"""Models of `heapq` and `bisect` that add elements to a list, and take them out of it."""
 
 from __future__ import annotations
+
+from typing import Final
 
 from tarl_lint.interpret import call_contexts
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
-from tarl_lint.memory.values import Value
+from tarl_lint.memory.values import UNKNOWN, Value
 from tarl_lint.models import containers, removal
+
+TAKING: Final = frozenset(["heapq.heappushpop", "heapq.heapreplace"])
+
+
+def pushed(ctx: Interpreter, it: Invocation) -> Value:
+    """Add an element; in `heappushpop` and `heapreplace`, also remove the smallest element and return it."""
+    given = it.arguments[0]
+    if len(given) < 2:
+        return Value(call_contexts.all_used(ctx, it.arguments))
+    containers.insert_elements(ctx, given[0], [given[1]], it.frame, it.call)
+    return popped(ctx, it) if it.name in TAKING else UNKNOWN
 
 
 def popped(ctx: Interpreter, it: Invocation) -> Value:

@@ -247,6 +247,8 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     function_wrappers.WRAPS: function_wrappers.wraps,
     function_wrappers.UPDATES: function_wrappers.update_wrapper,
     "heapq.heappop": heaps.popped,
+    **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), heaps.pushed),
+    **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), heaps.pushed),
     "min": containers.chosen_element,
     "max": containers.chosen_element,
     "next": iterators.next_element,

@@ -299,6 +299,27 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(pairs[1][1])  # data
         out.publish(pairs[0][1])  # clean
     """,
+    (
+        "heapq.heappush",
+        "heapq.heappushpop",
+        "heapq.heapreplace",
+        "bisect.insort",
+        "bisect.insort_left",
+        "bisect.insort_right",
+    ): """
+        def near():
+            out.publish(msg.data)  # data
+        def far():
+            out.publish(2.0)  # clean
+        heap = []
+        NAME(heap, (1, far))
+        NAME(heap, (2, near))
+        for _, one in heap:
+            one()
+        other = []
+        NAME(other, 1.0)
+        out.publish(other[0])  # clean
+    """,
     ("enum.auto",): """
         class Side(enum.Enum):
             LEFT = NAME()
