@@ -78,7 +78,7 @@ def _parsed(annotation: ast.expr) -> ast.expr:
 def _classes(ctx: Interpreter, module: Obj, annotation: ast.expr) -> list[Obj]:
     """Return the analysed classes that an annotation names."""
     found: dict[Obj, None] = {}
-    for path in _names(annotation):
+    for path in named_types(annotation):
         value = pointer(module)
         for part in path.split("."):
             value = heap.read(ctx, value, part)
@@ -86,14 +86,15 @@ def _classes(ctx: Interpreter, module: Obj, annotation: ast.expr) -> list[Obj]:
     return list(found)
 
 
-def _names(annotation: ast.expr) -> Iterator[str]:
+def named_types(annotation: ast.expr) -> Iterator[str]:
+    """Yield the names of the types in an annotation, also those in a union or a sequence."""
     annotation = _parsed(annotation)
     if isinstance(annotation, (ast.Name, ast.Attribute)):
         yield ast.unparse(annotation)
     elif isinstance(annotation, ast.BinOp):
-        yield from _names(annotation.left)
-        yield from _names(annotation.right)
+        yield from named_types(annotation.left)
+        yield from named_types(annotation.right)
     elif isinstance(annotation, ast.Subscript) and last_name(annotation.value) in SEQUENCES | WRAPPERS:
         inner = annotation.slice
         for one in inner.elts if isinstance(inner, ast.Tuple) else [inner]:
-            yield from _names(one)
+            yield from named_types(one)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarl_lint.interpret import call_contexts, expressions, literals, operators
+from tarl_lint.interpret import call_contexts, expressions, literals, operators, single_dispatch
 from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
@@ -173,6 +173,8 @@ def call_value(
         return BOTTOM
     if not targets:
         return Value(function.deps | call_contexts.all_used(ctx, arguments))
+    if len(targets) > 1 and ctx.dispatches:
+        targets = single_dispatch.chosen(ctx, targets, arguments)
     if len(targets) == 1:
         return call_object(ctx, targets[0], arguments, frame, call, carriers)
     result, deltas = BOTTOM, []

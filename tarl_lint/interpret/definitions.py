@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tarl_lint import catalog
-from tarl_lint.interpret import calls, descriptors, expressions
+from tarl_lint.interpret import calls, descriptors, expressions, single_dispatch
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import control_dependence
@@ -40,13 +40,15 @@ def define(ctx: Interpreter, s: ir.Define, frame: Frame) -> bool:
 
 
 def _add_implementation(ctx: Interpreter, decorator: ir.Expr, made: Value, frame: Frame) -> None:
-    """Add the implementation that `@function.register` gives a function with `singledispatch`; any of them may run."""
+    """Add the implementation that `@function.register` gives a function with `singledispatch`."""
     maker = decorator.function if isinstance(decorator, ir.Call) else decorator
     if not isinstance(maker, ir.Attribute) or maker.name != "register":
         return
     general = expressions.evaluate(ctx, maker.base, frame)
     functions = [f for o in general.pts if (f := function_of(o)) is not None]
     if any(_last_name(d).startswith("singledispatch") for f in functions for d in f.decorators):
+        given = [expressions.evaluate(ctx, one, frame) for one in getattr(decorator, "arguments", ())]
+        single_dispatch.note(ctx, decorator, given, made)
         ctx.ops.assign(ctx, maker.base, join(general, made), frame)
 
 

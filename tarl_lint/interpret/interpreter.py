@@ -78,6 +78,8 @@ class Interpreter:
         self.doubts: dict[int, dict[Root, None]] = {}
         # conditions inside the current expression (as in `a if b else c`) that decide what is evaluated
         self.guards: list[tuple[int, str]] = []
+        # implementations of functions with `singledispatch` → names of the types for which they are registered
+        self.dispatches: dict[Obj, frozenset[str]] = {}
         self.members = False  # whether a class is an enumeration whose members are sequences
         self.counting: ir.Stmt | None = None  # the statement in which numbers are followed one by one
         self.repeating = False  # whether the element of a comprehension is evaluated again

@@ -8,7 +8,7 @@ from itertools import zip_longest
 from typing import Final
 
 from tarl_lint import catalog
-from tarl_lint.interpret import call_contexts, calls
+from tarl_lint.interpret import call_contexts, calls, single_dispatch
 from tarl_lint.interpret.budget import MAX_ALIKE, MAX_GENERATIONS
 from tarl_lint.interpret.call_contexts import CALLABLE, ROOT_CALL
 from tarl_lint.interpret.interpreter import Interpreter
@@ -128,7 +128,10 @@ def connect(
     ctx: Interpreter, record: SourceRecord, callback: Value, extra: Sequence[Value], it: Invocation
 ) -> None:
     """Run a callback whenever a message of the source arrives; call a library's callback where it is registered."""
-    for target in callback.objects:
+    targets = callback.objects
+    if len(targets) > 1 and ctx.dispatches and len(record.types) == 1:
+        targets = single_dispatch.for_types(ctx, targets, [sorted(record.types)])
+    for target in targets:
         if _of_library(ctx, target):
             obj = _received(ctx, record, it.frame, ("forward", it.call.slot, target.key))
             calls.call_object(ctx, target, ([pointer(obj)], {}), it.frame, it.call)
