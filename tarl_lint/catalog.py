@@ -137,6 +137,10 @@ CLASS_METHODS: Final[Mapping[str, Fact]] = {
         for name in ("subscribe", "subscribe_camera")
     },
     **{f"{buffer}.transform": TRANSFORM for buffer in sorted(BUFFERS)},
+    **{
+        f"sched.scheduler.{name}": Fact("scheduled", "sched", callback=(2, "action"), extra=(3, "argument"))
+        for name in ("enter", "enterabs")
+    },
 }  # qualified method name → fact; METHODS holds the methods whose name alone identifies them
 
 METHODS: Final[Mapping[str, Fact]] = {

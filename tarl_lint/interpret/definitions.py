@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tarl_lint import catalog
-from tarl_lint.interpret import calls, descriptors, expressions, single_dispatch
+from tarl_lint.interpret import calls, descriptors, expressions, metaclasses, single_dispatch
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import control_dependence
@@ -136,6 +136,7 @@ def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
             info.external.append("?")
     ctx.shared.edition += isinstance(cls.info, ClassInfo) and _inherits(cls.info) != _inherits(info)
     cls.info = info
+    given = expressions.evaluate(ctx, statement.metaclass, frame) if statement.metaclass is not None else None
     body = Frame(
         ("class", cls.key),
         frame_number(ctx, ("class", cls.key)),
@@ -155,6 +156,9 @@ def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
         _make_members(ctx, cls, statement, frame)
     descriptors.name_all(ctx, cls, frame, statement.pos)
     _subclassed(ctx, cls, statement, frame)
+    info.metaclass = metaclasses.of(cls, given)
+    if info.metaclass is not None:
+        metaclasses.apply(ctx, cls, info.metaclass, frame, statement.pos)
     made = decorated(ctx, pointer(cls), statement.decorators, statement, frame)
     ctx.ops.assign(ctx, statement.target, made if made.pts else pointer(cls), frame)
 

@@ -80,6 +80,7 @@ class Interpreter:
         self.guards: list[tuple[int, str]] = []
         # implementations of functions with `singledispatch` → names of the types for which they are registered
         self.dispatches: dict[Obj, frozenset[str]] = {}
+        self.class_made: Obj | None = None  # the class for which a metaclass runs
         self.members = False  # whether a class is an enumeration whose members are sequences
         self.counting: ir.Stmt | None = None  # the statement in which numbers are followed one by one
         self.repeating = False  # whether the element of a comprehension is evaluated again

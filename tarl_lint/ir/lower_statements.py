@@ -177,6 +177,7 @@ class Lowering(Expressions):
                     for k in node.keywords
                     if k.arg is not None and k.arg != "metaclass"
                 ],
+                next((self.expr(k.value, scope) for k in node.keywords if k.arg == "metaclass"), None),
             )
         ]
 

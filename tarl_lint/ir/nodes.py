@@ -324,6 +324,7 @@ class Class(Stmt):
     decorators: Sequence[Expr] = ()
     fields: tuple[str, ...] = ()  # names with an annotation in the body
     keywords: Sequence[tuple[str, Expr]] = ()  # except the metaclass
+    metaclass: Expr | None = None
     control: object = None
 
 

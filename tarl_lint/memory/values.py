@@ -312,6 +312,7 @@ class ClassInfo:
     module: str = ""
     # names with an annotation in the body: the fields, if the class is a dataclass
     fields: tuple[str, ...] = ()
+    metaclass: Obj | None = None  # the analysed class that makes this class and those that inherit from it
     named: bool = False  # whether the class is a named tuple, whose fields are also elements
 
     @property

@@ -152,7 +152,7 @@ def _name_class(ctx: Interpreter, qualified: str, made: Value, arguments: Argume
     markers = qualified in catalog.MARKER_SERVERS or qualified in catalog.MARKER_MENUS
     if not (
         markers
-        or qualified == catalog.IMAGE_TRANSPORT
+        or qualified in (catalog.IMAGE_TRANSPORT, "sched.scheduler")
         or qualified in catalog.BUFFERS
         or qualified.startswith(containers.NAMED)
         or qualified in catalog.RESERVING
@@ -220,7 +220,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(("dataclasses.asdict", "attr.asdict", "attrs.asdict"), records.as_mapping),
     **dict.fromkeys(("dataclasses.astuple", "attr.astuple", "attrs.astuple"), records.as_sequence),
     **dict.fromkeys(("attr.evolve", "attrs.evolve"), records.replaced_record),
-    "object.__new__": objects.blank_object,
+    **dict.fromkeys(("object.__new__", "type.__new__"), objects.blank_object),
     "object.__setattr__": reflection.set_attribute,
     **dict.fromkeys(("weakref.ref", "weakref.WeakMethod"), objects.weak_reference),
     **dict.fromkeys(("weakref.proxy", "vars", "typing.cast"), objects.same),

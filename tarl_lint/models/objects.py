@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tarl_lint import catalog
-from tarl_lint.interpret import call_contexts
+from tarl_lint.interpret import call_contexts, metaclasses
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency, userdata
@@ -17,6 +17,8 @@ MESSAGE_MODULE = ".msg."  # part of the name of every message class
 def blank_object(ctx: Interpreter, it: Invocation) -> Value:
     """Return the value of `object.__new__(cls)`."""
     classes = [o for v in it.arguments[0][:1] for o in v.pts if o.kind == "class"]
+    if ctx.class_made is not None and any(map(metaclasses.makes_classes, classes)):
+        return pointer(ctx.class_made)
     return Value(pts=frozenset(call_contexts.blank_instance(ctx, c, it.frame, it.call) for c in classes))
 
 

@@ -74,11 +74,16 @@ def _done(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _thread(ctx: Interpreter, it: Invocation) -> Value:
+    """Run a function with the arguments in a tuple, in a thread or at a later time."""
     given = it.argument(it.fact.extra)
     values = sizes.unpacked(ctx, given) or []
     for target in it.argument(it.fact.callback).objects:
         subscriptions.call_when(
-            ctx, (it.fact.kind, it.frame.program.path, it.call.pos), target, values, "thread"
+            ctx,
+            (it.fact.kind, it.frame.program.path, it.call.pos),
+            target,
+            values,
+            "thread" if it.fact.kind == "thread" else "callback",
         )
     return subscriptions.handle(ctx, it.frame, it.call)
 
@@ -279,6 +284,7 @@ ACTIONS: Mapping[str, Callable[..., Value]] = {
     "call later": _timer,
     "done": _done,
     "thread": _thread,
+    "scheduled": _thread,
     "partial": _partial,
     "copy": _copied,
     "parameter": parameter,

@@ -179,6 +179,17 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME(Pair(msg.data))[0])  # data
         out.publish(NAME(Pair(msg.data))[1])  # clean
     """,
+    ("type.__new__",): """
+        class Meta(type):
+            def __new__(mcs, name, bases, body):
+                cls = NAME(mcs, name, bases, body)
+                cls.near = msg.data
+                return cls
+        class Pair(metaclass=Meta):
+            far = 0.0
+        out.publish(Pair.near)  # data
+        out.publish(Pair.far)  # clean
+    """,
     ("object.__new__",): """
         class Pair:
             far = 0.0
@@ -672,6 +683,7 @@ def test_the_result_of_a_modelled_function_has_the_data_of_its_arguments(name, b
         "",
         "dict",
         "object",
+        "type",
         *(f"smach.{name}" for name in (*CONTAINERS, "Iterator")),
     }
     head = "\n".join(
