@@ -62,7 +62,8 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
     if s.target is not None:
         registers = ctx.registrations.inside(s, s.nodes)
         way = "" if registers else ctx.registrations.publishes(s)
-        source = sizes.counted(ctx, s.source, frame, each=registers or way == "direct")
+        each = registers or way == "direct" or ctx.registrations.asks(s)
+        source = sizes.counted(ctx, s.source, frame, each=each)
         source = object_lists.without_empty(ctx, source)
         registers = registers or (
             ctx.registrations.calls_element(s, s.target, s.nodes) and rows.hold_classes(ctx, source)
@@ -123,7 +124,7 @@ def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame, *, ea
     if any(o.name == heap.MEMBERS for o in source.pts):
         return elements
     plain = len(s.body) <= SHORT and all(isinstance(one, ir.Assign | ir.Evaluate) for one in s.body)
-    asked = ctx.registrations.asks(s) and all(map(object_lists.is_object, elements))
+    asked = ctx.registrations.asks(s) and object_lists.asked(ctx, elements)
     limit = sizes.MAX_KNOWN if plain or asked else MAX_EXACT_TURNS if ctx.exact else MAX_TURNS
     if not 1 < len(elements) <= max(limit, MAX_ROWS):
         return []

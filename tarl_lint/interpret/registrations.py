@@ -166,7 +166,12 @@ def calls_method_of(target: ir.Expr | None, nodes: Sequence[ast.AST]) -> bool:
     """Return whether code calls a method of a variable of the loop around it."""
     names = _names(target)
     called = (one.func for one in walk(*nodes) if isinstance(one, ast.Call))
-    return any(isinstance(one, ast.Attribute) and _is_one(one.value, names) for one in called)
+    return any(isinstance(one, ast.Attribute) and _is_one(_indexed(one.value), names) for one in called)
+
+
+def _indexed(expr: ast.expr) -> ast.expr:
+    """Return the index of `children[number]`; other expressions themselves."""
+    return expr.slice if isinstance(expr, ast.Subscript) else expr
 
 
 def _is_one(expr: ast.expr, names: Set[str]) -> bool:

@@ -21,8 +21,9 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
     """Return the container that a comprehension makes, or the elements that a lazy one yields until it ends."""
     (target, source, tests) = expr.loops[0]
     if expr.lazy and len(expr.loops) == 1 and calls_method_of(target, (expr.node, *expr.tests)):
-        known = sizes.unpacked(ctx, object_lists.without_empty(ctx, ctx.ops.evaluate(ctx, source, frame)))
-        if known and len(known) <= MAX_ASKED and all(map(object_lists.is_object, known)):
+        given = sizes.counted(ctx, source, frame, each=True)
+        known = sizes.unpacked(ctx, object_lists.without_empty(ctx, given))
+        if known and len(known) <= MAX_ASKED and object_lists.asked(ctx, known):
             return _asked(ctx, expr, target, tests, known, frame)
     return literals.comprehension(ctx, expr, frame)
 

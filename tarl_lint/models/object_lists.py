@@ -33,6 +33,15 @@ def is_object(element: Value) -> bool:
     return len(element.pts) == 1 and all(o.kind == "instance" for o in element.pts)
 
 
+def asked(ctx: Interpreter, elements: Sequence[Value]) -> bool:
+    """Return whether each element of a loop is an object, its number, or a tuple of such parts."""
+    for element in elements:
+        parts = sizes.unpacked(ctx, element) or [element]
+        if not all(is_object(part) or part.fixed() for part in parts):
+            return False
+    return True
+
+
 def without_empty(ctx: Interpreter, source: Value) -> Value:
     """Return a value without empty lists and tuples if it may also be another one, as in `children or []`."""
     if len(source.pts) < 2 or any(o.kind != "sequence" for o in source.pts):

@@ -186,6 +186,27 @@ class Sequence:
             two()
         three()
 root = Sequence(Leaf(one), Leaf(a), Leaf(b))
+### numbers of the children: clean; a:control; a:control b:control
+class Sequence:
+    def __init__(self, *children):
+        self.children = children
+    def tick(self):
+        for number, child in enumerate(self.children):
+            if child.tick() is not Status.OK:
+                self.stopped = number
+                return Status.FAILED
+        return Status.OK
+root = Sequence(Leaf(one), Leaf(a), Leaf(two), Sequence(Leaf(b), Leaf(three)))
+### children by their number: clean; a:control; a:control b:control
+class Sequence:
+    def __init__(self, *children):
+        self.children = children
+    def tick(self):
+        for number in range(len(self.children)):
+            if self.children[number].tick() is not Status.OK:
+                return Status.FAILED
+        return Status.OK
+root = Sequence(Leaf(one), Leaf(a), Leaf(two), Sequence(Leaf(b), Leaf(three)))
 ### a loop inside the loop: clean; a:control; a:control b:control
 class Table:
     def __init__(self, *rows):

@@ -66,3 +66,11 @@ def test_empty_lists_are_left_out_beside_others(ctx):
     assert object_lists.without_empty(ctx, empty) is empty
     mixed = Value(pts=full.pts | {made(ctx, "lib", "x")})
     assert object_lists.without_empty(ctx, mixed) is mixed
+
+
+def test_elements_that_are_objects_numbers_or_tuples_of_them_can_be_asked(ctx):
+    part = an_object(ctx, "a")
+    pair = a_list(ctx, const(0), part)
+    assert object_lists.asked(ctx, [part, const(1), pair])
+    assert not object_lists.asked(ctx, [part, ONE])
+    assert not object_lists.asked(ctx, [a_list(ctx, ONE, part)])
