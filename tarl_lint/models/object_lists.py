@@ -34,10 +34,11 @@ def is_object(element: Value) -> bool:
 
 
 def asked(ctx: Interpreter, elements: Sequence[Value]) -> bool:
-    """Return whether each element of a loop is an object, its number, or a tuple of such parts."""
+    """Return whether each element of a loop is an object, the number of one, or a tuple with an object."""
     for element in elements:
         parts = sizes.unpacked(ctx, element) or [element]
-        if not all(is_object(part) or part.fixed() for part in parts):
+        known = all(is_object(part) or part.fixed() for part in parts)
+        if not known or not (any(map(is_object, parts)) or isinstance(element.constant()[1], int)):
             return False
     return True
 

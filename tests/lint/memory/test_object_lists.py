@@ -73,4 +73,5 @@ def test_elements_that_are_objects_numbers_or_tuples_of_them_can_be_asked(ctx):
     pair = a_list(ctx, const(0), part)
     assert object_lists.asked(ctx, [part, const(1), pair])
     assert not object_lists.asked(ctx, [part, ONE])
+    assert not object_lists.asked(ctx, [const("left"), const("right")])
     assert not object_lists.asked(ctx, [a_list(ctx, ONE, part)])
