@@ -330,6 +330,9 @@ CASES: dict[tuple[str, ...], str] = {
         other = []
         NAME(other, 1.0)
         out.publish(other[0])  # clean
+        kept = [0.0]
+        NAME(kept, msg.data)
+        out.publish(kept[0])  # data
     """,
     ("enum.auto",): """
         class Side(enum.Enum):

@@ -291,16 +291,6 @@ FUNCTIONS: dict[tuple[str, ...], str] = {
         out.publish(kept[0])  # data
         out.publish(other[0])  # clean
     """,
-    (
-        *("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"),
-        *("bisect.insort", "bisect.insort_left", "bisect.insort_right"),
-    ): """
-        kept, other = [0.0], [0.0]
-        NAME(kept, msg.data)
-        NAME(other, 1.0)
-        out.publish(kept[0])  # data
-        out.publish(other[0])  # clean
-    """,
     catalog.FILLS_MESSAGES: """
         kept, other = Made(), Made()
         NAME(kept, [msg.data])

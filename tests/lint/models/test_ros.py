@@ -37,6 +37,26 @@ FUNCTIONS: dict[tuple[str, ...], str] = {
         NAME("in", Float64, on, 1.0)
         NAME("other", Float64, callback=lambda msg: out.publish(msg.data))  # data
     """,
+    ("py_trees_ros.subscribers.ToBlackboard", "py_trees_ros.subscribers.Handler"): """
+        import py_trees, py_trees_ros
+        NAME("near", "in", Float64, 1, {"near": "data"})
+        rospy.Timer(1.0, lambda event: out.publish(py_trees.blackboard.Blackboard.get("near")))  # data
+        rospy.Timer(1.0, lambda event: out.publish(py_trees.blackboard.Blackboard.get("far")))  # clean
+    """,
+    ("py_trees_ros.battery.ToBlackboard",): """
+        import py_trees, py_trees_ros
+        NAME("level", "in", 1, threshold=30.0)
+        rospy.Timer(1.0, lambda event: out.publish(py_trees.blackboard.Blackboard.get("battery").voltage))  # data
+        rospy.Timer(1.0, lambda event: out.publish(py_trees.blackboard.Blackboard.get("far")))  # clean
+    """,
+    ("py_trees_ros.subscribers.CheckData",): """
+        import py_trees, py_trees_ros
+        class Tell(py_trees.behaviour.Behaviour):
+            def update(self):
+                out.publish(1.0)  # control
+        check = NAME("check", "in", Float64, 1, "data", 1.0)
+        root = py_trees.composites.Sequence("root", False, children=[check, Tell("tell")])
+    """,
     ("smach_ros.MonitorState",): """
         import smach_ros
         def low(userdata, msg):
