@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached_param")
 # name of the method of rclpy that declares several parameters: its arguments are a namespace and (name, default) pairs
 SEVERAL = "declare_parameters"
+ENTRY = "get"  # name of the method that reads an entry of a parameter that is a mapping
 _FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
 _MOST_FILES = 400  # maximum number of configuration files to read per package
 ENVIRONMENT = ("os.environ.get", "environ.get", "os.getenv", "getenv")
@@ -83,6 +84,8 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
             first = each.args[0] if each.args else None
             named = isinstance(first, ast.Constant) and isinstance(first.value, str)
             return str(first.value) if named and isinstance(first, ast.Constant) else ""
+        if isinstance(each, ast.Call) and node in each.args[1:] and called(each) == ENTRY:
+            return _entry_of_parameter(each)
         if isinstance(each, ast.stmt):
             break
     return ""
@@ -226,6 +229,14 @@ def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
             if shared and (operand.span.path, operand.span.line) not in mine:
                 found[f"{operand.span.path}:{operand.span.line}"] = None
     return list(found)
+
+
+def _entry_of_parameter(call: ast.Call) -> str:
+    """Return the last part of the parameter's name in `get_param("~", {}).get("gain", 0.3)`: `gain`."""
+    key = call.args[0]
+    of_environment = ast.unparse(call.func) in ENVIRONMENT
+    text = key.value if isinstance(key, ast.Constant) and isinstance(key.value, str) else ""
+    return "" if of_environment else text
 
 
 def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarl_lint.interpret import nullness
+from tarl_lint.interpret import fallbacks, nullness
 from tarl_lint.interpret.budget import MAX_ROWS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
@@ -183,7 +183,10 @@ def _selected(
 def mark(ctx: Interpreter, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:
     """Record that a node is a constant, or a copy of its only input."""
     known, constant = value.constant()
-    if (_passes_on(ctx, expr) or _parameter_call(ctx, expr, value)) and not (
+    default = fallbacks.of_entry(ctx, expr, value) if ctx.thorough else None
+    if default is not None:
+        ctx.graph.literals[node] = (default.value, default.pos, frame.program.path)
+    elif (_passes_on(ctx, expr) or _parameter_call(ctx, expr, value)) and not (
         isinstance(expr, (ir.Call, ir.Choice)) and known and not value.deps
     ):
         ctx.graph.copies.add(node)

@@ -85,6 +85,8 @@ class Origins:
                 value, pos, path = literal
                 found.add(Origin(value if isinstance(value, (bool, int, float)) else None, path, pos))
                 continue
+            if node in self.graph.parameters and not self.graph.data[node]:
+                continue  # a text that selects a constant, as in `RECIPES[fruit]`
             if node in self.graph.copies or node in self.graph.carried:
                 inner = self._trace(self.graph.data[node], seen)
                 if inner is None:

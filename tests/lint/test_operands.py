@@ -11,6 +11,7 @@ NODE = """
     TABLE = {"p": 0.4, "i": 0.02}
     STEPS = (0.1, 0.2, 0.4)
     NAMES = ["low", "high"]
+    PRESETS = {"indoor": {"p": 0.3, "label": "in"}, "outdoor": {"p": 0.6, "label": "out"}}
     class Arm:
         reach = 1.5
         def __init__(self, k, offset=0.25):
@@ -30,6 +31,14 @@ NODE = """
             self.b = other.value
             self.limit = rospy.get_param("~limit", 9.0)
             self.free = rospy.get_param("~free")
+            entries = rospy.get_param("~", {})
+            self.tilt = entries.get("tilt", 0.35)
+            self.swing = float(entries.get("swing", -3))
+            self.title = entries.get("title", "arm")
+            self.wrist = Arm(rospy.get_param("~wrist", {}).get("k", 0.15))
+            self.preset = PRESETS[rospy.get_param("~preset", "indoor")]
+            self.declare_parameter("mode", "outdoor")
+            self.mode = PRESETS[self.get_parameter("mode").value]["p"]
             self.out = self.create_publisher(F, "b", 10)
             self.create_subscription(F, "a", self.on, 10)
         def on(self, msg):
@@ -56,6 +65,12 @@ NODE = """
         ("msg.data * np.cos(self.arm.k)", [("self.arm.k", 0.75)]),
         ("msg.data * float(abs(GAIN))", [("GAIN", 2.5)]),
         ("msg.data * self.free", [("self.free", None)]),
+        ("msg.data * self.tilt", [("self.tilt", 0.35)]),
+        ("msg.data * self.swing", [("self.swing", -3)]),
+        ("msg.data * self.wrist.k", [("self.wrist.k", 0.15)]),
+        ("[self.title, self.preset['label'], msg.data]", []),
+        ("msg.data * self.preset['p']", [("self.preset['p']", None)]),
+        ("msg.data * self.mode", [("self.mode", None)]),
         ("(lambda x, g=0.125: g * x)(msg.data)", []),
         ("msg.data if msg.data > 0.1 else True", [("0.1", 0.1), ("True", True)]),
         ("msg.ranges[3]", []),

@@ -90,6 +90,49 @@ def test_an_entry_keeps_its_key_and_a_parameter_its_name(
     assert parameter(analysis, operand) == (name if use.startswith("self.") else "")
 
 
+ENTRIES = """\
+import rospy
+from std_msgs.msg import Float64
+
+entries = rospy.get_param("~", {{}})
+table = {{}}
+value = {definition}
+
+
+def on_height(msg):
+    winch.publish(value * msg.data)
+
+
+rospy.init_node("mast")
+winch = rospy.Publisher("/winch", Float64, queue_size=1)
+rospy.Subscriber("/height", Float64, on_height)
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("definition", "name"),
+    [
+        ('entries.get("slow", 0.28)', "slow"),
+        ('float(entries.get("slow", 0.28))', "slow"),
+        ('rospy.get_param("~opening", {}).get("slow", 0.28)', "slow"),
+        ('rospy.get_param("~opening/slow", 0.28)', "~opening/slow"),
+        ("entries.get(rospy.get_name(), 0.28)", ""),
+    ],
+)
+def test_the_default_of_an_entry_is_the_definition_and_its_key_the_parameter(
+    tmp_path: Path, definition: str, name: str
+) -> None:
+    path = tmp_path / "mast.py"
+    path.write_text(ENTRIES.format(definition=definition))
+    analysis = analyse([path], root=tmp_path)
+    (operand,) = {one for step in analysis.sites for one in analysis.operands(step.site)}
+    place = defined(analysis, operand)
+    assert place is not None
+    assert (place.value, path.read_text()[place.start : place.end]) == (0.28, "0.28")
+    assert (place.name, parameter(analysis, operand)) == (name or "value", name)
+
+
 def test_a_file_outside_the_analysis_is_read_when_it_is_changed(tmp_path: Path) -> None:
     path, file = tmp_path / "mast.py", tmp_path / "mast.yaml"
     path.write_text(NODE.format(use="self.ki"))
