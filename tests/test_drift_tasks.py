@@ -35,6 +35,7 @@ JUDGING = (
     "drift_judging_18",
     "drift_judging_19",
     "drift_judging_20",
+    "drift_judging_21",
     "drift_structure",
 )
 TASKS = sorted(
@@ -296,6 +297,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "two constants",
     ],
+    "drift_judging_21": [
+        "narrow window",
+        "one constant",
+        "permanent",
+        "range",
+        "rare failures",
+        "sparse reward",
+        "structure",
+        "two constants",
+    ],
 }
 
 
@@ -354,6 +365,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_18",
         "drift_judging_19",
         "drift_judging_20",
+        "drift_judging_21",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
