@@ -17,7 +17,7 @@ class TailLift:
         self.floor = p.get("floor_height", 1.05)  # m
         self.fast_opening = p.get("fast_opening", 0.8)
         self.slow_opening = p.get("slow_opening", 0.28)
-        self.slow_zone = p.get("slow_zone", 0.15)  # m below the floor
+        self.slow_zone = p.get("slow_zone", 0.1)  # m below the floor
         self.lead = p.get("stop_lead", 0.007)  # m, what the platform still does with the valve shut
         self.stall_time = p.get("stall_time", 8.0)
         self.state = IDLE

@@ -10,7 +10,7 @@ Bool = message_type("std_msgs/Bool")
 
 DT = 0.1
 SUMMER = {"stiction": 0.17, "gain": 0.30, "shut": 0.12}
-WINTER = {"stiction": 0.29, "gain": 0.40, "shut": 0.42}  # opening, m/s per opening, s
+WINTER = {"stiction": 0.29, "gain": 0.42, "shut": 1.15}  # opening, m/s per opening, s
 
 
 class Hydraulics:
@@ -20,7 +20,7 @@ class Hydraulics:
         self.rng = rng
         self.stiction = stiction + rng.normal(0.0, 0.006)
         self.gain = gain * rng.normal(1.0, 0.03)
-        self.shut = shut * rng.normal(1.0, 0.05)
+        self.shut = shut * rng.uniform(0.7, 1.3)
         self.height, self.slot = float(rng.uniform(0.15, 0.3)), 0.0
         self.time, self.gained, self.failure, self.over = 0.0, 0.0, "", False
 
