@@ -202,6 +202,7 @@ class OperandEffect:
     best: float
     effect: float
     factor: bool = False  # whether `best` is a factor for the operand, instead of its new value
+    what: str = ""  # description, if the constant follows a sensor or a variable; `best` is then the power
 
 
 @dataclass(frozen=True, slots=True)

@@ -106,7 +106,9 @@ def _words(place: Mapping[str, Sequence[float]]) -> str:
 def _repair(repair: Mapping[str, Any] | None) -> str:
     if not repair or not repair["accepted"]:
         return ""
-    edits = ", ".join(f"{_plain(edit['code'])} → {edit['value']:g}" for edit in repair["edits"])
+    edits = ", ".join(
+        _plain(edit.get("what") or f"{edit['code']} → {edit['value']:g}") for edit in repair["edits"]
+    )
     where = f" where {_plain(repair['guard'])}" if repair.get("guard") else ""
     return f"{edits}{where}"
 

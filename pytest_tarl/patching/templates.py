@@ -33,14 +33,18 @@ KINDS = (
     "sent by sensor",
     "constant",
 )
+CONSTANT = "constant"  # a constant that follows a sensor or a variable
+PAIR = "pair"  # two expressions that differ in their axis
 FIELD = "field"  # a field of a published message that several statements build
-OF_SENSORS = ("sensor", "sent by sensor")  # kinds that are tried with each numeric sensor
+SENT_BY_SENSOR = "sent by sensor"  # a published value
+OF_SENSORS = ("sensor", SENT_BY_SENSOR)  # kinds that are tried with each numeric sensor
 SCALES = (  # units of a parameter's default
     "",  # the default is used unscaled
     "typical",  # the usual size of the value in the designed world
     "larger",  # the larger of the value's usual sizes in the designed and in the drifted world
     "sensor",  # 1 divided by the sensor's usual size in the drifted world
     "usual",  # the sensor's usual size in the drifted world
+    "ratio",  # the larger usual size of the value, divided by the sensor's usual size in the drifted world
     "designed",  # the sensor's usual size in the designed world, for sensors that are never negative
 )
 FIXED = "designed"  # the search does not change parameters with this scale
@@ -63,7 +67,7 @@ _KEYS = {
     "example",
 }
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
-_ADDED = re.compile(r"\+ \{(\w+)\}$")
+_ADDED = re.compile(r"\+ \{(\w+)\}(?= \*|$)")
 _NEGATIVE = re.compile(r"-([0-9][0-9.e+-]*)")
 LEADING = {
     "*": TERM,
@@ -187,7 +191,7 @@ def filled(text: str, values: Mapping[str, str]) -> str:
 
 
 def _subtracted(values: Mapping[str, str], match: re.Match[str]) -> str:
-    """Return `- 0.2` for an added placeholder of the value -0.2, else the unchanged text."""
+    """Return `- 0.2` for an added placeholder, or its product, of the value -0.2, else the unchanged text."""
     negative = _NEGATIVE.fullmatch(values.get(match[1], ""))
     return f"- {negative[1]}" if negative else match[0]
 

@@ -39,7 +39,7 @@ def with_confirmed(
     (mutation,) = candidate.mutations
     confirmed = operand_effect(mutation, fmean(repaired) - fmean(drifted))
     known = effects.get(str(mutation.operand.site), ())
-    same = [one for one in known if one.code == confirmed.code]
+    same = [one for one in known if (one.code, one.what) == (confirmed.code, confirmed.what)]
     if any(isclose(one.best, confirmed.best, rel_tol=SAME) and one.effect > 0.0 for one in same):
         return effects
     others = [one for one in known if one.code != confirmed.code]

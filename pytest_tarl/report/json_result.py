@@ -161,6 +161,7 @@ def _culprit(culprit: Culprit) -> dict[str, Any]:
             "value": finite(one.value),
             "best": finite(expected(one.best)),
             "effect": finite(one.effect),
+            **({"what": one.what} if one.what else {}),
         }
         for one in culprit.operands
     ]
@@ -184,7 +185,13 @@ def _formula(row: FormulaRow) -> dict[str, Any]:
 
 def _repair(repair: Repair) -> dict[str, Any]:
     edits = [
-        {"path": edit.path, "line": edit.line, "code": edit.code, "value": finite(edit.value)}
+        {
+            "path": edit.path,
+            "line": edit.line,
+            "code": edit.code,
+            "value": finite(edit.value),
+            **({"what": edit.what} if edit.what else {}),
+        }
         for edit in repair.edits
     ]
     tried = [_tried(attempt) for attempt in repair.history]

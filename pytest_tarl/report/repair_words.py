@@ -56,8 +56,8 @@ def edit_words(edit: Edit) -> str:
 
 
 def operand_words(operand: OperandEffect) -> str:
-    """Describe the best change of an operand: a new value, or a factor if the current value is unknown."""
-    return f"{operand.code} {'×' if operand.value is None else '→'} {operand.best:g}"
+    """Describe the best change of an operand: a new value, a factor if the old value is unknown, or what it follows."""
+    return operand.what or f"{operand.code} {'×' if operand.value is None else '→'} {operand.best:g}"
 
 
 def repair_words(repair: Repair) -> str:

@@ -15,6 +15,7 @@ from statistics import fmean
 
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.mutate import Mutation, form_values, redefinition
+from pytest_tarl.patching.templates import CONSTANT
 from pytest_tarl.searching.accept import Outcome, unforeseen
 from pytest_tarl.searching.course import deviation
 from tarl_lint.model import Operand
@@ -351,10 +352,24 @@ def label(candidate: Candidate) -> str:
 
 
 def operand_effect(mutation: Mutation, gain: float) -> OperandEffect:
-    """Return the gain of a mutation with its new value, or its factor if the constant is known only at run time."""
+    """Return the gain of a mutation with its new value, or its factor if the constant is known only at run time.
+
+    If the constant follows something, the value is the power with which it does.
+    """
     constant = mutation.operand.value
     known = None if constant is None else float(constant)
-    return OperandEffect(mutation.operand.code, known, effective_value(mutation), gain, factor=known is None)
+    value = effective_value(mutation)
+    return OperandEffect(
+        mutation.operand.code, known, value, gain, factor=known is None, what=_followed(mutation)
+    )
+
+
+def _followed(mutation: Mutation) -> str:
+    """Describe a constant that follows a sensor or a variable; return "" for all other changes."""
+    form = mutation.form
+    if form is None or form.template.on != CONSTANT:
+        return ""
+    return f"{mutation.operand.code} follows {form.sensor.name if form.sensor else form.variable}"
 
 
 def effective_value(mutation: Mutation) -> float:

@@ -176,6 +176,9 @@ def test_a_result_becomes_a_row_of_a_table() -> None:
     assert summary._row(refused) == "| `t.py::test¦a` | mud | ⚠️ drifted |  |  |  |  |"
     everywhere = {"accepted": True, "guard": "", "edits": [{"code": "5", "value": 12.0}]}
     assert summary._repair(everywhere) == "5 → 12"
+    law = {"code": "KP", "value": -1.7, "what": "scale KP by (light / 2.0) to the power of -1.7"}
+    follows = {"accepted": True, "guard": "", "edits": [law]}
+    assert summary._repair(follows) == "scale KP by (light / 2.0) to the power of -1.7"
 
 
 def test_a_chart_has_the_statements_with_the_largest_losses_in_order_of_file_and_line() -> None:

@@ -9,6 +9,7 @@ from html.parser import HTMLParser
 import pytest
 
 from pytest_tarl.errors import TarlError
+from pytest_tarl.model import OperandEffect
 from pytest_tarl.report import html
 from pytest_tarl.report.html import in_script, render, typeset, write
 
@@ -117,6 +118,14 @@ def test_the_page_contains_the_patch_and_the_command_that_applies_it(shuttle):
     text = Page(render(shuttle)).text
     assert "vel = ( 12.0 if terrain and 4.167 <= pos <= 7.083 else 5 ) * delta" in text
     assert "tarl apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch" in text
+
+
+def test_a_constant_that_follows_a_sensor_is_not_shown_with_the_power_as_its_value(shuttle):
+    law = OperandEffect("KP", 4.0, -1.7, 2.5, what="KP follows light")
+    culprits = (replace(shuttle.culprits[0], operands=(law,)), *shuttle.culprits[1:])
+    text = Page(render(replace(shuttle, culprits=culprits))).text
+    assert "KP follows light" in text
+    assert "-1.7" not in text
 
 
 def test_several_lists_are_tabs_with_panels(two_lists):

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
@@ -13,6 +14,7 @@ from pytest_tarl.model import (
     Attempt,
     Bound,
     Culprit,
+    Edit,
     FormulaRow,
     FormulaWorld,
     Guarantee,
@@ -118,6 +120,19 @@ def test_numbers_that_are_not_finite_become_null(varied, bad, tmp_path):
     given = ("result", "p_drift", "p_loss", "loss", "detectable_loss")
     assert {found["verdict"][name] for name in given} == {"degraded", None}
     assert found["atr"] == dict.fromkeys(("offline", "online", "repaired", "nominal_repaired"))
+    jsonschema.validate(found, schema())
+
+
+def test_a_constant_that_follows_a_sensor_says_so(varied, tmp_path):
+    one = varied().culprits[0]
+    law = OperandEffect("KP", 4.0, -1.7, 2.5, what="KP follows light")
+    edit = Edit("a.py", 3, "KP", -1.7, what="scale KP by light")
+    found = written(
+        varied(culprits=(replace(one, operands=(law,)),), repair=Repair(True, "", (edit,))), tmp_path
+    )
+    expected = {"code": "KP", "value": 4.0, "best": -1.7, "effect": 2.5, "what": "KP follows light"}
+    assert found["culprits"][0]["operands"] == [expected]
+    assert found["repair"]["edits"][0]["what"] == "scale KP by light"
     jsonschema.validate(found, schema())
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pytest_tarl.model import Bound, Culprit, Guarantee, Partial, Repair, SitePlace
+from pytest_tarl.model import Bound, Culprit, Guarantee, OperandEffect, Partial, Repair, SitePlace
 from pytest_tarl.report.terminal import lines
 
 ROOT = Path("/home/dev/robot")
@@ -120,6 +120,12 @@ def test_absolute_paths_are_shown_relative_to_the_root(varied, shuttle):
     site = SitePlace("m:f:x", str(ROOT / "src/a.py"), 3, "x = 1", "data", "assign")
     culprit = type(shuttle.culprits[0])(site, 1.0, "sweep", ())
     assert "1. src/a.py:3  x = 1  (no operand helps)" in told(varied(culprits=(culprit,)))
+
+
+def test_a_constant_that_follows_a_sensor_is_not_shown_with_the_power_as_its_value(varied, shuttle):
+    law = OperandEffect("KP", 4.0, -1.7, 2.5, what="KP follows light")
+    text = told(varied(culprits=(replace(shuttle.culprits[0], operands=(law,)),)))
+    assert "(KP follows light: +2.50)" in text
 
 
 def test_default_seed_and_search_are_not_printed(varied, shuttle):

@@ -75,6 +75,8 @@ def test_literals_are_replaced_and_named_constants_are_multiplied():
     assert repair_words.edit_words(Edit("a.py", 3, "self.kp", 2.2, factor=True)) == "self.kp × 2.2"
     assert repair_words.operand_words(OperandEffect("5", 5, 12.0, 1.0)) == "5 → 12"
     assert repair_words.operand_words(OperandEffect("KP", None, 2.2, 1.0)) == "KP × 2.2"
+    follows = OperandEffect("KP", 4.0, -1.7, 1.0, what="KP follows light")
+    assert repair_words.operand_words(follows) == "KP follows light"
 
 
 def test_a_statement_over_several_lines_is_joined_and_shortened():
