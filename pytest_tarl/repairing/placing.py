@@ -34,6 +34,7 @@ class Placing:
         self.mutants = mutants
         self.order = mutants.order
         self._in_force: dict[Operand, Place | None] = {}
+        self._works: dict[Place, bool] = {}  # whether a definition in the source alters missions
         self._why: dict[Operand, str] = {}
 
     def __call__(self, candidate: Candidate, trials: Trials) -> Candidate | None:
@@ -102,8 +103,9 @@ class Placing:
         analysis, operand = self.order.analysis, mutation.operand
         name = parameter(analysis, operand)
         written = defined(analysis, operand)
-        tried = [written] if written is not None else []
-        if self._moves(mutation, tried, candidate, trials):
+        if written is not None and written not in self._works:
+            self._works[written] = self._moves(mutation, written, candidate, trials)
+        if written is not None and self._works[written]:
             return written
         if not name:
             return None
@@ -116,24 +118,28 @@ class Placing:
             if isinstance(place.value, bool) == isinstance(operand.value, bool) or operand.value is None
         ]
         for place in likely[:MOST_PLACES]:
-            if self._moves(mutation, [place], candidate, trials):
+            if self._moves(mutation, place, candidate, trials):
                 return place
         self._why[operand] = self._given(name, operand, computed_at(name, texts))
         return None
 
-    def _moves(
-        self, mutation: Mutation, places: Sequence[Place], candidate: Candidate, trials: Trials
-    ) -> bool:
-        """Return whether a change at one of these places alters the reward of an episode."""
+    def _moves(self, mutation: Mutation, place: Place, candidate: Candidate, trials: Trials) -> bool:
+        """Return whether a change at this place alters the reward of an episode.
+
+        Alone it may alter nothing, because another constant hides it: then it is tried beside the candidate's others.
+        """
         pair = self.order.goal.pairs[0]
-        for place in places:
-            alone = Candidate((replace(mutation, place=place),), candidate.guard)
-            try:
-                if trials(alone, pair.seed).total != pair.total:
-                    return True
-            except RepairError:
-                continue
-        return False
+        others = tuple(one for one in candidate.mutations if not _same_constant(one, mutation))
+        moved = replace(mutation, place=place)
+        alone, beside, without = (
+            Candidate(changes, candidate.guard) for changes in ((moved,), (*others, moved), others)
+        )
+        try:
+            if trials(alone, pair.seed).total != pair.total:
+                return True
+            return bool(others) and trials(beside, pair.seed).total != trials(without, pair.seed).total
+        except RepairError:
+            return False
 
     def _given(self, name: str, operand: Operand, computed: str) -> str:
         """Explain that the test, or the launch file that it starts, determines a parameter's value."""
@@ -161,6 +167,12 @@ class Placing:
                 f"{place.name} at {place.path}:{place.line} is also used by {', '.join(others[:MOST_NAMED])}{more}; "
                 "this run repeated the recorded tests that use it"
             )
+
+
+def _same_constant(one: Mutation, other: Mutation) -> bool:
+    """Return whether two mutations change uses of one constant."""
+    same = one.operand.definition is not None and one.operand.definition == other.operand.definition
+    return one.operand == other.operand or same
 
 
 def _importers(root: Path, place: Place, analysed: set[str]) -> list[str]:
