@@ -7,12 +7,9 @@ and may command a value that the opposite limit forbids. Even if all missions pa
 from __future__ import annotations
 
 import ast
-from typing import Final
 
+from pytest_tarl.patching.clamps import CLAMPS, OPPOSITE
 from pytest_tarl.patching.document import Document, called
-
-OPPOSITE: Final = {"max": "min", "min": "max"}  # `max` has a lower limit as an argument, `min` an upper one
-CLAMPS: Final = frozenset(["clip", "clamp", "constrain", "saturate", "bound"])  # called as f(x, low, high)
 
 
 def crosses(source: Document, node: ast.expr, value: float) -> bool:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from pytest_tarl.errors import RepairError
 from pytest_tarl.instrumentation.sites import plan
 from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.patching.clamps import BOUNDING
 from pytest_tarl.patching.document import Document, called, document
 from pytest_tarl.repairing.mission_pairs import Recorded, series
 from pytest_tarl.repairing.request import Order
@@ -27,7 +28,6 @@ from pytest_tarl.symptoms.series import Pair, Series
 from tarl_lint.model import Operand, Step
 
 UP, DOWN = NEAR  # factors of a limit
-BOUNDS = ("min", "max", "clip", "clamp", "constrain", "saturate")
 # a value stays at a bound if at least the share `OFTEN` of it equals the bound; a bound, or a result of a comparison,
 # is rare as designed up to the share `RARELY`
 OFTEN, RARELY = 0.3, 0.05
@@ -165,4 +165,4 @@ def _is_bound(source: Document, node: ast.expr) -> bool:
     around = source.parents.get(node)
     if isinstance(around, ast.UnaryOp):
         around = source.parents.get(around)
-    return isinstance(around, ast.Call) and called(around) in BOUNDS
+    return isinstance(around, ast.Call) and called(around) in BOUNDING
