@@ -2,9 +2,9 @@
 
 A factor on a member of an enumeration raises an error. A factor on `self.done` in `if not self.done` changes nothing.
 Other constants follow from notation and were not chosen by the author: the exponents in `(x**2 + y**2) ** 0.5` are
-geometry, the `1e-9` in `stamp.nanosec * 1e-9` converts a unit, and the `1.0` in `1.0 - alpha` is the sum of two shares.
-Others are needed by ROS only (see `bookkeeping`). Booleans and zeros are not labels, because a search can change them
-from false to true.
+geometry, the `1e-9` in `stamp.nanosec * 1e-9` converts a unit (see `unit_factors`), and the `1.0` in `1.0 - alpha` is
+the sum of two shares. Others are needed by ROS only (see `bookkeeping`). Booleans and zeros are not labels, because a
+search can change them from false to true.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from functools import cache
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.repairing.bookkeeping import is_bookkeeping
+from pytest_tarl.repairing.unit_factors import converts_unit
 from tarl_lint.api import Analysis
 from tarl_lint.model import Operand
 
 GEOMETRIC = (0.5, 2, 3)  # exponents of roots, areas and volumes
-UNITS = (1e-9, 1e-6, 1e6, 1e9)  # factors between units of time
 _ENUMERATIONS = frozenset({"Enum", "Flag", "IntEnum", "IntFlag", "StrEnum"})
 
 
@@ -56,7 +56,7 @@ def _is_label(analysis: Analysis, operand: Operand) -> bool:
         return True
     if is_bookkeeping(analysis, source, node):
         return True
-    if _is_exponent(source, node) or _is_unit(source, node) or _is_whole(source, node):
+    if _is_exponent(source, node) or converts_unit(source, node) or _is_whole(source, node):
         return True
     changeable = isinstance(operand.value, bool) or operand.value == 0
     return not changeable and _only_truth(source, node)
@@ -67,13 +67,6 @@ def _is_exponent(source: Document, node: ast.expr) -> bool:
     around = source.parents.get(node)
     power = isinstance(around, ast.BinOp) and isinstance(around.op, ast.Pow) and around.right is node
     return power and isinstance(node, ast.Constant) and node.value in GEOMETRIC
-
-
-def _is_unit(source: Document, node: ast.expr) -> bool:
-    """Return whether an expression is a literal factor or divisor that converts a unit."""
-    around = source.parents.get(node)
-    scales = isinstance(around, ast.BinOp) and isinstance(around.op, ast.Mult | ast.Div)
-    return scales and isinstance(node, ast.Constant) and node.value in UNITS
 
 
 def _is_whole(source: Document, node: ast.expr) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -14,6 +15,7 @@ from pytest_tarl.patching.templates import FIELD
 from pytest_tarl.repairing.labels import is_member
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.typical_sizes import TypicalSizes, threshold
+from pytest_tarl.repairing.unit_factors import converts_unit
 from tarl_lint.model import SiteId, Span, Step
 
 _NUMERIC = ("abs", "float", "int", "max", "min", "pow", "round", "sum")
@@ -185,7 +187,9 @@ def _computes(node: ast.expr) -> bool:
     The time is left out: it is no signal that a template could change.
     """
     if isinstance(node, ast.Call):
-        return not _makes_an_object(node) and called(node) not in CLOCKS
+        return not _makes_an_object(node) and not any(
+            isinstance(each, ast.Call) and called(each) in CLOCKS for each in ast.walk(node)
+        )
     return isinstance(node, ast.IfExp)
 
 
@@ -194,7 +198,9 @@ def _makes_an_object(call: ast.Call) -> bool:
 
 
 def _is_numeric(node: ast.expr) -> bool:
-    """Return whether an expression computes a number."""
+    """Return whether an expression computes a number, other than from the time, which is no signal to change."""
+    if any(isinstance(each, ast.Call) and called(each) in CLOCKS for each in ast.walk(node)):
+        return False
     if isinstance(node, ast.BinOp):
         return not isinstance(node.left, ast.Constant) or not isinstance(node.left.value, str)
     if isinstance(node, ast.UnaryOp):
@@ -213,11 +219,12 @@ def _stored(statement: ast.stmt) -> bool:
 def constants(source: Document, node: ast.expr, known: Collection[str]) -> Iterator[str]:
     """Yield "factor" for each constant factor or divisor of an expression, and "term" for each constant summand.
 
-    `known` contains the code of named constants.
+    `known` contains the code of named constants. Conversions of units are left out, because no search changes them.
     """
     for name, operators in _CHAINS.items():
         for each in _leaves(node, operators):
-            if isinstance(each, ast.Constant) or source.source(each) in known:
+            literal = isinstance(each, ast.Constant) and not converts_unit(source, each)
+            if literal or source.source(each) in known:
                 yield name
 
 
@@ -237,17 +244,49 @@ def _orders(op: ast.cmpop) -> bool:
 
 def pairs(among: Sequence[Spot], most: int) -> list[tuple[Spot, Spot]]:
     """Return at most `most` pairs of expressions in one function that differ only in their axis."""
-    found = []
-    for one, other in combinations(among, 2):
-        together = one.source is other.source and one.source.function(one.node) is other.source.function(
-            other.node
-        )
-        if together and one.kind != "comparison" and _axis_apart(one, other):
-            found.append((one, other))
+    found = [(one, other) for one, other in combinations(among, 2) if _axis_apart(one, other)]
     return found[:most]
 
 
+def axis_twin(spot: Spot, among: Sequence[Spot]) -> Spot | None:
+    """Return the first expression that computes the same for another axis, or None.
+
+    In `ex = goal.x - at.x` and `ey = goal.y - at.y`, the values differ only in the name of the axis.
+    """
+    return next((one for one in among if axes_of(spot, one) is not None), None)
+
+
+def axes_of(one: Spot, other: Spot) -> tuple[str, str] | None:
+    """Return the names of the axes of two expressions that differ only in these names, otherwise None."""
+    if not _together(one, other) or one.node is other.node or one.kind != other.kind:
+        return None
+    first, second = (re.split(r"(\W+)", spot.source.source(spot.node)) for spot in (one, other))
+    if len(first) != len(second):
+        return None
+    apart = {_axes(*pair) for pair in zip(first, second, strict=True) if pair[0] != pair[1]}
+    return apart.pop() if len(apart) == 1 else None
+
+
+def _axes(one: str, other: str) -> tuple[str, str] | None:
+    """Return the axes that two names begin or end with if the rest of both is the same, as in `ex` and `ey`."""
+    for axes in (*_AXES, *(axes[::-1] for axes in _AXES)):
+        first, second = axes
+        if one.endswith(first) and other.endswith(second) and one[: -len(first)] == other[: -len(second)]:
+            return first, second
+        if one.startswith(first) and other.startswith(second) and one[len(first) :] == other[len(second) :]:
+            return first, second
+    return None
+
+
+def _together(one: Spot, other: Spot) -> bool:
+    """Return whether two expressions are in the same function."""
+    same = one.source is other.source
+    return same and one.source.function(one.node) is other.source.function(other.node)
+
+
 def _axis_apart(one: Spot, other: Spot) -> bool:
+    if not _together(one, other) or one.kind == "comparison":
+        return False
     for text in (lambda spot: spot.source.source(spot.node), _assigned):
         first, second = text(one).rpartition("."), text(other).rpartition(".")
         names = {(first[2], second[2]), (second[2], first[2])}

@@ -1,0 +1,74 @@
+"""Literal factors that convert a unit: they follow from the definition of the units, and no drift changes them.
+
+In `kpa = msg.fluid_pressure / 1000.0`, a smaller divisor has the same effect as a lower threshold for `kpa`, but hides
+it where nobody looks for it. If a sensor reads too much, a factor of its own says so.
+"""
+
+from __future__ import annotations
+
+import ast
+from math import isclose, pi
+
+from pytest_tarl.patching.document import Document
+
+TIME = (1e-9, 1e-6, 1e6, 1e9)  # factors between units of time, wherever they are
+# ratios of units that are hardly ever a gain: parts of a thousand, degrees per radian, km/h per m/s
+CERTAIN = (1e3, 180 / pi, 3.6)
+# ratios that are also usual gains: percent or centimetres, minutes, hours
+LIKELY = (100.0, 60.0, 3600.0)
+ROUNDED = 1e-3  # relative error of a written ratio: 57.3 for 180/π
+_PI = ("pi", "math.pi", "np.pi", "numpy.pi")
+
+
+def converts_unit(source: Document, node: ast.expr) -> bool:
+    """Return whether an expression is a literal factor or divisor that converts a unit.
+
+    Apart from units of time and degrees, a ratio must scale a number of the message that a function receives. A ratio
+    that may as well be a gain must be all that happens to this number in the statement.
+    """
+    around = source.parents.get(node)
+    if not isinstance(node, ast.Constant) or not isinstance(around, ast.BinOp):
+        return False
+    value, divides = node.value, isinstance(around.op, ast.Div)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not value:
+        return False
+    if not divides and not isinstance(around.op, ast.Mult):
+        return False
+    if value in TIME or (value == 180 and _beside_pi(source, around)):
+        return True
+    other = around.left if around.right is node else around.right
+    if (divides and around.left is node) or not _of_message(source, other):
+        return False
+    alone = isinstance(source.parents.get(around), ast.Assign | ast.AnnAssign | ast.Return)
+    return _is_ratio(value, CERTAIN) or (alone and _is_ratio(value, LIKELY))
+
+
+def _is_ratio(value: float, ratios: tuple[float, ...]) -> bool:
+    return any(isclose(value, one, rel_tol=ROUNDED) for ratio in ratios for one in (ratio, 1.0 / ratio))
+
+
+def _beside_pi(source: Document, product: ast.BinOp) -> bool:
+    """Return whether a product, or the product around it, has a factor or divisor π."""
+    chain: list[ast.AST] = [product]
+    around = source.parents.get(product)
+    while isinstance(around, ast.BinOp) and isinstance(around.op, ast.Mult | ast.Div):
+        chain.append(around)
+        around = source.parents.get(around)
+    return any(
+        isinstance(one, ast.Name | ast.Attribute) and ast.unparse(one) in _PI for one in ast.walk(chain[-1])
+    )
+
+
+def _of_message(source: Document, node: ast.expr) -> bool:
+    """Return whether an expression reads a field of an argument of its function, and computes nothing else from it."""
+    function = source.function(node)
+    if function is None:
+        return False
+    names = {one.arg for one in function.args.args} - {"self", "cls"}
+    for each in ast.walk(node):
+        if isinstance(each, ast.BinOp | ast.IfExp | ast.Compare):
+            return False
+    return any(
+        isinstance(each, ast.Attribute) and ast.unparse(each).partition(".")[0].partition("[")[0] in names
+        for each in ast.walk(node)
+    )
