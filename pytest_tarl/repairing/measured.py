@@ -20,7 +20,7 @@ from pytest_tarl.instrumentation.trace import Floats
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.repairing.mission_pairs import Recorded, series
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repairing.separating import separating
+from pytest_tarl.repairing.separating import between_groups, separating
 from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.plainness import Oddness, writing
 from pytest_tarl.symptoms.series import Pair
@@ -34,6 +34,7 @@ LEAST = 0.05  # minimum change of a value, as a logarithm or as a share of its d
 AGREE = 0.25  # maximum difference between mission pairs, as a share of the change
 ALIKE = 0.05  # maximum difference between the logarithms of two factors that count as equal
 SIZES = ("abs", "math.fabs", "fabs", "np.abs", "numpy.abs")  # functions that return the size of a value
+NUMBER = "data"  # the field of a message that holds a single number
 LARGEST = 20.0  # hints have a factor of at most this, and at least its inverse
 
 
@@ -140,11 +141,12 @@ def _separating(
     other = around.left if node is not around.left else around.comparators[0]
     size = isinstance(other, ast.Call) and ast.unparse(other.func) in SIZES and len(other.args) == 1
     inner = other.args[0] if size and isinstance(other, ast.Call) else other
-    for site in _made_at(order, operand, source, inner):
+    for site in (*_made_at(order, operand, source, inner), *_receiving(order, source, inner)):
         pairs = [
             (np.abs(one), np.abs(other)) if size else (one, other) for one, other in values.get(site, ())
         ]
-        by = separating(float(operand.value), pairs)
+        grouped = between_groups(float(operand.value), pairs)
+        by = separating(float(operand.value), pairs) if grouped is None else grouped
         if by is not None:
             yield by
 
@@ -222,6 +224,21 @@ def _made_at(order: Order, operand: Operand, source: Document, node: ast.expr) -
         if _assigned(site.text) == code:
             found.append(str(site))
     return found
+
+
+def _receiving(order: Order, source: Document, node: ast.expr) -> list[str]:
+    """Return the ID of the callback around `msg.data` if `msg` is the message that it receives."""
+    if not isinstance(node, ast.Attribute) or node.attr != NUMBER:
+        return []
+    function = source.function(node)
+    names = [one.arg for one in function.args.args if one.arg not in ("self", "cls")] if function else []
+    if function is None or ast.unparse(node.value) not in names[:1]:
+        return []
+    return [
+        str(step.site)
+        for step in order.analysis.sites
+        if step.role == "receive" and step.span.path == source.path and step.span.line == function.lineno
+    ]
 
 
 def _assigned(text: str) -> str:

@@ -12,6 +12,8 @@ from pytest_tarl.instrumentation.trace import Floats
 FEWEST = 4  # minimum number of values in each world
 DIFFER = 0.1  # minimum difference between the shares of values above the threshold in the two worlds
 MARGIN = 1.25  # factor from the outermost value to a threshold beyond it
+# minimum width of the gap between two groups of values, as a share of the range of all values
+GAP = 0.4
 
 
 def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
@@ -36,6 +38,37 @@ def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> floa
     if low <= 0.0 or high <= low:
         return None
     return sqrt(low * high) / size
+
+
+def between_groups(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
+    """Return the factor of a threshold that lies between the same two groups of values as in the designed missions.
+
+    For example, the voltage of open contacts is near 21 V, and that of a charger near 28 V. If worn contacts leave 23 V
+    of it, the threshold must lie between 21 and 23 V. Return None unless both worlds have two groups, the threshold is
+    between the designed ones and not between the drifted ones, and has the sign of all values.
+    """
+    sign, size = (1.0 if threshold > 0.0 else -1.0), abs(threshold)
+    if not pairs:
+        return None
+    before, after = (np.sort(sign * np.concatenate(each)) for each in zip(*pairs, strict=True))
+    designed, drifted = _gap(before), _gap(after)
+    if designed is None or drifted is None or drifted[0] <= 0.0:
+        return None
+    if not designed[0] < size < designed[1] or drifted[0] < size < drifted[1]:
+        return None
+    return (drifted[0] + drifted[1]) / 2.0 / size
+
+
+def _gap(values: Floats) -> tuple[float, float] | None:
+    """Return the ends of the gap between two groups of sorted values, or None if there is no clear gap."""
+    if values.size < 2 * FEWEST:
+        return None
+    gaps = np.diff(values)
+    at = int(np.argmax(gaps))
+    few = min(at + 1, values.size - at - 1) < FEWEST
+    if few or gaps[at] < GAP * (values[-1] - values[0]) or not gaps[at]:
+        return None
+    return float(values[at]), float(values[at + 1])
 
 
 def _above(values: Floats, sign: float, size: float) -> float:

@@ -160,3 +160,53 @@ def test_constants_beside_values_with_different_factors_change_alone(tmp_path: P
     assert [hint for hint in found if len(hint) > 1] == []
     assert {"FLEXOR_ON": 0.5} in found
     assert {"EXTENSOR_ON": 0.55} in found
+
+
+CONTACTS = """\
+import rospy
+from std_msgs.msg import Bool, Float32
+
+CHARGER = 26.5
+
+
+def on_contacts(msg):
+    charging.publish(Bool(data={code}))
+
+
+rospy.init_node("contacts")
+charging = rospy.Publisher("/charging", Bool, queue_size=1)
+rospy.Subscriber("/contacts", Float32, on_contacts)
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "expected"),
+    [
+        ("msg.data > CHARGER", 22.0),
+        ("CHARGER < abs(msg.data)", 22.0),
+        ("msg.spare > CHARGER", None),  # a message of several numbers has no single value
+        ("(charging.data > CHARGER) == msg.data", None),
+    ],
+)
+def test_a_threshold_of_a_received_number_stays_between_its_groups(
+    code: str, expected: float | None, tmp_path: Path
+) -> None:
+    (tmp_path / "contacts.py").write_text(CONTACTS.format(code=code))
+    analysis = analyse([tmp_path / "contacts.py"], root=tmp_path)
+    (number,) = [number for number, one in enumerate(plan(analysis).places) if one.role == "receive"]
+
+    def trace(*values: float) -> Any:
+        flow = np.array([one for one in values for _ in range(5)])
+        return SimpleNamespace(
+            site=np.full(flow.size, number),
+            event_step=np.arange(flow.size),
+            flow=flow,
+            reward=np.zeros(flow.size),
+        )
+
+    order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=()))
+    recorded: Any = [(trace(21.0, 28.0), trace(21.0, 23.0, 21.0, 23.0))] * 2
+    found = [hint for hint in hints(order, recorded, operands(order)) if len(hint) == 1]
+    by = [factor for ((one, factor),) in found if one.code == "CHARGER"]
+    assert by == ([] if expected is None else [pytest.approx(expected / 26.5, abs=1e-3)])

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pytest_tarl.repairing.separating import MARGIN, separating
+from pytest_tarl.repairing.separating import MARGIN, between_groups, separating
 
 DESIGNED = np.array([0.02, 0.05, 0.08, 0.03, 6.0])  # errors of a position, and a tag of the next track
 SLIPPED = np.array([0.02, 1.1, 1.15, 1.1, 4.9])
@@ -60,3 +60,36 @@ def test_the_new_threshold_leaves_the_designed_share_of_values_above_it(
     if by is not None:
         share, left = np.mean(before > threshold), np.mean(after > threshold * by)
         assert abs(left - share) <= 0.5 / after.size + 1e-9
+
+
+OPEN = np.array([20.9, 21.0, 21.1, 21.0, 20.8, 21.2])  # voltage of open contacts
+DOCKED = np.array([27.9, 28.0, 28.2, 28.1])
+WORN = DOCKED - 5.0
+DOCKS, TRIES = np.concatenate([OPEN, DOCKED]), np.concatenate([OPEN, WORN, OPEN, WORN, OPEN])
+
+
+def test_a_threshold_stays_between_the_same_two_groups_of_values() -> None:
+    by = between_groups(26.5, [(DOCKS, TRIES)])
+    assert by is not None
+    assert 26.5 * by == pytest.approx((21.2 + 22.9) / 2.0)
+    assert between_groups(-26.5, [(-DOCKS, -TRIES)]) == by
+
+
+@pytest.mark.parametrize(
+    ("threshold", "pairs"),
+    [
+        (26.5, []),
+        (26.5, [(DOCKS, DOCKS)]),  # still between the groups
+        (26.5, [(DOCKS, OPEN)]),  # only one group
+        (26.5, [(DOCKS, np.linspace(20.0, 28.0, 30))]),  # no gap
+        (26.5, [(np.linspace(20.0, 28.0, 30), TRIES)]),
+        (28.05, [(DOCKS, TRIES)]),  # not between the designed groups
+        (26.5, [(DOCKS, np.append(OPEN, 24.0))]),  # a single value is no group
+        (-26.5, [(DOCKS, TRIES)]),
+        (26.5, [(DOCKS[:7], TRIES[:7])]),
+    ],
+)
+def test_without_two_groups_in_both_worlds_no_threshold_moves(
+    threshold: float, pairs: list[tuple[np.ndarray, np.ndarray]]
+) -> None:
+    assert between_groups(threshold, pairs) is None
