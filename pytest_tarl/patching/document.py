@@ -120,6 +120,13 @@ class Document:
         first, last = (span.line, span.column), (span.end_line, span.end_column)
         return self.expressions.get((self._characters(*first), self._characters(*last)))
 
+    def span(self, node: ast.expr) -> Span:
+        """Return the place of an expression."""
+        last = node.end_lineno or node.lineno
+        start = self.start(node) - self.line_starts[node.lineno - 1]
+        end = self.end(node) - self.line_starts[last - 1]
+        return Span(self.path, node.lineno, start + 1, last, end + 1)
+
     def find(self, span: Span) -> ast.expr:
         """Return the expression at a span. Raise RepairError if there is none."""
         node = self.at(span)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,7 @@ from pytest_tarl.patching.mutate import Mutation, analysed_document, form_values
 from pytest_tarl.patching.statements import Change, branched, choices, doubled, lazy, neighbours, replaced
 from pytest_tarl.patching.structures import Form, form_edits
 from pytest_tarl.patching.subscriptions import Subscriptions
-from pytest_tarl.patching.templates import Template
+from pytest_tarl.patching.templates import PAIR, Template
 from pytest_tarl.sensors import Sensor
 from tarl_lint.model import Operand, SiteId, Span
 
@@ -70,18 +70,27 @@ def rewrite(
 def _formed(
     analysis: Analysis, mutations: Sequence[Mutation]
 ) -> Iterator[tuple[Document, ast.expr, Form, dict[str, float], SiteId]]:
-    """Yield each form (template at an expression) once, with the parameters from all its mutations."""
-    found: dict[tuple[Span, Template, str], tuple[Mutation, dict[str, float]]] = {}
+    """Yield each form (template at an expression) once, with the parameters from all its mutations.
+
+    A form that has the same expression of another axis as its partner is yielded for both.
+    """
+    found: dict[tuple[Span, Template, str, Span | None], tuple[Mutation, dict[str, float]]] = {}
     for mutation in mutations:
         if mutation.form is not None:
-            key = (mutation.operand.span, mutation.form.template, mutation.form.field)
+            form = mutation.form
+            key = (mutation.operand.span, form.template, form.field, form.partner)
             _, values = found.setdefault(key, (mutation, dict(mutation.form.defaults)))
             moved = form_values(mutation)
             values |= {name: moved[name] for name in moved if name == mutation.form.parameter}
-    for (span, _, _), (mutation, values) in found.items():
+    for (span, template, _, partner), (mutation, values) in found.items():
         if mutation.form is not None:
             source = analysed_document(analysis, span.path)
             yield source, source.find(span), mutation.form, values, mutation.operand.site
+            if partner is not None and template.on != PAIR:
+                other = replace(
+                    mutation.form, partner=None, sensor=mutation.form.sibling or mutation.form.sensor
+                )
+                yield source, source.find(partner), other, values, mutation.operand.site
 
 
 def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | int | bool]]:

@@ -25,9 +25,11 @@ class Form:
     template: Template
     parameter: str = ""
     defaults: tuple[tuple[str, float], ...] = ()
-    partner: Span | None = None  # the other expression of a pair to swap
+    # the other expression of a pair to swap, or the same expression of another axis, which changes alike
+    partner: Span | None = None
     sensor: Sensor | None = None
     field: str = ""  # for a published message: the field to change, such as `linear.x`
+    sibling: Sensor | None = None  # the sensor of the partner, if it has one of its own
     variable: str = ""  # a variable of the program that takes the place of the sensor
 
     def target(self, code: str) -> str:

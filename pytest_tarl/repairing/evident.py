@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from pytest_tarl.patching.structures import Form
-from pytest_tarl.patching.templates import OF_SENSORS, Template
+from pytest_tarl.patching.templates import SENT_BY_SENSOR, Template
 from pytest_tarl.repairing.mission_pairs import Signs
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.template_forms import forms
@@ -30,7 +30,7 @@ def evident(
     before = _before_sending(order)
     found: list[tuple[float, int, list[tuple[Operand, Form]]]] = []
     for template in known:
-        if not template.symptoms or template.on in OF_SENSORS:
+        if not template.symptoms or template.on == SENT_BY_SENSOR:
             continue
         told = {spot: _strength(spot, template, signs, before) for spot in among}
         strong = [spot for spot in among if told[spot] >= least]
@@ -43,7 +43,12 @@ def evident(
         if template.on == "pair":
             found += [(told[strong[0]], template.cost, each) for each in forms(order, template, strong)]
             continue
-        fitting = [(spot, each) for spot in strong for each in forms(order, template, [spot]) if each]
+        fitting = [
+            (spot, each)
+            for at, spot in enumerate(strong)
+            for each in forms(order, template, [spot], strong[:at])
+            if each
+        ]
         found += [(told[spot], template.cost, each) for spot, each in fitting[:PLACES]]
     found.sort(key=lambda one: (-round(one[0], 1), one[1]))
     for _, _, each in found[:CHANGES]:

@@ -6,15 +6,16 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from pytest_tarl.patching.clamps import CLAMPS, OPPOSITE
 from pytest_tarl.patching.document import Document, called, document
 from pytest_tarl.patching.mutate import Mutation, form_values
 from pytest_tarl.patching.structures import Form, described
-from pytest_tarl.patching.templates import FIELD, FIXED, OF_SENSORS, Template
+from pytest_tarl.patching.templates import FIELD, FIXED, OF_SENSORS, PAIR, Template
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.telling_sensors import continuous, usual
-from pytest_tarl.repairing.template_places import Spot, pairs
+from pytest_tarl.repairing.template_places import Spot, axes_of, axis_twin, pairs
 from pytest_tarl.sensors import Sensor
-from tarl_lint.model import Operand, Span
+from tarl_lint.model import Operand
 
 MOST = {
     "value": 5,
@@ -29,7 +30,6 @@ MOST = {
     "constant": 0,  # tried only at a constant whose value was found (see `following`)
 }  # maximum number of expressions at which to try a template, by the template's kind
 NUMBERS = ("value", "input", "stored", "sent")  # kinds of expressions to which templates for any number apply
-CLAMPS = ("clamp", "clip", "saturate", "constrain")
 
 
 def form_words(order: Order, mutation: Mutation) -> str:
@@ -39,28 +39,56 @@ def form_words(order: Order, mutation: Mutation) -> str:
     source = document(mutation.operand.span.path, order.analysis.sources[mutation.operand.span.path])
     x = form.target(_folded(source, source.find(mutation.operand.span)))
     y = _folded(source, source.find(form.partner)) if form.partner is not None else ""
+    if y and form.template.on != PAIR:
+        x = f"{x} and {y}"
     return described(form, x, y, form_values(mutation), form.sensor.name if form.sensor else form.variable)
 
 
-def forms(order: Order, template: Template, among: Sequence[Spot]) -> Iterator[list[tuple[Operand, Form]]]:
-    """Yield, for each expression that a template fits, an operand for each of its parameters."""
-    if template.on == "pair":
+def forms(
+    order: Order, template: Template, among: Sequence[Spot], before: Sequence[Spot] = ()
+) -> Iterator[list[tuple[Operand, Form]]]:
+    """Yield, for each expression that a template fits, an operand for each of its parameters.
+
+    If an earlier expression, perhaps among those `before`, is the same for another axis, both change together: what
+    moves along x moves along y by the same laws.
+    """
+    if template.on == PAIR:
         for one, other in pairs(among, MOST["pair"]):
-            partner = _span(other.source, other.node)
+            partner = other.source.span(other.node)
             yield list(
                 _operands(template, one, Form(template, partner=partner), {"typical": 1.0, "larger": 1.0})
             )
         return
-    for spot in fitting(template, among)[: MOST[template.on]]:
+    chosen = fitting(template, among)[: MOST[template.on]]
+    for at, spot in enumerate(chosen):
+        twin = axis_twin(spot, [*before, *chosen[:at]])
         if template.on not in OF_SENSORS:
             scales = {"typical": spot.typical, "larger": spot.larger}
-            yield list(_operands(template, spot, Form(template, field=spot.field), scales))
+            bare = Form(template, field=spot.field)
+            if twin is not None and template.on == "value":
+                bare = replace(bare, partner=twin.source.span(twin.node))
+            yield list(_operands(template, spot, bare, scales))
             continue
         by_sensor: list[tuple[Operand, Form]] = []
         for sensor in order.comparison.sensors:
             if continuous(sensor):
-                by_sensor += _operands(template, spot, Form(template, sensor=sensor), _scales(order, sensor))
+                by_sensor += _operands(
+                    template, spot, _by(template, sensor, spot, twin), _scales(order, sensor, spot)
+                )
         yield by_sensor
+
+
+def _by(template: Template, sensor: Sensor, spot: Spot, twin: Spot | None) -> Form:
+    """Return the form with a sensor, for both axes if the message has the sensor's field for the other axis, too."""
+    bare = Form(template, sensor=sensor)
+    axes = axes_of(spot, twin) if twin is not None else None
+    path, _, last = sensor.path.rpartition(".")
+    if twin is None or axes is None or not path or last not in axes:
+        return bare
+    other = axes[1 - axes.index(last)]
+    sibling = replace(sensor, name=f"{sensor.name}_{other}", field=f"{path}.{other}", expr="")
+    mine, its = (sensor, sibling) if last == axes[0] else (sibling, sensor)
+    return replace(bare, sensor=mine, sibling=its, partner=twin.source.span(twin.node))
 
 
 def fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
@@ -92,13 +120,13 @@ def _limited(node: ast.expr) -> bool:
         return False
     name = called(node)
     inner = [ast.unparse(each.func) for each in node.args if isinstance(each, ast.Call)]
-    return name in CLAMPS or (name in ("max", "min") and {"max", "min"} - {name} <= set(inner))
+    return name in CLAMPS or (OPPOSITE.get(name) in inner)
 
 
-def _scales(order: Order, sensor: Sensor) -> dict[str, float]:
+def _scales(order: Order, sensor: Sensor, spot: Spot) -> dict[str, float]:
     """Return, for each key of `of` in a template (such as `usual`), the size by which defaults are multiplied."""
     drifted = usual(order, sensor)
-    scales = {"sensor": 1.0 / drifted, "usual": drifted}
+    scales = {"sensor": 1.0 / drifted, "usual": drifted, "ratio": spot.larger / drifted}
     if sensor.low is not None and sensor.low >= 0.0:
         scales["designed"] = usual(order, sensor, order.fixture.sample)
     return scales
@@ -114,23 +142,18 @@ def _operands(
         (one.name, float(f"{one.default * scales.get(one.of, 1.0):.4g}")) for one in template.parameters
     )
     code = bare.target(_folded(spot.source, spot.node))
+    if bare.partner is not None and template.on != PAIR:
+        code = f"{code} and {_folded(spot.source, spot.source.find(bare.partner))}"
     for name, value in defaults or (("", None),):
         form = replace(bare, parameter=name, defaults=defaults)
         by = f" by {bare.sensor.name}" if bare.sensor else ""
         text = f"{template.name.replace('_', ' ')}{by} of {code}{f', {name}' if name else ''}"
-        yield Operand(spot.site, _span(spot.source, spot.node), text, value if name else False), form
+        yield Operand(spot.site, spot.source.span(spot.node), text, value if name else False), form
 
 
 def fixed(form: Form) -> bool:
     """Return whether the parameter of a form is fixed, that is, moved only after the change gained much."""
     return any(one.name == form.parameter and one.of == FIXED for one in form.template.parameters)
-
-
-def _span(source: Document, node: ast.expr) -> Span:
-    start = source.start(node) - source.line_starts[node.lineno - 1]
-    last = node.end_lineno or node.lineno
-    end = source.end(node) - source.line_starts[last - 1]
-    return Span(source.path, node.lineno, start + 1, last, end + 1)
 
 
 def _folded(source: Document, node: ast.expr) -> str:

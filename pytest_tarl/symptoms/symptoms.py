@@ -33,6 +33,7 @@ ASIDE = 0.5  # an offset is certain if the mean at the end grows by this share o
 # an offset is certain if values at the same time of a mission differ by this share of the range
 BESIDE = 0.25
 GROWTH = 0.2  # (end - start) / (end + start) of a value that certainly runs away
+PAST = 0.1  # an overshoot is certain if this share of the start value is passed on the other side of zero
 FEWEST = 6  # minimum number of values in a series
 
 
@@ -111,11 +112,24 @@ def runaway(pairs: Sequence[Pair]) -> float:
     )
 
 
+def overshoot(pairs: Sequence[Pair]) -> float:
+    """Return how far the value passes zero, seen from where it starts, compared with the designed missions.
+
+    A mission may end by it, before the value could swing.
+    """
+    series = [one for pair in pairs for one in (pair.designed, pair.drifted)]
+    if not series or any(one.values.size < FEWEST for one in series):
+        return 0.0
+    grown = min(_past_zero(pair.drifted.values) - _past_zero(pair.designed.values) for pair in pairs)
+    return float(np.clip(grown / PAST, 0.0, 1.0))
+
+
 SYMPTOMS: Mapping[str, Symptom] = {
     "chatter": chatter,
     "jumps": jumps,
     "noise": noise,
     "offset": offset,
+    "overshoot": overshoot,
     "runaway": runaway,
     "spikes": spikes,
     "swing": swing,
@@ -191,6 +205,17 @@ def _apart(pair: Pair, size: float) -> float:
         return 0.0
     apart, least = drifted - designed, max(float(np.sqrt((designed**2).mean())), BESIDE * size)
     return _one_sided(apart) * min(abs(float(apart.mean())) / least, 1.0)
+
+
+def _past_zero(values: Floats) -> float:
+    """Return how far values get to the other side of zero, as a share of how far they are on the side of the first.
+
+    Single values that stick out are left out, by a median of three.
+    """
+    smooth = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)
+    toward = smooth * float(np.sign(smooth[0]))
+    far = float(toward.max())
+    return max(-float(toward.min()), 0.0) / far if far > 0.0 else 0.0
 
 
 def _late(values: Floats) -> Floats:

@@ -327,9 +327,9 @@ def test_the_cheaper_of_two_changes_with_about_equal_symptoms_comes_first(
     assert [one.partition(" ")[0] for one in found] == expected
 
 
-def test_templates_without_a_symptom_or_with_a_sensor_are_not_indicated(tmp_path: Path) -> None:
+def test_templates_without_a_symptom_or_of_a_published_value_are_not_indicated(tmp_path: Path) -> None:
     order = order_of(tmp_path)
-    known = [flipping(1, symptom=""), flipping(1, on="sensor"), flipping(1, on="sent by sensor")]
+    known = [flipping(1, symptom=""), flipping(1, on="sent by sensor")]
     assert changes(order, known, {site(order, "speed = 0.4"): {"runaway": 1.0, "": 1.0}}) == []
 
 

@@ -161,6 +161,7 @@ def hysteresis(state: dict[str, float], x: float) -> float:
 
 MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
     "at_least": (VALUE, lambda: lambda value, _: max(0.8, 2 * value)),
+    "term": (VALUE, lambda: lambda value, slope: 2 * value - 0.7 * slope),
     "at_most": (VALUE, lambda: lambda value, _: min(0.7, 2 * value)),
     "comparison": (COMPARED, lambda: lambda value, _: value if value <= 1.0 else -value),
     "confirmed": (COMPARED, lambda: kept(confirmed)),
@@ -189,6 +190,7 @@ MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
 # laws by which a constant, here 2.0, follows the slope: they are tried after a value of the constant was found
 LAWS: dict[str, Command] = {
     "above": lambda value, slope: 2.0 * max(1.0, slope / 0.8) ** 0.7 * value,
+    "follows": lambda value, slope: 2.0 * max(0.1, slope / 0.8) ** 0.7 * value,
     "below": lambda value, slope: 2.0 * min(1.0, slope / 0.8) ** 0.7 * value,
 }
 

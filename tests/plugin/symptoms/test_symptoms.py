@@ -145,3 +145,26 @@ def test_every_strength_is_between_zero_and_one(one: list[float], other: list[fl
 def test_a_strength_does_not_depend_on_the_unit(case: str, name: str, unit: float) -> None:
     plain, scaled = ([Pair(*(series(each * by) for each in CASES[case]))] for by in (1.0, unit))
     assert SYMPTOMS[name](scaled) == pytest.approx(SYMPTOMS[name](plain), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("drifted", "expected"),
+    [
+        (np.linspace(3.0, 0.0, 30), 0.0),  # as designed
+        (np.linspace(3.0, -0.25, 30), 0.48),
+        (np.linspace(3.0, -1.0, 30), 1.0),
+        (np.linspace(-3.0, 1.0, 30), 1.0),  # from the other side
+        (np.where(np.arange(30) == 20, -3.0, np.linspace(3.0, 0.0, 30)), 0.0),  # a single value
+        (np.zeros(30), 0.0),
+        (np.linspace(3.0, -1.0, 5), 0.0),  # too few values
+    ],
+)
+def test_an_overshoot_passes_zero_farther_than_designed(drifted: np.ndarray, expected: float) -> None:
+    def series(values: np.ndarray) -> Series:
+        return Series(values, np.arange(values.size, dtype=np.int32), np.zeros(values.size))
+
+    designed = series(np.linspace(3.0, 0.0, 30))
+    found = SYMPTOMS["overshoot"]([Pair(designed, series(drifted))] * 2)
+    assert found == pytest.approx(expected, abs=0.05)
+    late = Pair(designed, designed)
+    assert SYMPTOMS["overshoot"]([Pair(designed, series(drifted)), late]) == 0.0  # in one mission only
