@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from pytest_tarl.errors import RepairError, TarlError
+from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.repairing.entered_statements import entered
 from pytest_tarl.repairing.measured import hints
 from pytest_tarl.repairing.mission_pairs import Recorded, Signs, mission_pairs, recorded, signs
 from pytest_tarl.repairing.mutants import Mutants
@@ -50,6 +52,7 @@ class Early:
         self.spent = 0
         self.waiting = False
         self._recorded: tuple[Recorded, ...] | None = None
+        self._traces: dict[Candidate, Trace] = {}  # recorded missions of changes
         self._signs: Signs | None = None
         self._structures: Structures | None = None
         self._surest: Structures | None = None  # the changes with the clearest symptoms, once they were tried
@@ -142,13 +145,30 @@ class Early:
         if not candidate.mutations or not pairs:
             return reached_limits(order, pairs)
         (designed, drifted), *_ = pairs
-        try:
-            overlay = mutants.source(candidate)
-            self.trials.charge()
-            trace = recorded(order, order.goal.pairs[0].seed, order.drift, overlay)
-        except TarlError:
-            return []
-        return reached_limits(order, [(designed, trace)], drifted)
+        trace = self._changed(mutants, candidate)
+        return reached_limits(order, [(designed, trace)], drifted) if trace is not None else []
+
+    def entered(self, mutants: Mutants, candidate: Candidate) -> Sequence[Operand]:
+        """Return the constants of the statements that a candidate lets drifted missions enter, and none without pairs.
+
+        A changed mission that was not recorded yet is charged.
+        """
+        pairs = self._pairs(self.trials)
+        trace = self._changed(mutants, candidate) if pairs else None
+        return entered(self.order, pairs, trace) if trace is not None else []
+
+    def _changed(self, mutants: Mutants, candidate: Candidate) -> Trace | None:
+        """Record the drifted mission of the first pair's seed with a change; return None if it cannot run."""
+        if candidate not in self._traces:
+            order = self.order
+            try:
+                overlay = mutants.source(candidate)
+                self.trials.charge()
+                trace = recorded(order, order.goal.pairs[0].seed, order.drift, overlay)
+            except TarlError:
+                return None
+            self._traces[candidate] = trace
+        return self._traces[candidate]
 
     def _pairs(self, trials: Trials) -> tuple[Recorded, ...]:
         if self._recorded is None:

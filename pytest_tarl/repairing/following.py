@@ -18,13 +18,14 @@ from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import Template, templates
 from pytest_tarl.repairing.between import factor
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repairing.telling_sensors import continuous, usual
+from pytest_tarl.repairing.telling_sensors import continuous, usual, varies
 from pytest_tarl.repairing.variables_in_scope import variables
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.sensors import Sensor
+from tarl_lint.model import Operand
 
-ABOVE, BELOW = "above", "below"
+ABOVE, BELOW, FOLLOWS = "above", "below", "follows"
 APART = 1.25  # minimum ratio of a sensor's usual values in the two worlds
 # smallest and largest size of a power; with others, the sensor hardly matters or changes too little
 LEAST, MOST = 0.2, 4.0
@@ -61,6 +62,33 @@ def following(order: Order, candidate: Candidate) -> Iterator[Candidate]:
     )
     for form in found:
         yield Candidate(tuple(Mutation(one.operand, 1.0, form=form) for one in candidate.mutations), ALWAYS)
+
+
+def proportional(order: Order, used: Sequence[Operand]) -> Iterator[Candidate]:
+    """Yield unconditional candidates in which a constant is proportional to what varies more than as designed.
+
+    These are sensors that visit clearly more bins and, if there are any, the most suspect variable at the uses of the
+    constant. Each has its designed value where the constant keeps its own.
+    """
+    plain = all(not isinstance(one.value, bool) and one.value != 0 for one in used)
+    template = next((one for one in templates(order.root) if one.name == FOLLOWS), None)
+    usable = [one for one in order.comparison.sensors if continuous(one) and one.low is not None]
+    varying = [one for one in usable if (one.low or 0.0) >= 0.0 and varies(order, one)]
+    if template is None or not plain or not varying or order.permanent:
+        return
+    held = [(name, designed) for name, designed, _ in variables(order, used) if designed > 0.0][:VARIABLES]
+    forms = [Form(template, variable=name, defaults=_proportion(designed)) for name, designed in held]
+    forms += [
+        Form(template, sensor=one, defaults=_proportion(usual(order, one, order.fixture.sample)))
+        for one in varying[:SENSORS]
+    ]
+    for form in forms:
+        bare = replace(form, parameter="power")
+        yield Candidate(tuple(Mutation(one, 1.0, form=bare) for one in used), ALWAYS)
+
+
+def _proportion(designed: float) -> tuple[tuple[str, float], ...]:
+    return ("power", 1.0), ("usual", float(f"{designed:.3g}"))
 
 
 def _sensors(order: Order, candidate: Candidate) -> Sequence[Sensor]:

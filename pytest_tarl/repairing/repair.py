@@ -17,7 +17,7 @@ from pytest_tarl.repairing.delivering import attempts, delivered, partial, withh
 from pytest_tarl.repairing.early import Early
 from pytest_tarl.repairing.enriching import enriched
 from pytest_tarl.repairing.exceeding import exceeding
-from pytest_tarl.repairing.following import following
+from pytest_tarl.repairing.following import following, proportional
 from pytest_tarl.repairing.guaranteeing import guaranteed
 from pytest_tarl.repairing.incumbent import Watch
 from pytest_tarl.repairing.ledger import Refused
@@ -139,6 +139,8 @@ def _search(
         early.before_extreme if share < 1.0 else lambda: iter(()),
         lambda one: following(mutants.order, one) if share < 1.0 else iter(()),
         early.reached,
+        early.entered,
+        lambda used: proportional(mutants.order, used) if share < 1.0 else iter(()),
     )
     try:
         if found.accepted is None:

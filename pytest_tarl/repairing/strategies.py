@@ -13,11 +13,13 @@ from pytest_tarl.repairing.name_scopes import name_scope
 from pytest_tarl.repairing.products import one_of_each
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.scales import charts
+from pytest_tarl.repairing.table_entries import entry_uses
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ask_tell import Asking, factory
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
 from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.halving import Halving
+from pytest_tarl.searching.laws import Proportional
 from pytest_tarl.searching.limits_in_turn import Limit
 from pytest_tarl.searching.plainness import writing
 from pytest_tarl.searching.ranking import Ranking
@@ -40,13 +42,16 @@ def strategy(
     corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
     following: Callable[[Candidate], Iterator[Candidate]] = lambda _: iter(()),
     reached: Callable[[Mutants, Candidate], Sequence[Limit]] = lambda *_: (),
+    entered: Callable[[Mutants, Candidate], Sequence[Operand]] = lambda *_: (),
+    proportional: Proportional = lambda _: iter(()),
 ) -> Strategy:
     """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
 
     The sweep calls `interlude` before each of its steps, with the largest gain so far, and `measured` for changes that
-    recorded missions suggest, `reached` for limits that the missions of a change reach, and `corrections` before it
-    yields an extreme change. `following` returns candidates in which a changed constant follows a sensor or a
-    variable.
+    recorded missions suggest, `reached` for limits that the missions of a change reach, `entered` for constants of the
+    statements that it lets them enter, and `corrections` before it yields an extreme change. `following` returns
+    candidates in which a changed constant follows a sensor or a variable, `proportional` those in which an unchanged
+    one does.
     """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
@@ -69,6 +74,8 @@ def strategy(
             corrections=corrections,
             following=following,
             reached=lambda candidate: reached(mutants, candidate),
+            entered=lambda candidate: entered(mutants, candidate),
+            proportional=proportional,
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)
@@ -97,15 +104,18 @@ def operands(order: Order) -> tuple[Operand, ...]:
     """Return all operands of the analysed flows, most readable changes first, then in the order of the slices.
 
     Among them are the constants that a set-up passes to an object of a library or stores in a list, ranked as the
-    statements that use the object.
+    statements that use the object, and the entries of tables of settings (see `table_entries`).
     """
     analysis = order.analysis
     rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
     ranks = {step.site: rank.get(str(step.site), len(rank)) for step in analysis.sites}
     found = {o: ranks[site] for site in ranks for o in analysis.operands(site)}
     defined = {(o.definition.path, o.definition.line) for o in found if o.definition is not None}
+    entries = entry_uses(analysis, [o for site in analysis.configuring for o in analysis.operands(site)])
+    found |= {use: ranks[use.site] for uses in entries.values() for use in uses}
     for site, (_, users) in analysis.configuring.items():
         given = analysis.operands(site)
+        given = tuple(o for o in given if o not in entries)
         best = min(ranks.get(user, len(rank)) for user in users)
         own = [o for o in given if o.definition is not None and o.definition.line == o.span.line]
         # operands of this statement were already found at the statements that read them

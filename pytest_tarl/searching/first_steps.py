@@ -6,11 +6,14 @@ import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 
 from pytest_tarl.model import Guard
+from pytest_tarl.patching.clamps import BOUNDING
 from pytest_tarl.searching import plateau
 from pytest_tarl.searching.attempts import FLIP, Attempts
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.crossing import Crossing
 from pytest_tarl.searching.forward_selection import Joint
+from pytest_tarl.searching.further_on import Entered, further_on
+from pytest_tarl.searching.laws import Proportional, laws
 from pytest_tarl.searching.limits_in_turn import LimitsInTurn, Reached
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.refining import FURTHER
@@ -33,7 +36,7 @@ HALF = 0.5
 LONGEST = 2  # maximum number of changes that made missions last longer under which limits are relaxed
 
 
-_DECIDING = re.compile(r"[<>]|[!=]=|\b(?:if|while|min|max|clip|clamp|int|round)\b")
+_DECIDING = re.compile(rf"[<>]|[!=]=|\b(?:{'|'.join(('if', 'while', 'int', 'round', *sorted(BOUNDING)))})\b")
 
 
 def deciding(text: str) -> bool:
@@ -46,7 +49,9 @@ class FirstSteps:
 
     `responding` contains ids of statements whose constants raised the reward. `measured` returns changes that recorded
     missions suggest; it is called once, when the first steps on named constants gained less than `HALF`. `reached`
-    returns the limits that only the drifted missions of a change reach (see `limits_in_turn`).
+    returns the limits that only the drifted missions of a change reach (see `limits_in_turn`), `entered` the constants
+    of the statements that it lets them enter (see `further_on`), and `proportional` candidates in which a constant is
+    proportional to what varies (see `laws`).
     """
 
     def __init__(
@@ -56,8 +61,12 @@ class FirstSteps:
         responding: Collection[str] = (),
         measured: Callable[[], Sequence[Hint]] = tuple,
         reached: Reached = lambda _: (),
+        entered: Entered = lambda _: (),
+        proportional: Proportional = lambda _: iter(()),
     ) -> None:
         self.attempts = attempts
+        self.entered = entered
+        self._proportional: Proportional | None = proportional
         self.crossing = crossing
         self.responding = responding
         self._measured: Callable[[], Sequence[Hint]] | None = measured
@@ -75,6 +84,7 @@ class FirstSteps:
             if tries.gains.anything(HALF * tries.goal.wanted):
                 return
             yield from self._as_measured(ALWAYS)
+        yield from self._laws(ALWAYS)
         yield from self._limits(ALWAYS)
 
     def near(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
@@ -126,9 +136,18 @@ class FirstSteps:
         if among and not idle and not tries.gains.anything():
             tries.turn += 1
             yield from tries.sweep(NEAR[1], guard, among)
+            yield from self._laws(ALWAYS if ALWAYS in tries.guards else guard)
             yield from self.crossing.across(guard, plateau.STEPS[:2])
         if among and not idle and not tries.gains.anything(HALF * tries.goal.wanted):
             yield from self._limits(ALWAYS if ALWAYS in tries.guards else guard)
+
+    def _laws(self, guard: Guard) -> Iterator[Candidate]:
+        """Let the named constants follow what varies that clearly lost in both directions, once, if nothing gained."""
+        tries, gains = self.attempts, self.attempts.gains
+        lost = gains.clearly_lost(guard, named(tries.units), NEAR)
+        if self._proportional is not None and lost and not gains.anything():
+            proportional, self._proportional = self._proportional, None
+            yield from laws(lost, proportional, tries.joining({}))
 
     def _limits(self, guard: Guard) -> Iterator[Candidate]:
         """Relax the limits that missions reach, once; start also from the changes after which they last longest.
@@ -150,6 +169,9 @@ class FirstSteps:
         longest = sorted(parts, key=lambda one: -lasting(one, joining))[:LONGEST]
         bases = [one for one in longest if longer(one, joining)]
         yield from LimitsInTurn(joining, whole, reached, guard).candidates(bases)
+        if not tries.gains.anything():
+            rest = named(dict.fromkeys(whole.values()))
+            yield from further_on(bases, rest, self.entered, joining)
 
     @property
     def _whole(self) -> dict[Operand, Unit]:

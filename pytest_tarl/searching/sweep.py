@@ -19,6 +19,8 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.crossing import Crossing
 from pytest_tarl.searching.families import families
 from pytest_tarl.searching.first_steps import BETWEEN, FINER, HALF, FirstSteps, Hint
+from pytest_tarl.searching.further_on import Entered
+from pytest_tarl.searching.laws import Proportional
 from pytest_tarl.searching.limits_in_turn import Reached
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.refining import FURTHER
@@ -58,10 +60,11 @@ class Sweep:
     tried, on named constants. If `brief` is true, the search ends after the first steps unless something gains
     `BRIEFLY`. `responding` contains the ids of statements whose constants increased the reward. `interlude` is called
     with the largest gain before each step and each long phase, and may yield candidates of another search. `measured`
-    returns changes that recorded missions suggest, `reached` the limits that a change reaches (see `FirstSteps`), and
-    `corrections` yields confirmed corrections of sensor readings, which come before extreme changes. `finer` is called
-    with an operand that nearly earned enough, so that `mutate` may allow values between those of its grid. `following`
-    returns, for a changed constant, candidates in which the constant follows a sensor or a variable instead.
+    returns changes that recorded missions suggest, `reached` and `entered` what the missions of a change reach,
+    `proportional` constants that follow what varies (see `FirstSteps`), and `corrections` confirmed corrections of
+    sensor readings, which come before extreme changes. `finer` is called with an operand that nearly earned enough, so
+    that `mutate` may allow values between those of its grid. `following` returns, for a changed constant, candidates in
+    which the constant follows a sensor or a variable instead.
     """
 
     def __init__(
@@ -88,6 +91,8 @@ class Sweep:
         measured: Callable[[], Sequence[Hint]] = tuple,
         corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
         reached: Reached = lambda _: (),
+        entered: Entered = lambda _: (),
+        proportional: Proportional = lambda _: iter(()),
     ) -> None:
         self.structure_follows = structure_follows
         self.brief = brief
@@ -116,7 +121,9 @@ class Sweep:
             corrections=corrections,
         )
         self.crossing = Crossing(self.attempts)
-        self.first_steps = FirstSteps(self.attempts, self.crossing, responding, measured, reached)
+        self.first_steps = FirstSteps(
+            self.attempts, self.crossing, responding, measured, reached, entered, proportional
+        )
         self._families: tuple[Unit, ...] = ()
         self._swept: frozenset[Unit] = frozenset()  # units that got their first steps before a screening
 

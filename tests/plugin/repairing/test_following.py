@@ -14,7 +14,7 @@ import pytest
 from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.mutate import Mutation, form_values
 from pytest_tarl.repairing import following as module
-from pytest_tarl.repairing.following import following
+from pytest_tarl.repairing.following import following, proportional
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.sensors import Sensor
@@ -125,3 +125,43 @@ def test_a_variable_that_becomes_smaller_is_not_followed(monkeypatch: pytest.Mon
     # its sign is unknown, and a negative number has no power
     monkeypatch.setattr(module, "variables", lambda *_: [("self.speed", 4.0, 1.0)])
     assert list(following(order((6,), (6,), SPEED), FOUR_TIMES)) == []
+
+
+def spread(designed: list[int], drifted: list[int], *sensors: Sensor) -> Any:
+    """Return an order in which the first sensor visits these bins, each as often."""
+    found = order((0,), (0,), *sensors)
+
+    def world(cells: list[int]) -> Any:
+        chain = SimpleNamespace(cell=np.arange(len(cells)), count=np.full(len(cells), 5.0))
+        return SimpleNamespace(cells=[(cell,) * len(sensors) for cell in cells], chain=chain)
+
+    found.fixture.sample, found.online.recorded.sample = world(designed), world(drifted)
+    return found
+
+
+def test_a_constant_is_proportional_to_a_sensor_that_varies_more_than_designed() -> None:
+    (found,) = proportional(spread([4], [2, 3, 4, 5], SPEED), [NAMED])
+    ((mutation),) = found.mutations
+    assert form_values(mutation) == {"power": 1.0, "usual": 4.5}
+    assert found.guard == ALWAYS
+
+
+def test_the_variable_at_the_uses_of_the_constant_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "variables", lambda *_: [("distance", 10.0, 11.0), ("floor", 9.0, 9.5)])
+    found = list(proportional(spread([4], [2, 3, 4, 5], SPEED), [NAMED]))
+    assert [one.mutations[0].form.variable for one in found if one.mutations[0].form] == ["distance", ""]
+
+
+@pytest.mark.parametrize(
+    ("bins", "sensor", "value"),
+    [
+        ([4], SPEED, 1.1),  # varies no more than designed
+        ([2, 3, 4, 5], replace(SPEED, low=-10, high=10), 1.1),  # a power of a negative number
+        ([2, 3, 4, 5], SPEED, 0.0),
+        ([2, 3, 4, 5], SPEED, True),
+    ],
+)
+def test_other_sensors_and_constants_are_not_proportional(
+    bins: list[int], sensor: Sensor, value: float
+) -> None:
+    assert list(proportional(spread([4], bins, sensor), [replace(NAMED, value=value)])) == []

@@ -1,0 +1,74 @@
+"""Let constants follow what varies more than designed, if no single value of them is better than the old one.
+
+A stage light is right for actors at its mark. If they walk over the whole stage, any other value of the lamp is worse
+on average, since half of the places want more and half want less. A power of the distance suits them all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.searching.forward_selection import ForwardSelection
+from pytest_tarl.searching.polishing import polished
+from pytest_tarl.searching.search import Candidate
+from pytest_tarl.searching.units import Unit
+from tarl_lint.model import Operand
+
+# returns candidates in which a constant is proportional to a sensor or a variable
+Proportional = Callable[[Sequence[Operand]], Iterator[Candidate]]
+
+CONSTANTS = 4  # maximum number of constants that are tried
+ADJUSTED = 2  # maximum number of laws whose power is adjusted
+SIGNS = (1.0, -1.0)  # powers that are tried first
+STEPS = (1.5, 1.2, 1.08)  # ratios by which a power that gains is moved
+SEEDS = 2  # number of seeds on which powers are compared
+
+
+def laws(
+    constants: Sequence[Unit], proportional: Proportional, selection: ForwardSelection
+) -> Iterator[Candidate]:
+    """Yield confirmed candidates in which one of the constants follows something. Raise BudgetSpentError.
+
+    The laws that gain most are adjusted first. A constant that is listed several times, as a whole and at one of its
+    uses, is tried once.
+    """
+    distinct = {(unit.operands[0].code, unit.operands[0].definition): unit for unit in reversed(constants)}
+    chosen = [unit for unit in constants if unit in distinct.values()][:CONSTANTS]
+    gaining: list[tuple[float, Candidate, float]] = []
+    for unit in chosen:
+        for law in proportional(unit.operands):
+            gains = [
+                (gain, law, power) for power in SIGNS if (gain := _gain(law, power, selection)) is not None
+            ]
+            gaining += [one for one in gains if one[0] > selection.slack]
+    for _, law, power in sorted(gaining, key=lambda one: -one[0])[:ADJUSTED]:
+        yield from _adjusted(law, power, selection)
+
+
+def _with_power(law: Candidate, power: float) -> Candidate:
+    return replace(law, mutations=tuple(replace(one, value=round(power, 2)) for one in law.mutations))
+
+
+def _gain(law: Candidate, power: float, selection: ForwardSelection) -> float | None:
+    """Return the gain of a law on the first seed, or None if it cannot be written."""
+    pair = selection.goal.pairs[0]
+    try:
+        return selection.trials(_with_power(law, power), pair.seed).total - pair.total
+    except RepairError:
+        return None
+
+
+def _adjusted(law: Candidate, power: float, selection: ForwardSelection) -> Iterator[Candidate]:
+    """Move the power while the mean reward grows; yield the law if it is then confirmed."""
+    trials, goal = selection.trials, selection.goal
+    seeds = [pair.seed for pair in goal.pairs[:SEEDS]]
+
+    def earned(factors: tuple[float, ...], seed: int) -> float:
+        return trials(_with_power(law, power * factors[0]), seed).total
+
+    (by,) = polished((1.0,), earned, seeds, goal.wanted, STEPS, goal.enough_on(seeds))
+    best = _with_power(law, power * by)
+    if selection.settled.holds(best, trials, goal, 0):
+        yield best
