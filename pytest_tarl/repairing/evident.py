@@ -9,7 +9,7 @@ from pytest_tarl.patching.templates import SENT_BY_SENSOR, Template
 from pytest_tarl.repairing.mission_pairs import Signs
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.template_forms import forms
-from pytest_tarl.repairing.template_places import Spot
+from pytest_tarl.repairing.template_places import Spot, axis_twin
 from pytest_tarl.symptoms.symptoms import RECEIVED
 from tarl_lint.model import Operand, SiteId
 
@@ -25,7 +25,8 @@ def evident(
 
     Equal strengths are ordered by the cost of the template. Each template has `PLACES`. If the value is wrong where it
     is received, the places next to the subscription come first, otherwise those next to the publish call, and the
-    arguments of the call itself last, since a named value reads better. Symptoms weaker than `least` are left out.
+    arguments of the call itself last, since a named value reads better. What shows a symptom along two axes is changed
+    for both. Symptoms weaker than `least` are left out.
     """
     before = _before_sending(order)
     found: list[tuple[float, int, list[tuple[Operand, Form]]]] = []
@@ -46,6 +47,7 @@ def evident(
         fitting = [
             (spot, each)
             for at, spot in enumerate(strong)
+            if axis_twin(spot, strong[at + 1 :]) is None
             for each in forms(order, template, [spot], strong[:at])
             if each
         ]

@@ -15,6 +15,8 @@ from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import SHIPPED, template
 from pytest_tarl.repairing import template_forms
+from pytest_tarl.repairing.evident import evident
+from pytest_tarl.repairing.mission_pairs import Signs
 from pytest_tarl.repairing.template_forms import form_words, forms
 from pytest_tarl.repairing.template_places import Spot, axes_of
 from pytest_tarl.searching.candidates import ALWAYS
@@ -155,3 +157,16 @@ def test_a_sensor_without_an_axis_serves_both(tmp_path: Path, monkeypatch: pytes
     pallet.order.comparison.sensors = (load,)
     _, (_, form) = pallet.forms("term", *pallet.spots)
     assert (form.sensor, form.sibling, form.partner) == (load, None, None)
+
+
+def test_what_overshoots_along_both_axes_is_changed_for_both_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pallet = Pallet(tmp_path, monkeypatch)
+    known = [template(SHIPPED / "derivative.toml")]
+    signs = Signs({str(one.site): {"overshoot": 1.0} for one in pallet.spots})
+    found = list(evident(pallet.order, known, pallet.spots, signs))
+    assert [operand.code for operand, _ in found] == [f"derivative of {ERRORS[1]} and {ERRORS[0]}, gain"]
+    one_axis = Signs({str(pallet.spots[0].site): {"overshoot": 1.0}})
+    alone = list(evident(pallet.order, known, pallet.spots, one_axis))
+    assert [operand.code for operand, _ in alone] == [f"derivative of {ERRORS[0]}, gain"]
