@@ -33,8 +33,9 @@ class Placing:
     def __init__(self, mutants: Mutants) -> None:
         self.mutants = mutants
         self.order = mutants.order
-        self._in_force: dict[Operand, Place | None] = {}
-        self._works: dict[Place, bool] = {}  # whether a definition in the source alters missions
+        self._in_force: dict[
+            Operand | Place, Place | None
+        ] = {}  # by the definition in the source, if there is one
         self._why: dict[Operand, str] = {}
 
     def __call__(self, candidate: Candidate, trials: Trials) -> Candidate | None:
@@ -93,19 +94,17 @@ class Placing:
         return any(one.place is None and not one.operand.literal and one.form is None for one in mutations)
 
     def _place(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> Place | None:
-        operand = mutation.operand
-        if operand not in self._in_force:
-            self._in_force[operand] = self._found(mutation, candidate, trials)
-        return self._in_force[operand]
+        one = defined(self.order.analysis, mutation.operand) or mutation.operand
+        if one not in self._in_force:
+            self._in_force[one] = self._found(mutation, candidate, trials)
+        return self._in_force[one]
 
     def _found(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> Place | None:
         """Return the first place at which a change affects the episode, which shows that the test uses it."""
         analysis, operand = self.order.analysis, mutation.operand
         name = parameter(analysis, operand)
         written = defined(analysis, operand)
-        if written is not None and written not in self._works:
-            self._works[written] = self._moves(mutation, written, candidate, trials)
-        if written is not None and self._works[written]:
+        if written is not None and self._moves(mutation, written, candidate, trials):
             return written
         if not name:
             return None

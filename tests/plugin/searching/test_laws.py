@@ -76,6 +76,17 @@ def test_the_law_that_gains_most_is_adjusted_first_and_each_constant_is_tried_on
     assert len({*trials.labels[:4]}) == 4
 
 
+def test_a_power_that_is_too_large_for_hard_missions_is_reduced() -> None:
+    def hard(candidate: Candidate, seed: int) -> Outcome:
+        power = max(float(one.value) for one in candidate.mutations)
+        return Outcome(0.0 if seed == 4 and power > 1.6 else min(10.0, 6.0 + 2.2 * power), True)
+
+    trials = Trials(hard, 60)
+    selection = ForwardSelection((), mutations, trials, GOAL, {}, 0.7)
+    ((mutation),) = next(laws([Unit((LIGHT,))], proportional, selection)).mutations
+    assert 1.3 < float(mutation.value) <= 1.6
+
+
 def test_the_sweep_tries_laws_for_a_constant_that_loses_both_ways() -> None:
     trials = Trials(run, 40)
     sweep = Sweep((OTHER, LIGHT), mutations, (ALWAYS,), trials, GOAL, proportional=proportional)
