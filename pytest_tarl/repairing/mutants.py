@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from tarl_lint.model import Operand
 
 ORIGINAL = Candidate((), Guard())  # the unrepaired program
 MOST_KEPT = 128  # maximum number of candidates whose source is cached
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")  # a number in the text of a failure
 
 
 class Mutants:
@@ -117,4 +119,5 @@ def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     earned = min(total, worst) if ended.crashed else total
     rewards = tuple(ended.trace.reward.tolist())
     outputs = tuple((topic, tuple(sums)) for topic, sums in sorted(ended.outputs.items()))
-    return Outcome(earned, ended.passed, ended.judged, ended.trace.steps, rewards, outputs)
+    failure = "" if ended.passed or ended.crashed else _NUMBER.sub("0", ended.failure)
+    return Outcome(earned, ended.passed, ended.judged, ended.trace.steps, rewards, outputs, failure)

@@ -39,7 +39,8 @@ SHARE = 2 / 3
 class Outcome:
     """The outcome of an episode: total reward, whether the test passed, formula verdicts, steps, rewards by step.
 
-    `outputs` holds sums over the messages that the nodes published, by topic; empty if unknown.
+    `outputs` holds sums over the messages that the nodes published, by topic; empty if unknown. `failure` says why the
+    test failed, without the numbers of this mission; it is empty if that is unknown.
     """
 
     total: float
@@ -48,6 +49,7 @@ class Outcome:
     steps: int | None = None
     rewards: tuple[float, ...] = field(default=(), compare=False, repr=False)
     outputs: tuple[tuple[str, tuple[float, ...]], ...] = field(default=(), compare=False, repr=False)
+    failure: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)

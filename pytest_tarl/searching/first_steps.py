@@ -11,6 +11,7 @@ from pytest_tarl.searching import plateau
 from pytest_tarl.searching.attempts import FLIP, Attempts
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.crossing import Crossing
+from pytest_tarl.searching.failing_otherwise import in_between
 from pytest_tarl.searching.forward_selection import Joint
 from pytest_tarl.searching.further_on import Entered, further_on
 from pytest_tarl.searching.laws import Proportional, laws
@@ -107,6 +108,7 @@ class FirstSteps:
             yield from tries.sweep(
                 factor, guard, [one for one in moving if not self._inert(one, guard, factor)]
             )
+        yield from self._between_failures(guard, moving)
         yield from self.crossing.across(guard, plateau.STEPS[:2])
         yield from self._narrow(guard, moving)
         for factor, before in () if gains.anything() else FURTHER:
@@ -118,6 +120,15 @@ class FirstSteps:
         yield from tries.combining.leaders(guard)
         yield from tries.combining.unmasked(guard)
         yield from self._uses_apart(guard, block)
+
+    def _between_failures(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Try values between two that fail for different reasons, unless a change under the guard gained enough."""
+        tries = self.attempts
+        best = max((max(each.values()) for each in tries.gains.under(guard).values()), default=0.0)
+        if not tries.proposed and best < HALF * tries.goal.wanted:
+            tried = yield from in_between(tries, guard, among)
+            if tried:
+                yield from tries.adjusting.refine(tries.pair)
 
     def _inert(self, unit: Unit, guard: Guard, factor: float) -> bool:
         """Return whether a literal that decides nothing had no effect with the first factor, so that none follows."""

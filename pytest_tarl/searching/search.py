@@ -298,6 +298,16 @@ class Trials:
                     return True
         return False
 
+    def reason(self, pair: Pair) -> str:
+        """Return why the unchanged program fails on the seed of a pair, judging by a change without any effect.
+
+        Return "" if no such change has run, or if the mission does not fail.
+        """
+        for (_, seed), outcome in self._known.items():
+            if seed == pair.seed and outcome.total == pair.total and outcome.steps == pair.steps:
+                return outcome.failure
+        return ""
+
     def totals_of(self, candidate: Candidate, pairs: Iterable[Pair]) -> dict[int, float]:
         """Return the total rewards of a candidate by seed, for the seeds on which it has run."""
         known = ((pair.seed, self._known.get((candidate, pair.seed))) for pair in pairs)

@@ -1,0 +1,100 @@
+"""Try values between the designed one and one with which missions fail for another reason.
+
+For example, a tug brakes too late and runs into the loader; with much less braking per metre, it comes too late. Both
+missions fail and may even earn the same. That they fail for opposite reasons shows that the constant matters and that a
+value in between may be right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Sequence
+from dataclasses import dataclass
+from math import isclose, log, sqrt
+from typing import Protocol
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
+from pytest_tarl.searching.units import Unit
+
+MOST = 6  # maximum number of constants that are tried under a guard, the nearest values first
+STEPS = 3  # maximum number of values in between, each in one episode
+
+
+class Search(Protocol):
+    """The parts of the search that `in_between` uses."""
+
+    mutate: Mutate
+    trials: Trials
+    goal: Goal
+    gains: Gains
+
+    def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        """Try a factor; yield the candidate if it is confirmed."""
+
+    def ran_on(self, unit: Unit, guard: Guard, factor: float) -> int:
+        """Return the index of the pair on whose seed a change ran first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bracket:
+    """A factor with which the mission of a pair fails for another reason than without a change."""
+
+    unit: Unit
+    factor: float
+    pair: int
+    unchanged: str  # reason of the failure without a change
+    changed: str  # reason with the factor
+
+
+def in_between(search: Search, guard: Guard, units: Sequence[Unit]) -> Generator[Candidate, None, bool]:
+    """Halve the interval between both reasons, on a logarithmic scale, until a mission does not fail.
+
+    Return whether any constant was tried.
+    """
+    found = [one for unit in units for one in _brackets(search, guard, unit)]
+    for bracket in sorted(found, key=lambda one: abs(log(one.factor)))[:MOST]:
+        yield from _halved(search, guard, bracket)
+    return bool(found)
+
+
+def _brackets(search: Search, guard: Guard, unit: Unit) -> Iterator[Bracket]:
+    """Yield the nearest larger and the nearest smaller factor that fail for another reason."""
+    tried = [factor for factor in search.gains.of(unit, guard) if factor > 0.0 and not isclose(factor, 1.0)]
+    larger = sorted(factor for factor in tried if factor > 1.0)
+    smaller = sorted((factor for factor in tried if factor < 1.0), reverse=True)
+    for side in (larger, smaller):
+        for factor in side:
+            pair = search.ran_on(unit, guard, factor)
+            before = search.trials.reason(search.goal.pairs[pair])
+            after = _reason(search, _outcome(search, guard, unit, factor, pair))
+            if before and after and before != after:
+                yield Bracket(unit, factor, pair, before, after)
+                break
+
+
+def _halved(search: Search, guard: Guard, bracket: Bracket) -> Iterator[Candidate]:
+    inner, outer = 1.0, bracket.factor
+    for _ in range(STEPS):
+        middle = sqrt(inner * outer)
+        yield from search.attempt(bracket.unit, guard, middle, bracket.pair)
+        outcome = _outcome(search, guard, bracket.unit, middle, bracket.pair)
+        reason = _reason(search, outcome)
+        if reason == bracket.unchanged:
+            inner = middle
+        elif reason == bracket.changed:
+            outer = middle
+        else:
+            return
+
+
+def _outcome(search: Search, guard: Guard, unit: Unit, factor: float, pair: int) -> Outcome | None:
+    candidate = Candidate(unit.mutations(search.mutate, factor), guard)
+    ran = search.trials.ran(candidate, [search.goal.pairs[pair]]) if candidate.mutations else []
+    return ran[0] if ran else None
+
+
+def _reason(search: Search, outcome: Outcome | None) -> str:
+    """Return the reason why a mission failed; "" if it did not, or if the reason is unknown."""
+    return outcome.failure if outcome is not None and search.goal.lost(outcome) else ""
