@@ -234,6 +234,8 @@ class ForwardSelection:
             self.settled.tried.add(candidate)
             return
         for one in dict.fromkeys((fewer, candidate)):
+            if one != fewer and self.trials.same_as(one, fewer):
+                break  # the dropped parts have no effect, so the result would be the same
             if self.settled.holds(one, self.trials, self.goal, 0):
                 if one == fewer and len(least.parts) == 1:
                     yield from self.preferred(one, *least.parts[0])
