@@ -155,8 +155,9 @@ class Operand:
 
     `span` is the expression that uses the constant, on the site's own lines; `code` is its text (`5`, `self.kp`).
     `value` is the constant, or None if it is known only at run time (a parameter without default). `definition` is
-    the place where the constant is defined; for a literal it equals `span`. `setting` is the key of a value that is
-    loaded from a file.
+    the place where the constant is defined; for a literal it equals `span`. If the expression stands for several
+    constants, such as a parameter of a function with two calls, `definition` is None, and `definitions` contains all
+    places. `setting` is the key of a value that is loaded from a file.
     """
 
     site: SiteId
@@ -165,6 +166,7 @@ class Operand:
     value: bool | int | float | None
     definition: Span | None = None
     setting: str = ""
+    definitions: tuple[Span, ...] = ()
 
     @property
     def literal(self) -> bool:

@@ -13,7 +13,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.document import Document, Edit, called, document, parse
 from pytest_tarl.patching.expressions import number
 from pytest_tarl.patching.launch_numbers import computed, numerals
-from tarl_lint.model import Operand
+from tarl_lint.model import Operand, Span
 
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
@@ -47,10 +47,23 @@ class Place:
     share: float = 1.0
 
 
-def defined(analysis: Analysis, operand: Operand) -> Place | None:
-    """Return the definition of an operand's constant, or None unless it is a single number away from the use."""
-    span = operand.definition
-    if span is None or operand.literal or span.path not in analysis.sources:
+def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
+    """Return the definitions of an operand's constants; empty unless all are numbers away from the use.
+
+    A constant has several definitions if the operand is a parameter of a function with several calls, for example. A
+    zero among other numbers has no definition, because no factor changes it.
+    """
+    if operand.literal:
+        return ()
+    spans = (operand.definition,) if operand.definition is not None else operand.definitions
+    places = [_defined_at(analysis, operand, span) for span in spans]
+    found = [place for place in places if place is not None and (len(spans) == 1 or place.value or operand.value == 0)]
+    return tuple(found) if len(found) == len(spans) else ()
+
+
+def _defined_at(analysis: Analysis, operand: Operand, span: Span) -> Place | None:
+    """Return the number at a definition of an operand's constant, or None if there is none."""
+    if span.path not in analysis.sources:
         return None
     source = document(span.path, analysis.sources[span.path])
     node = _written(source.at(span))
@@ -220,12 +233,13 @@ def _same(old: str, value: float) -> bool:
 def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
     """Return the other places that use the constant of these operands, as `path:line`, in order."""
     mine = {(operand.span.path, operand.span.line) for operand in used}
-    spans = {operand.definition for operand in used}
+    spans = {span for operand in used for span in (operand.definition, *operand.definitions)} - {None}
     names = {parameter(analysis, operand) for operand in used} - {""}
     found: dict[str, None] = {}
     for step in analysis.sites:
         for operand in analysis.operands(step.site):
-            shared = operand.definition in spans or (names and parameter(analysis, operand) in names)
+            theirs = {operand.definition, *operand.definitions}
+            shared = not spans.isdisjoint(theirs) or (names and parameter(analysis, operand) in names)
             if shared and (operand.span.path, operand.span.line) not in mine:
                 found[f"{operand.span.path}:{operand.span.line}"] = None
     return list(found)

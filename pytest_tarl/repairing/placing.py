@@ -33,9 +33,8 @@ class Placing:
     def __init__(self, mutants: Mutants) -> None:
         self.mutants = mutants
         self.order = mutants.order
-        self._in_force: dict[
-            Operand | Place, Place | None
-        ] = {}  # by the definition in the source, if there is one
+        # by the definition in the source, if there is one
+        self._in_force: dict[Operand | tuple[Place, ...], tuple[Place, ...]] = {}
         self._why: dict[Operand, str] = {}
 
     def __call__(self, candidate: Candidate, trials: Trials) -> Candidate | None:
@@ -60,11 +59,11 @@ class Placing:
 
     def _moved(self, candidate: Candidate, trials: Trials) -> Candidate | None:
         """Move mutations to definitions that the test uses; return None if there are none or if the result fails."""
-        mutations = []
+        mutations: list[Mutation] = []
         for mutation in candidate.mutations:
             stays = mutation.operand.literal or mutation.form is not None
-            place = None if stays else self._place(mutation, candidate, trials)
-            mutations.append(replace(mutation, place=place))
+            places = () if stays else self._places(mutation, candidate, trials)
+            mutations += _at(mutation, places) or [mutation]
         values: dict[Place, object] = {}
         for mutation in mutations:
             if mutation.place and values.setdefault(mutation.place, redefinition(mutation)) != redefinition(
@@ -93,21 +92,21 @@ class Placing:
     def _left(self, mutations: Sequence[Mutation]) -> bool:
         return any(one.place is None and not one.operand.literal and one.form is None for one in mutations)
 
-    def _place(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> Place | None:
+    def _places(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> tuple[Place, ...]:
         one = defined(self.order.analysis, mutation.operand) or mutation.operand
         if one not in self._in_force:
             self._in_force[one] = self._found(mutation, candidate, trials)
         return self._in_force[one]
 
-    def _found(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> Place | None:
-        """Return the first place at which a change affects the episode, which shows that the test uses it."""
+    def _found(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> tuple[Place, ...]:
+        """Return the first places at which a change affects the episode, which shows that the test uses them."""
         analysis, operand = self.order.analysis, mutation.operand
         name = parameter(analysis, operand)
         written = defined(analysis, operand)
-        if written is not None and self._moves(mutation, written, candidate, trials):
+        if self._moves(mutation, written, candidate, trials):
             return written
         if not name:
-            return None
+            return ()
         file = (self.order.root / operand.span.path).resolve()
         texts = package_files(self.order.root.resolve(), file)
         self.mutants.texts.update(texts)
@@ -117,21 +116,25 @@ class Placing:
             if isinstance(place.value, bool) == isinstance(operand.value, bool) or operand.value is None
         ]
         for place in likely[:MOST_PLACES]:
-            if self._moves(mutation, place, candidate, trials):
-                return place
+            if self._moves(mutation, [place], candidate, trials):
+                return (place,)
         self._why[operand] = self._given(name, operand, computed_at(name, texts))
-        return None
+        return ()
 
-    def _moves(self, mutation: Mutation, place: Place, candidate: Candidate, trials: Trials) -> bool:
-        """Return whether a change at this place alters the reward of an episode.
+    def _moves(
+        self, mutation: Mutation, places: Sequence[Place], candidate: Candidate, trials: Trials
+    ) -> bool:
+        """Return whether a change at these places alters the reward of an episode.
 
         Alone it may alter nothing, because another constant hides it: then it is tried beside the candidate's others.
         """
+        if not places:
+            return False
         pair = self.order.goal.pairs[0]
         others = tuple(one for one in candidate.mutations if not _same_constant(one, mutation))
-        moved = replace(mutation, place=place)
+        moved = tuple(_at(mutation, places))
         alone, beside, without = (
-            Candidate(changes, candidate.guard) for changes in ((moved,), (*others, moved), others)
+            Candidate(changes, candidate.guard) for changes in (moved, (*others, *moved), others)
         )
         try:
             if trials(alone, pair.seed).total != pair.total:
@@ -172,6 +175,11 @@ def _same_constant(one: Mutation, other: Mutation) -> bool:
     """Return whether two mutations change uses of one constant."""
     same = one.operand.definition is not None and one.operand.definition == other.operand.definition
     return one.operand == other.operand or same
+
+
+def _at(mutation: Mutation, places: Sequence[Place]) -> list[Mutation]:
+    """Return a mutation once for each place."""
+    return [replace(mutation, place=place) for place in places]
 
 
 def _importers(root: Path, place: Place, analysed: set[str]) -> list[str]:

@@ -14,10 +14,11 @@ from pytest_tarl.patching.charts import SHARE, Chart, offset
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.mutate import is_integral
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repairing.typical_sizes import TypicalSizes
+from pytest_tarl.repairing.typical_sizes import BOUNDING, TypicalSizes
 from tarl_lint.model import Operand
 
 NEARLY_ALL = 0.8  # for shares above this, the distance to 1 is a better scale than the share
+SPREAD = 0.25  # usual size of an offset on a sensor's reading, as a share of the sensor's range
 
 
 def charts(order: Order, operands: Sequence[Operand]) -> Mapping[Operand, Chart]:
@@ -46,26 +47,45 @@ def _chart(order: Order, operand: Operand, sizes: TypicalSizes) -> Chart | None:
         return SHARE
     if operand.literal and value:
         return None  # literals within a line are numerous and rarely offsets of a wrong size
-    size = max(_beside(source, node, operand, sizes), default=0.0)
+    read = {} if value else _spreads(order, operand)
+    size = max(_beside(source, node, operand, sizes, read), default=0.0)
     return offset(size) if size > abs(value) else None
 
 
-def _beside(source: Document, node: ast.expr, operand: Operand, sizes: TypicalSizes) -> Iterator[float]:
+def _spreads(order: Order, operand: Operand) -> Mapping[str, float]:
+    """Return the usual sizes of offsets on the readings that a statement uses, by the expression of the reading.
+
+    A reading of 1500 ± 100 is wrong by an amount of about 100.
+    """
+    return {
+        code: SPREAD * (sensor.high - sensor.low)
+        for sensor in order.fixture.sensors
+        if sensor.topic and sensor.path and sensor.low is not None and sensor.high is not None
+        for code in order.analysis.holders(sensor.topic, sensor.path, operand.site)
+    }
+
+
+def _beside(
+    source: Document, node: ast.expr, operand: Operand, sizes: TypicalSizes, read: Mapping[str, float]
+) -> Iterator[float]:
     """Yield the usual sizes of the values to which a constant is added, and of the sum.
 
-    For a zero, also yield the sizes of values that are combined or compared with it. Yield nothing if the constant is a
-    factor or stands alone.
+    For a zero, also yield the sizes of values that are combined or compared with it; for a reading, the size of `read`.
+    Yield nothing if the constant is a factor or stands alone. The result of a function has a unit of its own, so it
+    says nothing of an argument.
     """
     inner: ast.AST = node
     for around in source.ancestors(node):
         if isinstance(around, ast.BinOp) and isinstance(around.op, ast.Add | ast.Sub):
             other = around.right if around.left is inner else around.left
-            yield from filter(None, (sizes.known(operand.site, other),))
+            yield from filter(None, (read.get(ast.unparse(other)) or sizes.known(operand.site, other),))
         elif isinstance(around, ast.Compare) and operand.value != 0:
             return
         elif isinstance(around, ast.Compare):
             sides = [side for side in (around.left, *around.comparators) if side is not inner]
             yield from filter(None, (sizes.known(operand.site, side) for side in sides))
+            return
+        elif isinstance(around, ast.Call) and ast.unparse(around.func) not in BOUNDING:
             return
         elif not (isinstance(around, ast.UnaryOp) and isinstance(around.op, ast.USub)):
             added = isinstance(around, ast.AugAssign) and isinstance(around.op, ast.Add | ast.Sub)

@@ -14,7 +14,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, Obj, Value, join, join_all
-from tarl_lint.model import Flow, Operand, SiteId, Step
+from tarl_lint.model import Flow, Operand, SiteId, Span, Step
 from tarl_lint.queries.held_constants import Holding, Origin, Origins
 from tarl_lint.queries.operands import constructions, fills_an_object, sets_timing, timing_uses, uses
 
@@ -96,8 +96,15 @@ class Prober:
             if single is not None:
                 definition = self.texts[single.path].stretch(single.pos) if single.path else span
             setting = single.setting if single is not None else ""
-            found[expr.pos] = Operand(site, span, text.code(span), value, definition, setting)
+            several = self._places(origins) if single is None else ()
+            found[expr.pos] = Operand(site, span, text.code(span), value, definition, setting, several)
         return tuple(sorted(found.values(), key=lambda o: o.span))
+
+    def _places(self, origins: Collection[Origin]) -> tuple[Span, ...]:
+        """Return where constants are defined, in order; empty if one of them has no place in a file."""
+        if not all(origin.path for origin in origins):
+            return ()
+        return tuple(sorted({self.texts[one.path].stretch(one.pos) for one in origins}))
 
     def _origins(self, expr: ir.Expr, values: Mapping[ir.Pos, Value]) -> frozenset[Origin]:
         found = self.origins.of(expr, values.get(expr.pos))

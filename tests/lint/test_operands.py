@@ -120,6 +120,7 @@ def test_a_parameter_with_different_arguments_has_no_value(tmp_path):
     )
     (operand,) = analysis.operands(site(analysis, "y = gain * x"))
     assert (operand.code, operand.value, operand.definition) == ("gain", None, None)
+    assert [(span.line, span.column) for span in operand.definitions] == [(7, 10), (8, 10)]
 
 
 def test_a_value_that_messages_change_is_not_an_operand(tmp_path):

@@ -84,7 +84,7 @@ def test_an_entry_keeps_its_key_and_a_parameter_its_name(
     path.write_text(NODE.format(use=use))
     analysis = analyse([path], root=tmp_path)
     (operand,) = {one for step in analysis.sites for one in analysis.operands(step.site) if one.code == use}
-    place = defined(analysis, operand)
+    (place,) = defined(analysis, operand)
     assert place is not None
     assert (place.name, place.value) == (name, value)
     assert parameter(analysis, operand) == (name if use.startswith("self.") else "")
@@ -232,7 +232,7 @@ def test_a_number_from_the_environment_is_changed_at_its_default(
     path.write_text(text)
     analysis = analyse([path], root=tmp_path)
     (operand,) = {one for step in analysis.sites for one in analysis.operands(step.site) if one.code == "KP"}
-    place = defined(analysis, operand)
+    (place,) = defined(analysis, operand)
     assert place is not None
     assert place.name == "KP"
     order: Any = SimpleNamespace(
@@ -254,7 +254,7 @@ def test_an_environment_variable_without_a_number_as_default_has_no_definition(
     )
     analysis = analyse([path], root=tmp_path)
     used = {one for step in analysis.sites for one in analysis.operands(step.site) if one.code == "KP"}
-    assert all(defined(analysis, one) is None for one in used)
+    assert not any(defined(analysis, one) for one in used)
 
 
 HEAD = "base = 1.5\nodd = base if simulated else 2.0\n"

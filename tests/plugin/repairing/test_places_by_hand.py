@@ -11,7 +11,9 @@ import pytest
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.definitions import defined
+from pytest_tarl.patching.mutate import Mutation, redefinition
+from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.repairing.placing import MOST_NAMED, Placing
 from pytest_tarl.repairing.strategies import operands
 from pytest_tarl.searching.accept import Outcome
@@ -75,8 +77,8 @@ class Scripted:
         self.equated.append((candidate, other))
 
 
-def placing(folder: Path, edit: str = "auto") -> Placing:
-    (folder / "keeper.py").write_text(NODE)
+def placing(folder: Path, edit: str = "auto", text: str = NODE) -> Placing:
+    (folder / "keeper.py").write_text(text)
     order: Any = SimpleNamespace(
         analysis=analyse([Path("keeper.py")]),
         root=folder,
@@ -182,6 +184,66 @@ def test_guarded_changes_and_changes_at_the_use_are_not_moved(tmp_path: Path) ->
     of = placing(tmp_path, "use")
     assert of(tripled(of), trials) == tripled(of)  # type: ignore[arg-type]
     assert trials.ran == []
+
+
+HELPER = """\
+import rospy
+from std_msgs.msg import Float64
+
+
+def turn(angle, speed):
+    if angle > 0.0:
+        out.publish(Float64(data=speed))
+    else:
+        out.publish(Float64(data=-speed))
+
+
+def on_goal(msg):
+    turn(msg.data, {first})
+
+
+def on_pose(msg):
+    speed = {second}
+    turn(msg.data, speed)
+
+
+rospy.init_node("turner")
+out = rospy.Publisher("/out", Float64, queue_size=1)
+rospy.Subscriber("/goal", Float64, on_goal)
+rospy.Subscriber("/pose", Float64, on_pose)
+rospy.spin()
+"""
+
+
+def turned(folder: Path, first: str, second: str) -> tuple[Any, list[tuple[str, int, float]]]:
+    """Double the speed at both uses in the helper; return the text that was edited, and each new number's line."""
+    of = placing(folder, text=HELPER.format(first=first, second=second))
+    uses = [one for one in operands(of.order) if one.code == "speed" and one.site.qualname.endswith("turn")]
+    assert len(uses) == 2
+    trials = Scripted(lambda moved, seed: 9.5)
+    found: Any = of(Candidate(tuple(Mutation(one, 2.0) for one in uses), ALWAYS), trials)  # type: ignore[arg-type]
+    places = {one.place: redefinition(one) for one in found.mutations if one.place is not None}
+    return found, [(place.name, place.line, float(value)) for place, value in places.items()]
+
+
+def test_uses_of_a_parameter_are_moved_to_the_numbers_that_all_calls_pass(tmp_path: Path) -> None:
+    found, places = turned(tmp_path, "0.1", "0.1")
+    assert places == [("speed", 13, 0.2), ("speed", 17, 0.2)]
+    texts = rewrite(analyse([Path("keeper.py")]), found.mutations, ALWAYS, {}, {})
+    assert texts["keeper.py"] == HELPER.format(first="0.2", second="0.2")
+
+
+def test_calls_that_pass_different_numbers_are_scaled_alike(tmp_path: Path) -> None:
+    assert turned(tmp_path, "0.1", "0.3")[1] == [("speed", 13, 0.2), ("speed", 17, 0.6)]
+
+
+@pytest.mark.parametrize("second", ["0.0", "rospy.get_time()"])
+def test_a_parameter_stays_changed_at_its_uses_if_a_call_passes_no_number_to_scale(
+    tmp_path: Path, second: str
+) -> None:
+    of = placing(tmp_path, text=HELPER.format(first="0.1", second=second))
+    uses = [one for one in operands(of.order) if one.site.qualname.endswith("turn")]
+    assert not any(defined(of.order.analysis, one) for one in uses)
 
 
 @pytest.mark.parametrize("edit", ["auto", "definition"])

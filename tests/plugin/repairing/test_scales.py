@@ -16,6 +16,7 @@ from pytest_tarl.repairing.ledger import alike
 from pytest_tarl.repairing.scales import charts
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate
+from pytest_tarl.sensors import Sensor
 from tarl_lint.api import analyse
 from tarl_lint.model import Operand, SiteId, Span
 
@@ -60,10 +61,51 @@ def test_values_near_one_and_small_offsets_have_a_second_scale_but_gains_do_not(
         if step.code.split(" ")[0] in sizes
     }
     monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: recorded)
-    order: Any = SimpleNamespace(analysis=analysis)
+    order: Any = SimpleNamespace(analysis=analysis, fixture=SimpleNamespace(sensors=()))
     operands = [one for step in analysis.sites for one in analysis.operands(step.site)]
     found = {one.code: chart for one, chart in charts(order, operands).items()}
     assert found == {"ALPHA": SHARE, "ZERO_ANGLE": offset(0.3), "0.0": offset(0.1), "BIAS": offset(0.5)}
+
+
+RADIO = """\
+import rospy
+from std_msgs.msg import UInt16
+
+TRIM = 0
+
+
+def scaled(width):
+    return (width - 1500.0) / 600.0
+
+
+def on_stick(msg):
+    wheels.publish(scaled(msg.data + TRIM))
+
+
+rospy.init_node("radio")
+rospy.Subscriber("/stick", UInt16, on_stick)
+wheels = rospy.Publisher("/wheels", UInt16, queue_size=1)
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("topic", "field", "expected"),
+    [("/stick", "data", {"TRIM": offset(150.0)}), ("/other", "data", {}), ("/stick", "other", {})],
+)
+def test_a_zero_that_is_added_to_a_reading_has_the_scale_of_the_sensor(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, topic: str, field: str, expected: dict[str, Any]
+) -> None:
+    """The published value, about 0.1, has another unit, because a function makes it from the sum."""
+    (tmp_path / "radio.py").write_text(RADIO)
+    analysis = analyse([tmp_path / "radio.py"], root=tmp_path)
+    recorded = {str(step.site): 0.1 for step in analysis.sites if step.code.startswith("wheels")}
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: recorded)
+    sensor = Sensor("stick", topic=topic, field=field, low=1200, high=1800, bins=6)
+    order: Any = SimpleNamespace(analysis=analysis, fixture=SimpleNamespace(sensors=(sensor,)))
+    operands = [one for step in analysis.sites for one in analysis.operands(step.site)]
+    assert "TRIM" in {one.code for one in operands}
+    assert {one.code: chart for one, chart in charts(order, operands).items()} == expected
 
 
 def test_two_values_near_one_are_similar_if_their_distances_to_one_are_similar() -> None:
