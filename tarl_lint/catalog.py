@@ -105,6 +105,11 @@ BUFFERS: Final = frozenset(
      "tf2_ros.BufferInterface", "tf2_ros.buffer_interface.BufferInterface"]
 )  # fmt: skip
 TRANSFORM: Final = Fact("transform", "tf2.transform")  # the method `transform` of these classes
+BROADCASTERS: Final = frozenset(
+    ["tf.TransformBroadcaster", "tf.broadcaster.TransformBroadcaster", "tf2_ros.TransformBroadcaster",
+     "tf2_ros.transform_broadcaster.TransformBroadcaster", "tf2_ros.StaticTransformBroadcaster",
+     "tf2_ros.static_transform_broadcaster.StaticTransformBroadcaster"]
+)  # fmt: skip
 LOOKUP_WORDS: Final = (*sorted(LOOKUPS), ".transform(")  # words of look-ups in a file
 MARKER_SERVERS: Final = frozenset(
     [
@@ -140,6 +145,10 @@ CLASS_METHODS: Final[Mapping[str, Fact]] = {
     **{
         f"sched.scheduler.{name}": Fact("scheduled", "sched", callback=(2, "action"), extra=(3, "argument"))
         for name in ("enter", "enterabs")
+    },
+    **{
+        f"{broadcaster}.sendTransform": Fact("broadcast", f"{broadcaster}.sendTransform")
+        for broadcaster in sorted(BROADCASTERS)
     },
 }  # qualified method name → fact; METHODS holds the methods whose name alone identifies them
 

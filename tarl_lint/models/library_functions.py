@@ -154,6 +154,7 @@ def _name_class(ctx: Interpreter, qualified: str, made: Value, arguments: Argume
         markers
         or qualified in (catalog.IMAGE_TRANSPORT, "sched.scheduler")
         or qualified in catalog.BUFFERS
+        or (ctx.thorough and qualified in catalog.BROADCASTERS)
         or qualified.startswith(containers.NAMED)
         or qualified in catalog.RESERVING
         or (ctx.config.named and qualified.rpartition(".")[2][:1].isupper())

@@ -123,6 +123,36 @@ def test_a_parameter_with_different_arguments_has_no_value(tmp_path):
     assert [(span.line, span.column) for span in operand.definitions] == [(7, 10), (8, 10)]
 
 
+def test_a_value_that_a_loaded_number_limits_is_not_an_operand_but_the_number_is(tmp_path):
+    analysis = analysed(
+        tmp_path,
+        node="""
+        import json
+        import rospy
+        with open("settings.json") as file:
+            SETTINGS = json.load(file)
+        class Tracker:
+            def __init__(self, settings):
+                self.focal = settings["focal"]
+                self.most = settings["most"]
+            def estimate(self, height):
+                distance = self.focal / height
+                distance = min(distance, self.most)
+                return distance
+        tracker = Tracker(SETTINGS)
+        def on(msg):
+            out.publish(tracker.estimate(msg.data))
+        out = rospy.Publisher("b", F)
+        rospy.Subscriber("a", F, on)
+        """,
+    )
+    found = {(o.site.text, o.code, o.setting) for s in analysis.sites for o in analysis.operands(s.site)}
+    assert found == {
+        ("distance = self.focal / height", "self.focal", "focal"),
+        ("distance = min(distance, self.most)", "self.most", "most"),
+    }
+
+
 def test_a_value_that_messages_change_is_not_an_operand(tmp_path):
     analysis = analysed(
         tmp_path,

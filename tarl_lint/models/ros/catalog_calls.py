@@ -281,6 +281,7 @@ ACTIONS: Mapping[str, Callable[..., Value]] = {
     "service": services.service,
     "action": services.action,
     "transform": services.transform_look_up,
+    "broadcast": services.transform_broadcast,
     "call later": _timer,
     "done": _done,
     "thread": _thread,

@@ -159,3 +159,18 @@ def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
         return Value(told)
     ctx.ops.may_fail(ctx, told, "", it.frame)
     return UNKNOWN if it.name in catalog.WAITING_TRANSFORMS else Value(message.deps | given, message.pts)
+
+
+def transform_broadcast(ctx: Interpreter, it: Invocation) -> Value:
+    """Broadcast a transform, which is a sink for a program that runs the code if the setting `tf2` is on.
+
+    Reports have no flows into transforms: a transform is read with its age, and no robot moves because of it alone.
+    """
+    if not (ctx.config.tf2 and ctx.thorough):
+        return library_functions.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)
+    obj = recency.intern(ctx, "broadcaster", (it.fact.api,))
+    if not isinstance(obj.info, Publisher):
+        topic = "/tf_static" if "StaticTransform" in it.fact.api else "/tf"
+        owner = it.fact.api.removesuffix(f".{it.name}")
+        obj.info = Publisher({topic}, {"TFMessage"}, kind="transform", api=owner)
+    return publications.send(ctx, it, obj.info)
