@@ -57,7 +57,11 @@ def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
         return ()
     spans = (operand.definition,) if operand.definition is not None else operand.definitions
     places = [_defined_at(analysis, operand, span) for span in spans]
-    found = [place for place in places if place is not None and (len(spans) == 1 or place.value or operand.value == 0)]
+    found = [
+        place
+        for place in places
+        if place is not None and (len(spans) == 1 or place.value or operand.value == 0)
+    ]
     return tuple(found) if len(found) == len(spans) else ()
 
 

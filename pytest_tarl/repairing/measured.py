@@ -20,7 +20,7 @@ from pytest_tarl.instrumentation.trace import Floats
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.repairing.mission_pairs import Recorded, series
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repairing.separating import between_groups, separating
+from pytest_tarl.repairing.separating import between_groups, reaching, separating
 from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.plainness import Oddness, writing
 from pytest_tarl.symptoms.series import Pair
@@ -52,6 +52,7 @@ def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand
     A constant that is compared with a value, added to it or subtracted from it has the unit of this value, so it must
     change as the value did: constants next to values with the same factor change together, then each alone, then by the
     difference. A constant that multiplies or divides a value changes by the factor of the result, in either direction.
+    A threshold that only designed missions cross moves to where the drifted ones cross it, also if it is a literal.
     """
     changes = _changes(order, recorded)
     values = _values(order, recorded)
@@ -72,11 +73,27 @@ def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand
         if own is not None and own.ratio is not None and _multiplies(*found):
             scaled += [((operand, 1.0 / own.ratio),), ((operand, own.ratio),)]
     alone = [((operand, by),) for operand, by in beside]
-    every = [*_together(beside), *alone, *separated[:SEPARATED], *shifted, *scaled]
+    reached = [((operand, by),) for operand, by in _reaching(order, values, operands)]
+    every = [*_together(beside), *alone, *separated[:SEPARATED], *reached[:SEPARATED], *shifted, *scaled]
     fitting = [hint for hint in every if all(_sensible(by) for _, by in hint)]
     return list(dict.fromkeys(tuple((one, float(f"{by:.3g}")) for one, by in hint) for hint in fitting))[
         :MOST
     ]
+
+
+def _reaching(
+    order: Order, values: Mapping[str, Sequence[tuple[Floats, Floats]]], operands: Sequence[Operand]
+) -> Iterator[tuple[Operand, float]]:
+    """Yield the thresholds that only designed missions cross, each with the factor with which drifted ones do, too."""
+    for operand in dict.fromkeys(operands):
+        found = _place(order, operand)
+        if found is None or not operand.value or isinstance(operand.value, bool):
+            continue
+        for pairs in _compared(order, values, operand, *found):
+            value = float(operand.value)
+            by = reaching(value, pairs) if between_groups(value, pairs) is None else None
+            if by is not None:
+                yield operand, by
 
 
 def _first_uses(operands: Sequence[Operand]) -> Iterator[Operand]:
@@ -135,20 +152,29 @@ def _separating(
     For example, a node ignores positions that differ by more than its gate. After a slip of a wheel it ignores all of
     them, until the gate lies between the slip and the errors that it is meant for.
     """
+    for pairs in _compared(order, values, operand, source, node) if operand.value else ():
+        grouped = between_groups(float(operand.value or 0), pairs)
+        by = separating(float(operand.value or 0), pairs) if grouped is None else grouped
+        if by is not None:
+            yield by
+
+
+def _compared(
+    order: Order,
+    values: Mapping[str, Sequence[tuple[Floats, Floats]]],
+    operand: Operand,
+    source: Document,
+    node: ast.expr,
+) -> Iterator[Sequence[tuple[Floats, Floats]]]:
+    """Yield the values of each pair of missions with which a threshold is compared, for each place that makes them."""
     around = source.parents.get(node)
-    if not isinstance(around, ast.Compare) or len(around.ops) != 1 or not operand.value:
+    if not isinstance(around, ast.Compare) or len(around.ops) != 1:
         return
     other = around.left if node is not around.left else around.comparators[0]
     size = isinstance(other, ast.Call) and ast.unparse(other.func) in SIZES and len(other.args) == 1
     inner = other.args[0] if size and isinstance(other, ast.Call) else other
     for site in (*_made_at(order, operand, source, inner), *_receiving(order, source, inner)):
-        pairs = [
-            (np.abs(one), np.abs(other)) if size else (one, other) for one, other in values.get(site, ())
-        ]
-        grouped = between_groups(float(operand.value), pairs)
-        by = separating(float(operand.value), pairs) if grouped is None else grouped
-        if by is not None:
-            yield by
+        yield [(np.abs(one), np.abs(other)) if size else (one, other) for one, other in values.get(site, ())]
 
 
 def _change(pairs: Sequence[Pair]) -> Change:

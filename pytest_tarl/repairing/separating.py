@@ -71,5 +71,27 @@ def _gap(values: Floats) -> tuple[float, float] | None:
     return float(values[at]), float(values[at + 1])
 
 
+def reaching(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
+    """Return the factor of a threshold that lets the drifted missions cross it as the designed ones did, else None.
+
+    `pairs` are the values of designed and drifted missions, of shape (values,) each. In each pair, the designed values
+    lie on both sides of the threshold, and the drifted ones only on one side, the same in all pairs: for example, a
+    base stops a little before its goal, and the error never falls below the tolerance. The new threshold is `MARGIN`
+    beyond the drifted values that come nearest to it, in the mission in which they stay farthest.
+    """
+    sign, size = (1.0 if threshold > 0.0 else -1.0), abs(threshold)
+    if not pairs or not all(one.size and other.size for one, other in pairs):
+        return None
+    if not all(0.0 < _above(one, sign, size) < 1.0 for one, _ in pairs):
+        return None
+    drifted = [sign * other for _, other in pairs]
+    if all(float(one.min()) > size for one in drifted):
+        return max(float(one.min()) for one in drifted) * MARGIN / size
+    highest = min(float(one.max()) for one in drifted)
+    if all(float(one.max()) <= size for one in drifted) and highest > 0.0:
+        return highest / MARGIN / size
+    return None
+
+
 def _above(values: Floats, sign: float, size: float) -> float:
     return float(np.mean(sign * values > size))

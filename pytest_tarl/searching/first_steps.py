@@ -108,6 +108,8 @@ class FirstSteps:
             yield from tries.sweep(
                 factor, guard, [one for one in moving if not self._inert(one, guard, factor)]
             )
+            if not tries.proposed and not gains.anything(HALF * tries.goal.wanted):
+                yield from self._as_measured(ALWAYS if ALWAYS in tries.guards else guard)
         yield from self._between_failures(guard, moving)
         yield from self.crossing.across(guard, plateau.STEPS[:2])
         yield from self._narrow(guard, moving)

@@ -47,7 +47,9 @@ class Origins:
         if not value.deps or (value.pts and not loaded):
             return loaded
         if loaded and not self.graph.live.isdisjoint(value.deps):
-            return frozenset()  # `min(value, limit)` with a loaded limit is no constant if messages set the value
+            return (
+                frozenset()
+            )  # `min(value, limit)` with a loaded limit is no constant if messages set the value
         found = self._trace(value.deps, set())
         return loaded | found if found is not None else frozenset()
 

@@ -210,3 +210,46 @@ def test_a_threshold_of_a_received_number_stays_between_its_groups(
     found = [hint for hint in hints(order, recorded, operands(order)) if len(hint) == 1]
     by = [factor for ((one, factor),) in found if one.code == "CHARGER"]
     assert by == ([] if expected is None else [pytest.approx(expected / 26.5, abs=1e-3)])
+
+
+TURNING = """\
+import rospy
+from std_msgs.msg import Float64
+
+
+def on_heading(msg):
+    error = 1.0 - msg.data
+    if abs(error) < 0.01:
+        out.publish(Float64(data=0.0))
+    elif error < 3.0:
+        out.publish(Float64(data=0.5 * error))
+
+
+rospy.init_node("turning")
+out = rospy.Publisher("/out", Float64, queue_size=1)
+rospy.Subscriber("/heading", Float64, on_heading)
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("ends", "expected"), [((0.005, 0.06), [{"0.01": 7.5}]), ((0.06, 0.06), []), ((0.005, 0.002), [])]
+)
+def test_a_literal_tolerance_that_drifted_missions_never_reach_is_widened(
+    tmp_path: Path, ends: tuple[float, float], expected: list[dict[str, float]]
+) -> None:
+    (tmp_path / "turning.py").write_text(TURNING)
+    analysis = analyse([tmp_path / "turning.py"], root=tmp_path)
+    number = next(at for at, place in enumerate(plan(analysis).places) if ":error = " in place.id)
+
+    def trace(end: float) -> Any:
+        values = np.array([0.8, 0.4, 0.2, end, end])
+        steps = np.arange(values.size)
+        return SimpleNamespace(
+            site=np.full(values.size, number), event_step=steps, flow=values, reward=np.zeros(values.size)
+        )
+
+    order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=()))
+    recorded: Any = [(trace(ends[0]), trace(ends[1])) for _ in range(2)]
+    found = hints(order, recorded, operands(order))
+    assert [{operand.code: factor for operand, factor in hint} for hint in found] == expected

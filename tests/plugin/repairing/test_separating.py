@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pytest_tarl.repairing.separating import MARGIN, between_groups, separating
+from pytest_tarl.instrumentation.trace import Floats
+from pytest_tarl.repairing.separating import MARGIN, between_groups, reaching, separating
 
 DESIGNED = np.array([0.02, 0.05, 0.08, 0.03, 6.0])  # errors of a position, and a tag of the next track
 SLIPPED = np.array([0.02, 1.1, 1.15, 1.1, 4.9])
@@ -93,3 +94,41 @@ def test_without_two_groups_in_both_worlds_no_threshold_moves(
     threshold: float, pairs: list[tuple[np.ndarray, np.ndarray]]
 ) -> None:
     assert between_groups(threshold, pairs) is None
+
+
+FALLING = np.array([1.2, 0.6, 0.2, 0.05, 0.008])  # an angle that a base turns to its goal, rad
+STUCK, LESS_STUCK = np.array([1.2, 0.5, 0.06, 0.06]), np.array([0.9, 0.04, 0.04])
+
+
+def test_a_tolerance_that_only_designed_missions_reach_moves_beyond_where_drifted_ones_end() -> None:
+    by = reaching(0.01, [(FALLING, LESS_STUCK), (FALLING, STUCK)])
+    assert by == pytest.approx(0.06 * MARGIN / 0.01)
+    assert reaching(-0.01, [(-FALLING, -STUCK)]) == pytest.approx(0.06 * MARGIN / 0.01)
+
+
+def test_a_threshold_that_only_designed_missions_exceed_moves_below_what_drifted_ones_reach() -> None:
+    faded, more_faded = np.array([0.0, 20.0, 60.0]), np.array([0.0, 50.0])
+    by = reaching(100.0, [(np.array([0.0, 40.0, 130.0]), faded), (np.array([0.0, 120.0]), more_faded)])
+    assert by == pytest.approx(50.0 / MARGIN / 100.0)
+
+
+@pytest.mark.parametrize(
+    "pairs",
+    [
+        [],
+        [(FALLING, np.array([]))],
+        [(FALLING, FALLING)],  # drifted missions cross it, too
+        [(FALLING, STUCK), (FALLING, FALLING)],  # one of them does
+        [(STUCK, STUCK)],  # designed missions do not cross it
+        [(FALLING, STUCK), (FALLING, np.array([0.001, 0.002]))],  # on different sides of it
+    ],
+    ids=["no pair", "no value", "crossed", "crossed once", "never crossed", "different sides"],
+)
+def test_no_threshold_is_proposed_unless_only_the_designed_missions_cross_it(
+    pairs: list[tuple[Floats, Floats]],
+) -> None:
+    assert reaching(0.01, pairs) is None
+
+
+def test_values_of_the_other_sign_give_no_threshold() -> None:
+    assert reaching(0.5, [(np.array([-1.0, 1.0]), np.array([-2.0, -1.0]))]) is None
