@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from enum import IntEnum
 from math import inf, isclose, isfinite, pi
@@ -14,6 +15,13 @@ from tarl_lint.model import Operand
 UNTRIED = 2  # maximum number of untried named constants to try in place of a changed literal
 # values of the acceleration of gravity in programs, in m/s²
 GRAVITY = (9.8, 9.81, 9.82, 9.807, 9.8066, 9.80665)
+SIGNS = (
+    "sign",
+    "polarity",
+    "direction",
+    "invert",
+    "inverted",
+)  # words in names of constants that are 1 or -1
 ROUNDED = 6e-4  # relative error of 3.14 as a value of π, rounded up
 
 
@@ -21,8 +29,8 @@ class Oddness(IntEnum):
     """How unusual a change looks to a maintainer, from the least to the most unusual.
 
     `NAMED` scales a named constant, `INNER` a literal. `VARIABLE` scales a name that stands for several constants, so
-    the repair writes a new factor next to it. `OFFSET` adds a number or flips a sign. `NATURE` changes a constant of
-    nature.
+    the repair writes a new factor next to it. `OFFSET` adds a number, flips a sign, or scales a constant that is a sign.
+    `NATURE` changes a constant of nature.
     """
 
     NAMED = 0
@@ -96,6 +104,14 @@ def of_nature(operand: Operand) -> bool:
     return value in GRAVITY or any(isclose(value, times * pi, rel_tol=ROUNDED) for times in (1, 2))
 
 
+def is_sign(operand: Operand) -> bool:
+    """Return whether an operand is a named sign: `SIGN_LEFT = -1` may become 1, but not -1.4."""
+    if operand.literal or isinstance(operand.value, bool) or operand.value not in (1, -1):
+        return False
+    words = re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", operand.code)
+    return any(word.lower() in SIGNS for word in words)
+
+
 def kind(unit: Unit) -> Oddness:
     """Return the oddness of scaling the constant of a unit."""
     operand = unit.operands[0]
@@ -119,6 +135,8 @@ def _scaled(operand: Operand) -> Oddness:
     """Return the oddness of scaling an operand that is not 0."""
     if of_nature(operand):
         return Oddness.NATURE
+    if is_sign(operand):
+        return Oddness.OFFSET
     if operand.literal:
         return Oddness.INNER
     return Oddness.VARIABLE if operand.definition is None and not operand.setting else Oddness.NAMED
@@ -129,6 +147,8 @@ def _of(mutation: Mutation) -> Oddness:
     if isinstance(operand.value, bool) or isinstance(value, bool):
         return _scaled(operand)
     factor = value / operand.value if operand.literal and operand.value else value
+    if factor == -1.0 and is_sign(operand):
+        return Oddness.NAMED
     if operand.value == 0 or (factor < 0 and not of_nature(operand)):
         return Oddness.OFFSET
     return _scaled(operand)

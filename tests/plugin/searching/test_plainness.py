@@ -15,7 +15,7 @@ from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.plainness import Oddness, edges, oddness, writing
+from pytest_tarl.searching.plainness import Oddness, edges, is_sign, oddness, writing
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.sensors import Sensor
@@ -24,6 +24,7 @@ from tests.plugin.searching.test_search import operand
 
 OFFSET, INNER = operand(3, "0.0", 0.0), operand(4, "2.5", 2.5)
 NAMED = replace(operand(5, "GAIN", 2.0), definition=operand(1, "2.0", 2.0).span)
+SIGN = replace(operand(9, "self._sign_throttle", 1), definition=operand(2, "1", 1).span)
 POSITION = Sensor("pos", topic="/odom", field="x", low=0, high=10, bins=10)
 
 
@@ -41,11 +42,31 @@ POSITION = Sensor("pos", topic="/odom", field="x", low=0, high=10, bins=10)
             Oddness.NAMED,
         ),
         (Mutation(operand(6, "True", True), value=False), Oddness.INNER),
+        (Mutation(SIGN, 1.48), Oddness.OFFSET),
+        (Mutation(SIGN, -1.0), Oddness.NAMED),
+        (Mutation(replace(SIGN, code="designed"), 1.48), Oddness.NAMED),
+        (Mutation(replace(SIGN, value=2), 1.48), Oddness.NAMED),
     ],
 )
 def test_each_change_has_the_expected_readability_rank(mutation: Mutation, expected: Oddness) -> None:
     assert oddness([mutation]) == expected
     assert oddness([Mutation(NAMED, 2.2), mutation]) == expected
+
+
+@pytest.mark.parametrize(
+    ("code", "value", "sign"),
+    [
+        ("LEFT_SIGN", -1, True),
+        ("motorDirection", 1.0, True),
+        ("self.polarity", -1, True),
+        ("signal", 1, False),
+        ("resigned", 1, False),
+        ("direction", 2, False),
+        ("inverted", True, False),
+    ],
+)
+def test_a_constant_of_one_is_a_sign_if_its_name_says_so(code: str, value: float, sign: bool) -> None:
+    assert is_sign(replace(SIGN, code=code, value=value)) == sign
 
 
 def test_only_numeric_conditions_have_a_threshold() -> None:
