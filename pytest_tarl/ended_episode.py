@@ -27,6 +27,7 @@ class EndedEpisode:
     situation: Situation
     faults: Faults
     drifted: bool  # whether a drift or a fault is active; then a node that publishes nothing is not an error
+    changed: bool  # whether a candidate for a repair runs; with it, a watchdog may rightly be silent in a mission
     ros: Ros | None  # the ROS of the episode; None if the test did not use ROS
     drives_ros: bool  # whether nodes were started
     replay: Replay | None  # the recorded mission, if the episode replays one
@@ -72,7 +73,7 @@ class EndedEpisode:
         if self.drifted:
             return None  # this is not an error, because a drift may silence sensors and nodes
         problem = self.situation.problem() or self._unmet()
-        if problem is None and self._silent:
+        if problem is None and self._silent and not self.changed:
             problem = RecordingError(
                 "The node published nothing in the whole episode, so nothing can be learned: check that it receives "
                 f"the messages that it waits for (it subscribes to {self._heard})."

@@ -56,6 +56,7 @@ class Tarl:
         alone: bool = False,
         faults: Faults = NO_FAULTS,
         drifted: bool = False,
+        changed: bool = False,
         outputs: Outputs | None = None,
     ) -> None:
         self.seed = seed
@@ -68,6 +69,7 @@ class Tarl:
         self._faults = NO_FAULTS if replay is not None else faults
         # whether a drift is active; then a node that publishes nothing is not an error
         self._drifted = drifted or bool(self._faults.active)
+        self._changed = changed  # whether a candidate's text runs in place of a file
         self._outputs = outputs
         self._recorder = recorder
         self._imports = imports
@@ -336,6 +338,7 @@ class Tarl:
             situation=self._situation,
             faults=self._faults,
             drifted=self._drifted,
+            changed=self._changed,
             ros=self._ros,
             drives_ros=self.drives_ros,
             replay=self._replay,

@@ -117,6 +117,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         alone=EPISODE not in item.stash,
         faults=_faults(episode),
         drifted=episode.plan.drift is not None and not ini.value_of(item.config, "record"),
+        changed=bool(episode.plan.overlay),
         outputs=outputs if episode.plan.outputs else None,
     )
     data = {path: text for path, text in episode.plan.overlay.items() if is_data(path)}

@@ -30,6 +30,7 @@ def ended(**changed: Any) -> EndedEpisode:
         situation=SOUND,
         faults=NO_FAULTS,
         drifted=False,
+        changed=False,
         ros=HEARD,
         drives_ros=True,
         replay=None,
@@ -74,6 +75,7 @@ def test_an_episode_with_a_reward_and_a_node_that_publishes_is_usable() -> None:
         ({"faults": FAULTS, "ros": SILENT}, "the fault 'bias'"),
         ({"ros": SILENT}, "published nothing in the whole episode.*it subscribes to /joy, /odom"),
         ({"ros": DEAF}, "it subscribes to no topic"),
+        ({"situation": UNKNOWN, "changed": True, "ros": SILENT}, "Sensor 'x'"),
     ],
 )
 def test_the_first_reason_why_an_episode_is_unusable_is_reported(changed: dict[str, Any], words: str) -> None:
@@ -86,6 +88,7 @@ def test_the_first_reason_why_an_episode_is_unusable_is_reported(changed: dict[s
         {"requirements": Requirements(rewarding=True)},
         {"drifted": True, "ros": SILENT, "situation": UNKNOWN, "faults": FAULTS},
         {"ros": SILENT, "drives_ros": False},
+        {"ros": SILENT, "changed": True},
         {"ros": None},
         {"ros": None, "faults": FAULTS},
         {"faults": ACTIVE},
