@@ -50,19 +50,17 @@ class Place:
 def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
     """Return the definitions of an operand's constants; empty unless all are numbers away from the use.
 
-    A constant has several definitions if the operand is a parameter of a function with several calls, for example. A
-    zero among other numbers has no definition, because no factor changes it.
+    A constant has several definitions if the operand is a parameter of a function with several calls, for example. Zeros
+    among other numbers are left out, because a factor does not change them.
     """
     if operand.literal:
         return ()
     spans = (operand.definition,) if operand.definition is not None else operand.definitions
-    places = [_defined_at(analysis, operand, span) for span in spans]
-    found = [
-        place
-        for place in places
-        if place is not None and (len(spans) == 1 or place.value or operand.value == 0)
-    ]
-    return tuple(found) if len(found) == len(spans) else ()
+    found = [_defined_at(analysis, operand, span) for span in spans]
+    places = tuple(place for place in found if place is not None)
+    if len(places) < len(spans):
+        return ()
+    return tuple(place for place in places if place.value or operand.value == 0)
 
 
 def _defined_at(analysis: Analysis, operand: Operand, span: Span) -> Place | None:

@@ -64,6 +64,7 @@ class Placing:
             stays = mutation.operand.literal or mutation.form is not None
             places = () if stays else self._places(mutation, candidate, trials)
             mutations += _at(mutation, places) or [mutation]
+        mutations = _united(mutations)
         values: dict[Place, object] = {}
         for mutation in mutations:
             if mutation.place and values.setdefault(mutation.place, redefinition(mutation)) != redefinition(
@@ -180,6 +181,29 @@ def _same_constant(one: Mutation, other: Mutation) -> bool:
 def _at(mutation: Mutation, places: Sequence[Place]) -> list[Mutation]:
     """Return a mutation once for each place."""
     return [replace(mutation, place=place) for place in places]
+
+
+def _united(mutations: Sequence[Mutation]) -> list[Mutation]:
+    """Unite the change of a literal with a factor on its use: `rate = 0.1` and `3 * rate` become `rate = 0.3`."""
+    by_line: dict[tuple[str, int, object], Mutation] = {
+        (one.place.path, one.place.line, one.place.value): one for one in mutations if one.place is not None
+    }
+    changed: dict[Place, float] = {}
+    kept: list[Mutation] = []
+    for mutation in mutations:
+        operand = mutation.operand
+        key = (operand.span.path, operand.span.line, operand.value)
+        use = by_line.get(key) if operand.literal and operand.value and mutation.form is None else None
+        if use is None or use.place is None or isinstance(operand.value, bool):
+            kept.append(mutation)
+        else:
+            changed[use.place] = float(mutation.value) / float(operand.value or 1)
+    return [
+        replace(one, value=one.value * changed[one.place])
+        if one.place is not None and one.place in changed
+        else one
+        for one in kept
+    ]
 
 
 def _importers(root: Path, place: Place, analysed: set[str]) -> list[str]:

@@ -21,6 +21,7 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair
 from pytest_tarl.sensors import Sensor
 from tarl_lint.api import analyse
+from tarl_lint.model import Operand
 
 NODE = """\
 import rospy
@@ -237,11 +238,23 @@ def test_calls_that_pass_different_numbers_are_scaled_alike(tmp_path: Path) -> N
     assert turned(tmp_path, "0.1", "0.3")[1] == [("speed", 13, 0.2), ("speed", 17, 0.6)]
 
 
-@pytest.mark.parametrize("second", ["0.0", "rospy.get_time()"])
-def test_a_parameter_stays_changed_at_its_uses_if_a_call_passes_no_number_to_scale(
-    tmp_path: Path, second: str
-) -> None:
-    of = placing(tmp_path, text=HELPER.format(first="0.1", second=second))
+def test_a_call_that_passes_zero_stays_as_it_is(tmp_path: Path) -> None:
+    assert turned(tmp_path, "0.1", "0.0")[1] == [("speed", 13, 0.2)]
+
+
+def test_a_changed_number_and_a_factor_on_its_use_become_one_change(tmp_path: Path) -> None:
+    of = placing(tmp_path, text=HELPER.format(first="0.0", second="0.1"))
+    uses = [one for one in operands(of.order) if one.code == "speed" and one.site.qualname.endswith("turn")]
+    span = next(one for one in uses[0].definitions if one.line == 17)
+    number = Operand(uses[0].site, span, "0.1", 0.1, span)
+    changed = (Mutation(number, 0.05), *(Mutation(one, 6.0) for one in uses))
+    found: Any = of(Candidate(changed, ALWAYS), Scripted(lambda moved, seed: 9.5))  # type: ignore[arg-type]
+    texts = rewrite(of.order.analysis, found.mutations, ALWAYS, {}, {})
+    assert texts["keeper.py"] == HELPER.format(first="0.0", second="0.3")
+
+
+def test_a_parameter_stays_changed_at_its_uses_if_a_call_passes_no_number(tmp_path: Path) -> None:
+    of = placing(tmp_path, text=HELPER.format(first="0.1", second="rospy.get_time()"))
     uses = [one for one in operands(of.order) if one.site.qualname.endswith("turn")]
     assert not any(defined(of.order.analysis, one) for one in uses)
 
