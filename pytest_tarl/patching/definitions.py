@@ -50,8 +50,8 @@ class Place:
 def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
     """Return the definitions of an operand's constants; empty unless all are numbers away from the use.
 
-    A constant has several definitions if the operand is a parameter of a function with several calls, for example. Zeros
-    among other numbers are left out, because a factor does not change them.
+    A constant has several definitions if the operand is a parameter of a function with several calls, for example.
+    Zeros among other numbers are left out, because a factor does not change them.
     """
     if operand.literal:
         return ()

@@ -105,8 +105,8 @@ def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
 
     The unrepaired program ran in this test without an error, so any error now (such as a reward that is not a number)
     is due to the candidate. A node that becomes silent is no error: a watchdog with a higher threshold may rightly
-    publish nothing in a mission, and its reward tells whether it should. After an error or a crash of the node, the reward so far is meaningless. The total
-    is then at most that of the worst recorded episode.
+    publish nothing in a mission, and its reward tells whether it should. After an error or a crash of the node, the
+    reward so far is meaningless. The total is then at most that of the worst recorded episode.
     """
     try:
         ended = run()

@@ -29,8 +29,8 @@ class Oddness(IntEnum):
     """How unusual a change looks to a maintainer, from the least to the most unusual.
 
     `NAMED` scales a named constant, `INNER` a literal. `VARIABLE` scales a name that stands for several constants, so
-    the repair writes a new factor next to it. `OFFSET` adds a number, flips a sign, or scales a constant that is a sign.
-    `NATURE` changes a constant of nature.
+    the repair writes a new factor next to it. `OFFSET` adds a number, flips a sign, or scales a constant that is a
+    sign. `NATURE` changes a constant of nature.
     """
 
     NAMED = 0
