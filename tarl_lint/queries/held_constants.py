@@ -43,15 +43,14 @@ class Origins:
             return frozenset()
         if value is None:
             return frozenset()
-        loaded = self._loaded(value) if value.pts else frozenset()
-        if not value.deps or (value.pts and not loaded):
-            return loaded
-        if loaded and not self.graph.live.isdisjoint(value.deps):
-            return (
-                frozenset()
-            )  # `min(value, limit)` with a loaded limit is no constant if messages set the value
+        if value.pts:
+            # `min(value, limit)` with a loaded limit is no constant if messages set the value
+            constant = self.graph.live.isdisjoint(value.deps)
+            return self._loaded(value) if constant else frozenset()
+        if not value.deps:
+            return frozenset()
         found = self._trace(value.deps, set())
-        return loaded | found if found is not None else frozenset()
+        return frozenset(found) if found is not None else frozenset()
 
     def _loaded(self, value: Value) -> frozenset[Origin]:
         """Return the origin of a value loaded from a file; empty for a table, of which only parts are used."""
