@@ -114,14 +114,21 @@ def _given(launch: Launch, node: LaunchedNode) -> Given:
     found = parameters(launch, node, joined(node.namespace, node.name) if node.name else node.namespace + "/")
     argv = plain(node.arguments, for_ros2=launch.ros2)
     known = argv if not any("$(" in one for one in argv) else ()
-    shared = {_rooted(name, node): value for name, value in found.shared.items()}
-    private = {_rooted(name, node): value for name, value in found.private.items()}
+    named = {_rooted(name, node): value for name, value in found.shared.items()}
+    # a group's `<rosparam ns="NODE">` names private parameters of the node by absolute names
+    below = f"/{node.name}/" if node.name else "//"
+    shared = {name: value for name, value in named.items() if not name.startswith(below)}
+    private = {
+        **{name.removeprefix(below): value for name, value in named.items() if name.startswith(below)},
+        **{_rooted(name, node): value for name, value in found.private.items()},
+    }
+    valueless = tuple(_rooted(name, node).removeprefix(below) for name in found.valueless)
     note = found.note
     if known:
         note = note.replace(
             "parameters of", "parameters and arguments of" if private or shared else "arguments of", 1
         )
-    return replace(found, shared=shared, private=private, argv=known, note=note)
+    return replace(found, shared=shared, private=private, valueless=valueless, argv=known, note=note)
 
 
 def parameters(launch: Launch, node: LaunchedNode, full_name: str) -> Given:

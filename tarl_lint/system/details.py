@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Final
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from typing import Any, Final
 
 from tarl_lint.files import shown
 from tarl_lint.report.line import Glyphs
 from tarl_lint.system.model import Instance, Role
 from tarl_lint.workspace.bounded_files import UnreadableError
+from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.launch_parameters import leaves, stated
 from tarl_lint.workspace.parameter_yaml import NoYamlError
 
 _OFFERS: Final[Mapping[Role, str]] = {"serves": "serves", "calls": "calls", "performs": "action server of"}
 
 
-def details(instance: Instance, glyphs: Glyphs) -> str:
+def details(instance: Instance, shared: Sequence[Setting], glyphs: Glyphs) -> str:
     """Return the remappings, services and actions of a node, with names as launched, and its number of parameters.
 
-    Returns "" if it has none.
+    `shared` are the settings of the launch file outside its nodes. Returns "" if there is nothing to say.
     """
-    return "; ".join((*_remaps(instance, glyphs), *_parameters(instance), *_offers(instance)))
+    return "; ".join((*_remaps(instance, glyphs), *_parameters(instance, shared), *_offers(instance)))
 
 
 def _remaps(instance: Instance, glyphs: Glyphs) -> Iterator[str]:
@@ -29,19 +31,26 @@ def _remaps(instance: Instance, glyphs: Glyphs) -> Iterator[str]:
         yield f"remaps {', '.join(named)}"
 
 
-def _parameters(instance: Instance) -> Iterator[str]:
-    settings = instance.node.settings
-    if not settings:
-        return
-    files = ", ".join(dict.fromkeys(shown(one.file) for one in settings))
+def _parameters(instance: Instance, shared: Sequence[Setting]) -> Iterator[str]:
+    above = f"{instance.name}/"
+    own = instance.node.settings
+    files = dict.fromkeys(shown(one.file) for one in own)
+    values: dict[str, Any] = {}
     try:
-        values = {one.name: one.value for one in stated(settings, instance.name)}
+        for one in stated(own, instance.name):
+            values[f"{above}{one.name[1:].lstrip('/')}" if one.name.startswith("~") else one.name] = one.value
     except (NoYamlError, UnreadableError):
-        yield f"parameters from {files}"
+        yield f"parameters from {', '.join(files)}"
         return
+    for setting in shared:
+        with suppress(NoYamlError, UnreadableError):  # another part of the report states the problem
+            named = {one.name: one.value for one in stated((setting,), instance.name)}
+            inside = {name: value for name, value in named.items() if name.startswith(above)}
+            values.update(inside)
+            files.update(dict.fromkeys([shown(setting.file)] if inside else []))
     count = sum(1 for _ in leaves(values))
     if count:
-        yield f"{count} {'parameter' if count == 1 else 'parameters'} from {files}"
+        yield f"{count} {'parameter' if count == 1 else 'parameters'} from {', '.join(files)}"
 
 
 def _offers(instance: Instance) -> Iterator[str]:

@@ -82,7 +82,7 @@ def _table(system: System, glyphs: Glyphs) -> Iterator[Line]:
     for number, row in enumerate(counted):
         text = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False)).rstrip()
         yield ((text, "quiet" if not number or len(row) < len(HEADINGS) else ""),)
-        more = details(system.instances[number - 1], glyphs) if number else ""
+        more = details(system.instances[number - 1], system.settings, glyphs) if number else ""
         if more:
             yield ((f"  {more}", "quiet"),)
 

@@ -79,6 +79,12 @@ class _Reader:
                 hides = element.tag in ("include", "group", "node")
                 package = package_in(element.get("file", "")) if element.tag == "include" else ""
                 self._problem(element, place, f"<{element.tag}>: {reason}", hides=hides, package=package)
+                if (
+                    element.tag == "param"
+                    and "value" in element.attrib
+                    and "$(" not in element.get("name", "")
+                ):
+                    place = self._set(place, _unset(element, place, place.namespace))
 
     def _element(self, element: Element, place: _Place, unsure: str) -> _Place:
         """Read one element; return the context of the following ones. `unsure` is its own unknown condition."""
@@ -96,9 +102,14 @@ class _Reader:
             self._node(element, place)
         elif element.tag in ("param", "rosparam"):
             setting = self._setting(element, place, place.namespace, unsure)
-            if setting is not None and setting.name.startswith("~"):
-                return replace(place, private=(*place.private, setting))
-            self.settings += [setting] if setting is not None else []
+            return place if setting is None else self._set(place, setting)
+        return place
+
+    def _set(self, place: _Place, setting: Setting) -> _Place:
+        """Add a parameter outside a node; return the context of the following elements."""
+        if setting.name.startswith("~"):
+            return replace(place, private=(*place.private, setting))
+        self.settings.append(setting)
         return place
 
     def _argument(self, element: Element, place: _Place, unsure: str) -> _Place:
@@ -158,8 +169,7 @@ class _Reader:
             except SymbolicError as reason:
                 self._problem(one, place, f"<{one.tag}> of {name}: {reason}")
                 if one.tag == "param" and "$(" not in one.get("name", ""):
-                    unset = _parameter("~", one.get("name", "").lstrip("/"))
-                    settings.append(Setting(unset, place.scope.file, unknown=True))
+                    settings.append(_unset(one, place, "~"))
         arguments = self._name(element, "args", place)
         given = ros1(arguments)
         settings += [Setting(one, place.scope.file, yaml=value) for one, value in given.parameters]
@@ -282,6 +292,14 @@ def _overridden(node: LaunchedNode, later: Iterable[Setting]) -> LaunchedNode:
     within = (one for one in later if node.name and f"{one.name}/".startswith(f"{full}/"))
     own = (replace(one, name=f"~{one.name[len(full) :].lstrip('/')}") for one in within)
     return replace(node, settings=(*node.settings, *own))
+
+
+def _unset(param: Element, place: _Place, above: str) -> Setting:
+    """Return a parameter whose value is known only on the robot."""
+    name = param.get("name", "")
+    return Setting(
+        _parameter(above, name.lstrip("/") if above == "~" else name), place.scope.file, unknown=True
+    )
 
 
 def _perhaps(text: str, condition: str) -> str:

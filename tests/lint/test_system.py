@@ -361,6 +361,17 @@ def test_the_row_of_a_node_is_followed_by_its_remappings_parameters_services_and
     )
 
 
+def test_parameters_that_a_group_names_by_the_node_are_counted(workspace, capsys):
+    write(workspace, {"arm/config/limits.yaml": "pid: {p: 1.0, i: 0.1}\n"})
+    body = (
+        '<group ns="left"><rosparam file="$(find arm)/config/limits.yaml" ns="one"/><param name="one/speed" value="1"/>'
+        '<rosparam file="$(find arm)/config/limits.yaml" ns="oneself"/><rosparam file="absent.yaml" ns="one"/>'
+        '<node pkg="arm" type="relay.py" name="one"/></group>'
+    )
+    _, out, _ = run(capsys, "--launch", launched(workspace, body))
+    assert "\n  3 parameters from arm/config/limits.yaml, arm/launch/a.launch\n" in out
+
+
 def test_parameters_whose_file_cannot_be_read_are_not_counted(workspace, capsys):
     write(workspace, {"arm/config/limits.yaml": "pid: [1.0\n"})
     body = (

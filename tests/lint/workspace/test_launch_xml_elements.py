@@ -98,6 +98,18 @@ def test_remappings_and_parameters_apply_to_the_nodes_after_them(package):
     assert [(one.name, one.value) for one in found.settings] == [("/r", 3)]
 
 
+def test_a_parameter_beside_a_node_may_be_known_only_on_the_robot(package):
+    found = launched(
+        package,
+        f"""<launch><arg name="none"/><param name="drive/a" value="$(arg none)"/><param name="~b" value="$(env NONE)"/>
+        <param name="robot_description" command="xacro x"/><param name="$(arg none)" value="1"/>
+        {NODE.format("")}</launch>""",
+    )
+    assert [(one.name, one.unknown) for one in found.settings] == [("/drive/a", True)]
+    assert settings(found.nodes[0]) == {"~b": "unknown"}
+    assert len(found.problems) == 4
+
+
 def test_an_element_of_a_launch_file_counts_only_if_its_condition_holds(package):
     found = launched(
         package,

@@ -282,6 +282,26 @@ def test_a_node_gets_the_parameters_of_its_enclosing_namespaces(launches: Path) 
     assert given(launches / "node.py").shared == {"/everywhere": 1, "/side": "l"}
 
 
+def test_parameters_that_a_group_names_by_the_node_are_private_to_it(launches: Path, start: Start) -> None:
+    text = """
+        <launch>
+          <arg name="mode"/>
+          <group ns="left">
+            <rosparam file="$(find arm_base)/config/arm.yaml" ns="other_name"/>
+            <param name="other_name/rate" value="5"/><param name="other_name/mode" value="$(arg mode)"/>
+            <param name="other_name_2/rate" value="6"/>
+            <node pkg="arm_base" type="node.py" name="other_name"><param name="kp" value="2.0"/></node>
+          </group>
+        </launch>
+        """
+    write(launches, {"launch/one.launch": text})
+    workspace.forget()
+    found = given(launches / "node.py")
+    assert (found.shared, found.valueless) == ({"/other_name_2/rate": 6}, ("mode",))
+    namespace = started(start, launches, NODE1, found)
+    assert namespace["found"] == {"kp": 2.0, "limits/top": 3, "limits/low": 1, "rate": 5}
+
+
 def test_if_launch_files_conflict_only_parameters_with_equal_values_are_set_and_a_note_is_given(
     launches: Path,
 ) -> None:
