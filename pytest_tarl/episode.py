@@ -327,6 +327,11 @@ class Tarl:
         """Return notes for the user on a usable episode; complete only after `close`."""
         return self._ended().notes()
 
+    @property
+    def starting_notes(self) -> tuple[str, ...]:
+        """Return notes for the user on how the nodes were started."""
+        return self._ros.notes if self._ros is not None else ()
+
     def problem(self) -> TarlError | None:
         """Return why the episode is unusable (no reward, silent sensor, silent node), or None if it is usable."""
         return self._ended().problem()

@@ -194,6 +194,15 @@ def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestRepor
         report.longrepr = printable(account(error, item.path))
 
 
+def add_notes(item: pytest.Item, report: pytest.TestReport) -> None:
+    """Add to the report of a failed plain run how its nodes were started; other runs show this in their summary."""
+    episode = getattr(item, "funcargs", {}).get("tarl")
+    if report.failed and report.when == "call" and episode is not None and EPISODE not in item.stash:
+        notes = [f"note: {one}" for one in dict.fromkeys(episode.starting_notes)]
+        if notes:
+            report.sections.append(("TARL", "\n".join(notes)))
+
+
 def in_the_node(excinfo: pytest.ExceptionInfo[BaseException]) -> pytest.ExceptionInfo[BaseException]:
     """Return the node's exception that caused a NodeError, so that a debugger stops in the node's code."""
     from pytest_tarl.ros.accounts import of_node

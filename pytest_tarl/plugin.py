@@ -106,9 +106,10 @@ def pytest_runtest_makereport(
         and (item.get_closest_marker("tarl") is not None or _ours(call.excinfo.value))
         and not missing_packages()
     ):
-        from pytest_tarl.item_episode import in_the_node, keep_error
+        from pytest_tarl.item_episode import add_notes, in_the_node, keep_error
 
         keep_error(item, call.excinfo.value, report)
+        add_notes(item, report)
         if item.config.getoption("usepdb", False):
             call.excinfo = in_the_node(call.excinfo)
         if call.when == "setup" and isinstance(call.excinfo.value, pytest.Collector.CollectError):

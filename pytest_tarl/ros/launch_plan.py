@@ -76,7 +76,7 @@ class LaunchPlan:
     notes: tuple[str, ...] = ()
 
     def chosen(self, only: Collection[str] | None, replaced: Collection[str]) -> tuple[Launched, ...]:
-        """Return the nodes to start or to replace.
+        """Return the nodes to start or to replace; a node in `replaced` need not be in `only`.
 
         Raise SettingsError for an unknown name, for a node in `only` that can be neither started nor replaced, and for
         two nodes that a launch never starts together.
@@ -84,7 +84,7 @@ class LaunchPlan:
         for argument, names in (("only", only or ()), ("replace", replaced)):
             for name in names:
                 self._check(argument, name)
-        wanted = [one for one in self.nodes if only is None or named(one, only)]
+        wanted = [one for one in self.nodes if only is None or named(one, (*only, *replaced))]
         for one in wanted:
             if named(one, replaced):
                 continue

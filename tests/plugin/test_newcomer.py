@@ -166,3 +166,24 @@ def test_a_node_that_the_test_does_not_drive_is_reported(tank: pytest.Pytester) 
     tank.makepyfile(idle=(tank.path / "keeper.py").read_text())
     changed(tank, "test_tank", 'nodes=["keeper.py"]', 'nodes=["idle.py"]')
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*no step of /level → /valve was executed*"])
+
+
+LAUNCHED = """
+    from pytest import mark
+    from pytest_tarl import Sensor
+
+    @mark.tarl(nodes=["keeper.py"], sensors=[Sensor("level", topic="/level", field="data", low=0, high=1, bins=2)])
+    def test_fills(tarl):
+        tarl.launch("tank.launch")
+        assert tarl.bus.latest("/valve") is not None
+    """
+
+
+def test_a_failed_test_names_the_nodes_that_could_not_be_launched(tank: pytest.Pytester) -> None:
+    nodes = '<node pkg="tank" type="keeper.py" name="keeper"/><node pkg="sick" type="driver" name="laser"/>'
+    (tank.path / "package.xml").write_text("<package><name>tank</name></package>")
+    (tank.path / "tank.launch").write_text(f"<launch>{nodes}</launch>")
+    tank.makepyfile(test_launched=LAUNCHED)
+    told = tank.runpytest("test_launched.py")
+    told.assert_outcomes(failed=1)
+    told.stdout.fnmatch_lines(["*note: tank.launch also starts nodes that did not run*: /laser (*"])

@@ -237,6 +237,16 @@ def test_a_function_of_the_test_replaces_a_node_under_its_names(tarl: Tarl) -> N
     assert heard == [(0.0, 300.0), (0.2, 300.0), (0.4, 300.0)]
 
 
+def test_replaced_nodes_need_not_be_named_in_only(tarl: Tarl) -> None:
+    def laser(node: Any) -> None:
+        node.every(0.2, lambda: node.publish("scan", message_type("std_msgs/Float64")(1.0)))
+
+    tarl.launch("robot.launch", only=["first"], replace={"laser": laser})
+    tarl.step(0.1)
+    assert tarl.bus.latest("/r1/middle").data == 30.0
+    assert tarl.bus.latest("/end") is None
+
+
 def test_a_function_can_replace_a_python_node_and_its_errors_are_errors_of_the_test(tarl: Tarl) -> None:
     def second(node: Any) -> None:
         node.every(1.0, lambda: 1 / 0)
