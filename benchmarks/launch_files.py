@@ -165,6 +165,8 @@ def _of_answer(answer: Mapping[str, Any], two: bool) -> Iterator[Fact]:
 def _of_launch(launch: Launch, two: bool) -> Iterator[Fact]:
     parameters: dict[str, Any] = {}
     for setting in launch.settings:
+        if setting.unknown and setting.value is None and setting.yaml is None:
+            continue  # only the robot knows the value, so roslaunch does not get it either
         parameters.update(_flat(setting.name, _content(setting)))
     for node in launch.nodes:
         name = _node(node.package, node.executable, node.namespace, node.name)

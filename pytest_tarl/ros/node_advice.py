@@ -12,6 +12,7 @@ from typing import Final, TypeGuard
 
 from pytest_tarl.errors import text_of
 from pytest_tarl.ros import blame
+from pytest_tarl.ros.absent_names import caught_import, removed_name
 from pytest_tarl.ros.launch_sources import Given, arguments_from, parameter_from
 from pytest_tarl.ros.missing_modules import PYTHON_2, interface_advice, module_advice
 from pytest_tarl.ros.standins import STANDINS
@@ -30,6 +31,9 @@ _INTEGER_NEEDED = re.compile(
     r"^slice indices must be integers|indices must be integers or slices, not float|only integers, slices"
 )
 _LACKING: Final = re.compile(r"^module '([\w.]+)' has no attribute ")
+_NO_SERVICE: Final = re.compile(r"^service \[(.+)\] unavailable")
+_NO_FRAME: Final = re.compile(r'"([^"]+)" passed to lookupTransform argument does not exist')
+_ABSENT_PARTNERS: Final = ("ServiceException", "TransformException", "LookupException")
 _NONE: Final = re.compile(r"\bNone(Type)?\b")
 _WORD: Final = 4  # minimum length of a word that can resemble a parameter's name
 _SHOWN: Final = 3  # maximum number of parameters in one sentence
@@ -50,8 +54,11 @@ def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str
     if isinstance(error, ImportError):
         return _of_import(error)
     lacking = _LACKING.search(text) if isinstance(error, AttributeError) else None
-    if lacking is not None and lacking[1] in STANDINS:
-        return _of_name(lacking[1])
+    if lacking is not None:
+        return _of_name(lacking[1]) if lacking[1] in STANDINS else removed_name(lacking[1], text)
+    if isinstance(error, NameError):
+        own = _of_program(error)
+        return caught_import(error, own[-1].tb_frame.f_code.co_filename) if own else ""
     if isinstance(error, KeyError):
         return _of_lookup(error, given)
     if type(error).__name__ == "ParameterUninitializedException" and error.args:
@@ -59,9 +66,17 @@ def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str
     if isinstance(error, TypeError | IndexError) and _INTEGER_NEEDED.search(text) and _divides(error):
         return "In Python 3, / of two integers gives a float: write // where Python 2 rounded down."
     if isinstance(error, SystemExit | IndexError):
-        return _of_arguments(error, given)
+        exits = isinstance(error, SystemExit)
+        return _of_arguments(error, given) or (_of_unset(unset, "") if exits and unset else "")
+    return _of_values(error, text, unset)
+
+
+def _of_values(error: BaseException, text: str, unset: Sequence[str]) -> str:
+    """Return advice for a node that lacks values, a partner, or an argument of a library; else ""."""
     if unset and isinstance(error, TypeError | AttributeError | ValueError) and _NONE.search(text):
         return _of_unset(unset, _line_of(error))
+    if type(error).__name__ in _ABSENT_PARTNERS:
+        return _of_partner(text)
     if isinstance(error, TypeError) and "required positional argument: 'Loader'" in text:
         return (
             "PyYAML 6 has no default for it: call yaml.safe_load in the node, or run pip install 'PyYAML<6' in the "
@@ -78,13 +93,26 @@ def _of_import(error: ImportError) -> str:
         return ""
     if error.name in STANDINS:
         return _of_name(error.name)
-    # a module without a path is a folder without Python files
-    return "" if error.path else interface_advice(error.name)
+    # a module without a path is a folder without Python files, or a part of Python itself
+    return interface_advice(error.name) or removed_name(error.name, text_of(error))
 
 
 def _of_name(module: str) -> str:
     """Return advice for a name that a stand-in lacks."""
     return f"The in-process ROS lacks this name of {module}: put a replacement into the module in the test."
+
+
+def _of_partner(text: str) -> str:
+    """Return advice for a service or a frame that neither a node nor the test provides."""
+    service, frame = _NO_SERVICE.search(text), _NO_FRAME.search(text)
+    if service is not None:
+        return f'No node offers it: offer it in the test with tarl.bus.serve("{service[1]}", type, handler).'
+    if frame is not None:
+        return (
+            f"No node sends a transform with the frame {frame[1]}: publish one on /tf_static or /tf in the test "
+            "(tf2_msgs/TFMessage)."
+        )
+    return ""
 
 
 def _of_unset(unset: Sequence[str], line: str) -> str:

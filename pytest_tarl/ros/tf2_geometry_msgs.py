@@ -7,11 +7,13 @@ from copy import deepcopy
 from typing import Any
 
 from pytest_tarl.ros.missing import refuse
+from pytest_tarl.ros.tf2_kdl import transform_to_kdl
 from pytest_tarl.ros.transforms import Rigid, multiply, rotate
 
 __all__ = [
-    "do_transform_point", "do_transform_pose", "do_transform_pose_stamped", "do_transform_pose_with_covariance_stamped",
-    "do_transform_vector3", "do_transform_wrench",
+    "do_transform_point", "do_transform_polygon_stamped", "do_transform_pose", "do_transform_pose_stamped",
+    "do_transform_pose_with_covariance_stamped", "do_transform_vector3", "do_transform_wrench", "from_msg_msg",
+    "to_msg_msg", "transform_covariance", "transform_to_kdl",
 ]  # fmt: skip
 
 
@@ -69,19 +71,30 @@ def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
     return moved
 
 
-def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
-    """Return a PoseWithCovarianceStamped in the transform's frame; the covariance is rotated too."""
+def transform_covariance(cov_in: Any, transform: Any) -> Any:
+    """Return the 36 values of a covariance of poses, rotated: an array for an array, else a list."""
     import numpy as np
 
-    moved = _in_frame(pose, transform)
-    rigid = _rigid(transform)
-    _move_pose(moved.pose.pose, rigid)
-    turn = np.array([rotate(rigid.rotation, axis) for axis in ((1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0))]).T
+    rotation = _rigid(transform).rotation
+    turn = np.array([rotate(rotation, axis) for axis in ((1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0))]).T
     both = np.kron(np.eye(2), turn)
-    covariance = both @ np.asarray(pose.pose.covariance, dtype=float).reshape(6, 6) @ both.T
-    moved.pose.covariance = (
-        covariance.ravel() if hasattr(pose.pose.covariance, "dtype") else covariance.ravel().tolist()
-    )
+    turned = (both @ np.asarray(cov_in, dtype=float).reshape(6, 6) @ both.T).ravel()
+    return turned if hasattr(cov_in, "dtype") else turned.tolist()
+
+
+def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
+    """Return a PoseWithCovarianceStamped in the transform's frame; the covariance is rotated too."""
+    moved = _in_frame(pose, transform)
+    _move_pose(moved.pose.pose, _rigid(transform))
+    moved.pose.covariance = transform_covariance(pose.pose.covariance, transform)
+    return moved
+
+
+def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
+    """Return a PolygonStamped in the transform's frame."""
+    moved = _in_frame(polygon, transform)
+    for corner in moved.polygon.points:
+        _set(corner, _rigid(transform).apply((corner.x, corner.y, corner.z)))
     return moved
 
 
@@ -93,8 +106,19 @@ def do_transform_wrench(wrench: Any, transform: Any) -> Any:
     return moved
 
 
+def to_msg_msg(msg: Any) -> Any:
+    """Return the message itself."""
+    return msg
+
+
+def from_msg_msg(msg: Any) -> Any:
+    """Return the message itself."""
+    return msg
+
+
 TRANSFORMERS: dict[str, Callable[[Any, Any], Any]] = {
     "PointStamped": do_transform_point,
+    "PolygonStamped": do_transform_polygon_stamped,
     "PoseStamped": do_transform_pose_stamped,
     "PoseWithCovarianceStamped": do_transform_pose_with_covariance_stamped,
     "Vector3Stamped": do_transform_vector3,

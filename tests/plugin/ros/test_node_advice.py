@@ -54,6 +54,19 @@ CASES = {
     "import tf2_ros.buffer; tf2_ros.buffer.nothing_here": "lacks this name of tf2_ros.buffer",
     "from actionlib.simple_action_client import nothing_here": "lacks this name of actionlib.simple_action_client",
     "yaml.load('a: 1')": r"PyYAML 6 has no default for it: call yaml\.safe_load",
+    "from collections import Mapping": r"Python 3\.\d+ has no such name in collections: use its replacement in the",
+    "import time; time.clock()": r"Python 3\.\d+ has no such name in time: use its replacement in the node\.$",
+    "from numpy import nothing_here": r"The installed numpy [\d.]+ has no such name: install a version that has it",
+    "import numpy; numpy.nothing_here": r"The installed numpy [\d.]+ has no such name: install a version that has it",
+    "from std_srvs.srv import Empty; rospy.ServiceProxy('reset', Empty)()": (
+        r"No node offers it: offer it in the test with tarl\.bus\.serve\(\"/reset\", type, handler\)\.$"
+    ),
+    "import tf; tf.TransformListener().lookupTransform('odom', 'base', rospy.Time(0))": (
+        r"No node sends a transform with the frame odom: publish one on /tf_static or /tf in the test \(tf2_msgs/TFMess"
+    ),
+    "sys.exit(1) if rospy.get_param('~inputs', None) is None else 0": (
+        r"Parameters that it asked for have no value: inputs\. If it needs one, pass parameters=\{\"inputs\": …\}"
+    ),
     "sys.argv[1]": r"The node reads its command line: pass argv=\[…\] to tarl\.start",
     "sys.exit('usage: node FILE') if len(sys.argv) < 2 else None": r"pass argv=\[…\]",
     "sys.exit('\\n Drive.\\n\\nUsage: node FILE') if not sys.argv[1:] else 0": r"status 1: Drive\. \(.*pass argv=\[…\]",
@@ -66,6 +79,29 @@ BLOCKS = {
     "import sys\nif sys.maxsize:\n    sys.exit(1)": r"line 3\)\.$",
     "import sys\nfiles = [one for one in sys.argv[1:]]\nif not files:\n    sys.exit(1)": "reads its command line",
     "import sys\nfiles = [1]\nif files:\n    sys.exit(1)": r"line 4\)\.$",
+}
+GUARDED = """
+try:
+    {0}
+except {1}:
+    print("without it")
+{2}
+"""
+CAUGHT = {
+    ("from servo_board.msg import Servo", "ImportError as e", "Servo()"): (
+        r"The import of Servo in line 3 did not succeed, and the node continued without it\. No package .* defines serv"
+    ),
+    ("import cv2000 as cv", "(ValueError, ModuleNotFoundError)", "cv.show()"): (
+        r"The import of cv in line 3 did not succeed, and the node continued without it\. .* run pip install cv2000, or"
+    ),
+    (
+        "import os.path\n    1 / 0\n    import cv2000.parts",
+        "Exception",
+        "cv2000.show()",
+    ): "run pip install cv2000",
+    ("import cv2000", "ImportError", "absent"): r"line 6\)\.$",
+    ("from . import parts", "(ImportError, ImportWarning)", "parts"): r"line 6\)\.$",
+    ("cv2 = 1\n    import os.path", "ValueError", "absent"): r"line 7\)\.$",
 }
 SILENT = [
     "range(2.0)",
@@ -93,6 +129,12 @@ def test_the_error_of_a_node_without_its_arguments_advises_passing_them(block: s
     with pytest.raises(NodeError) as error:
         start(block)
     assert re.search(BLOCKS[block], str(error.value))
+
+
+@pytest.mark.parametrize("parts", CAUGHT)
+def test_an_error_names_the_import_that_failed_before(parts: tuple[str, str, str], start: Start) -> None:
+    with pytest.raises(NodeError, match=CAUGHT[parts]):
+        start(GUARDED.format(*parts))
 
 
 @pytest.mark.parametrize("line", SILENT)

@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 from pytest_tarl.errors import NodeError
 from pytest_tarl.ros import message_type, tf2_geometry_msgs, topic_tools
 from pytest_tarl.ros.accounts import account, of_node
+from pytest_tarl.ros.kdl.vectors import Vector
 from pytest_tarl.ros.rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from tests.plugin.ros.conftest import Start
 
@@ -65,6 +66,18 @@ def test_both_parts_of_a_wrench_are_rotated(transform: Any) -> None:
     moved = tf2_geometry_msgs.do_transform_wrench(given, to_map)
     assert numbers(moved.wrench.force) == pytest.approx(TURN.apply([1, 0, 0]).tolist())
     assert numbers(moved.wrench.torque) == pytest.approx(TURN.apply([0, 2, 0]).tolist())
+
+
+def test_all_corners_of_a_polygon_are_moved(transform: Any) -> None:
+    make, to_map = transform
+    given = make("PolygonStamped")
+    given.polygon.points = [make("Point32"), make("Point32")]
+    given.polygon.points[1].x = 2.0
+    moved = tf2_geometry_msgs.do_transform_polygon_stamped(given, to_map)
+    frame = tf2_geometry_msgs.transform_to_kdl(to_map)
+    for corner, x in zip(moved.polygon.points, (0.0, 2.0), strict=True):
+        assert numbers(corner) == pytest.approx(list(frame * Vector(x, 0, 0)), abs=1e-6)
+    assert (moved.header.frame_id, given.polygon.points[1].y) == ("map", 0.0)
 
 
 def test_a_pose_is_moved_with_and_without_a_header(transform: Any) -> None:
