@@ -5,10 +5,11 @@ a multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: th
 control published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
 
 The rule covers commands such as `Twist` and `JointTrajectory`, and numbers on topics such as `wheel/command` or
-`left_thrust`, if the commands of each node depend on a subscribed topic. Well-known programs without source, such as
-`teleop_twist_joy`, `move_base` and `twist_mux`, count beside a node whose code is read. The rule does not cover nodes
-that only publish constants, such as a stop, and nodes that are started under a condition known only on the robot,
-because one of them may replace the other.
+`left_thrust`, if the commands of each node depend on a subscribed topic, or if a timer or loop publishes them without
+any input, as a patrol by the clock does. Well-known programs without source, such as `teleop_twist_joy`, `move_base`
+and `twist_mux`, count beside a node whose code is read. The rule does not cover nodes that only stop the robot or
+publish once, and nodes that are started under a condition known only on the robot, because one of them may replace the
+other.
 """
 
 from __future__ import annotations
@@ -122,6 +123,14 @@ def findings(system: System) -> Iterator[Finding]:
                 continue
             topic = instance.resolve(sink.topics[0])
             authors.setdefault(topic, {}).setdefault(instance.name, (instance, sink.topics[0]))
+    for topic, instance, end in system.named("publishes"):
+        if (
+            end.driven
+            and len(end.names) == 1
+            and not instance.node.condition
+            and is_command(end.type, end.names)
+        ):
+            authors.setdefault(topic, {}).setdefault(instance.name, (instance, end.names[0]))
     for topic, instance, end in _of_known_programs(system):
         if topic in authors:
             authors[topic].setdefault(instance.name, (instance, end.names[0]))

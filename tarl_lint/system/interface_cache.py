@@ -46,9 +46,9 @@ def _same(value: Any) -> Any:
 
 
 def _endpoint(entry: Sequence[Any]) -> Endpoint:
-    role, names, kind, span, qos, place, written, whole_type = entry
+    role, names, kind, span, qos, place, written, whole_type, driven = entry
     profile = None if qos is None else Qos(*qos)
-    return Endpoint(role, tuple(names), kind, Span(*span), profile, place, tuple(written), whole_type)
+    return Endpoint(role, tuple(names), kind, Span(*span), profile, place, tuple(written), whole_type, driven)
 
 
 def _findings(entries: Sequence[Any]) -> tuple[Finding, ...]:

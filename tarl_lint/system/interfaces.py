@@ -27,6 +27,7 @@ from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
 from tarl_lint.system.composed_names import composed_names
+from tarl_lint.system.driven import driven
 from tarl_lint.system.fields import examined
 from tarl_lint.system.model import Endpoint, Interface, Qos, Role
 from tarl_lint.system.parameters import (
@@ -75,13 +76,13 @@ def interface(
     # texts of all modules, even if none of their code runs
     texts = Texts({module.path: module for module in modules})
     calls = (end for each in modules for end in _clients(machine, each, outlines[each.path], texts))
-    ends = (*_endpoints(machine, tracer, outlines), *calls)
-    endpoints = tuple(sorted(dict.fromkeys(ends), key=lambda e: (e.span, e.role, e.names)))
     found = tuple(
         _marked(finding, flow, package, config)
         for finding, flow in zip(engine.findings(flows), flows, strict=True)
         if not {"tf2", ""} & {flow.source.api.partition(".")[0], flow.sink.api.partition(".")[0]}
     )
+    ends = (*_endpoints(machine, tracer, outlines, driven(machine, found, modules)), *calls)
+    endpoints = tuple(sorted(dict.fromkeys(ends), key=lambda e: (e.span, e.role, e.names)))
     imports_read = len(imported) == len(modules) - 1
     quiet = closed(modules) and imports_read
     named = all(one.names for one in endpoints) and not any(topicless(one) for one in flows)
@@ -167,7 +168,9 @@ def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Findi
     return replace(finding, fingerprint=print_.digest(), package=print_.package)
 
 
-def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline]) -> Iterator[Endpoint]:
+def _endpoints(
+    machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline], driving: Collection[tuple[str, Pos]]
+) -> Iterator[Endpoint]:
     for record in machine.sources.values():
         source = tracer.ends.source(record)
         if record.kind == "topic":
@@ -183,7 +186,7 @@ def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline])
             yield Endpoint(
                 role, source.topics, source.type, source.span, None, source.qualname, whole_type=whole
             )
-    yield from _publishers(machine, tracer, outlines)
+    yield from _publishers(machine, tracer, outlines, driving)
 
 
 def _profile(
@@ -218,7 +221,9 @@ def _clients(machine: Linker, module: Module, outline: Outline, texts: Texts) ->
             yield Endpoint("calls", (name,), kind, span, None, place, whole_type=whole)
 
 
-def _publishers(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline]) -> Iterator[Endpoint]:
+def _publishers(
+    machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline], driving: Collection[tuple[str, Pos]]
+) -> Iterator[Endpoint]:
     made = _made(machine, "topic", outlines)
     for (path, pos), publishers in ((at, alike) for at, every in made.items() for alike in _by_topics(every)):
         topics = tuple(sorted({topic for one in publishers for topic in one.topics}))
@@ -227,7 +232,8 @@ def _publishers(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline]
         span, place = tracer.texts[path].stretch(pos), outlines[path].qualname(pos[0])
         end = Endpoint("publishes", topics, types, span, None, place, whole_type=only(whole))
         for one in separated(end, whole, outlines.values()):
-            yield replace(one, qos=_profile(publishers[0], one.names, outlines))
+            profile = _profile(publishers[0], one.names, outlines)
+            yield replace(one, qos=profile, driven=(path, pos) in driving)
 
 
 def _made(machine: Linker, kind: str, paths: Collection[str]) -> dict[tuple[str, Pos], list[Publisher]]:

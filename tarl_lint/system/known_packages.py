@@ -62,19 +62,25 @@ _PACKAGES: Final[Mapping[str, str]] = {
     **dict.fromkeys(("teleop_twist_joy", "teleop_twist_keyboard", "twist_mux", "twist_stamper", "key_teleop",
                      "yocs_velocity_smoother", "yocs_cmd_vel_mux", "rqt_robot_steering"), _VELOCITY),
     **dict.fromkeys(("usb_cam", "v4l2_camera", "cv_camera", "gscam", "uvc_camera", "libuvc_camera", "camera_ros",
-                     "image_publisher", "web_video_server"), _CAMERA),
+                     "image_publisher", "web_video_server", "camera1394", "openni_camera", "openni2_camera",
+                     "astra_camera", "freenect_camera", "prosilica_camera"), f"{_CAMERA} PointCloud2 PollImage"),
     **dict.fromkeys(("image_proc", "depth_image_proc", "stereo_image_proc", "image_view", "image_rotate",
                      "image_transport", "depthimage_to_laserscan"), f"{_PICTURES} LaserScan"),
     "realsense2_camera": f"{_PICTURES} Imu Odometry Extrinsics IMUInfo Metadata RGBD DeviceInfo GridCells String",
     **dict.fromkeys(("urg_node", "urg_node2", "rplidar_ros", "sllidar_ros2", "ydlidar_ros", "ydlidar_ros2_driver",
-                     "hls_lfcd_lds_driver", "ldlidar_stl_ros2", "laser_filters", "pointcloud_to_laserscan"), _SCANNER),
+                     "hls_lfcd_lds_driver", "ldlidar_stl_ros2", "laser_filters", "pointcloud_to_laserscan",
+                     "hokuyo_node", "lms1xx", "sick_tim", "xv_11_laser_driver", "laser_assembler", "ira_laser_tools"),
+                    f"{_SCANNER} AssembleScans AssembleScans2"),
     **dict.fromkeys(("velodyne_driver", "velodyne_pointcloud", "velodyne_laserscan"),
                     "VelodyneScan VelodynePacket PointCloud2 LaserScan"),
     "pcl_ros": "PointCloud2 PointIndices ModelCoefficients PolygonStamped Image",
     **dict.fromkeys(("imu_filter_madgwick", "imu_complementary_filter", "imu_transformer", "imu_calib"), _INERTIAL),
     "nmea_navsat_driver": "NavSatFix TwistStamped TimeReference QuaternionStamped Sentence",
     "robot_localization": _FUSION,
-    **dict.fromkeys(("amcl", "map_server", "gmapping", "hector_mapping", "slam_toolbox", "cartographer_ros"), _MAPPING),
+    **dict.fromkeys(("amcl", "map_server", "gmapping", "hector_mapping", "slam_toolbox", "cartographer_ros",
+                     "slam_karto"), _MAPPING),
+    "robot_pose_ekf": "Odometry Imu PoseWithCovarianceStamped GetStatus",
+    "sound_play": "SoundRequest SoundRequestActionGoal SoundRequestActionFeedback SoundRequestActionResult",
     "move_base": _NAVIGATION,
     **dict.fromkeys(("nav2_amcl", "nav2_map_server", "nav2_controller", "nav2_planner", "nav2_behaviors",
                      "nav2_recoveries", "nav2_bt_navigator", "nav2_waypoint_follower", "nav2_velocity_smoother",
@@ -134,7 +140,8 @@ _SENSOR: Final = re.compile(
 )
 # what makes a package more than the driver of a sensor
 _ACTIVE: Final = re.compile(
-    r"follow|control|nav|track|servo|drive(?!r)|slam|pilot|guard|safe|stop|avoid|teleop|plan|fus|filter|base|robot|sim|odom"
+    r"follow|control|nav|track|servo|drive(?!r)|slam|pilot|guard|safe|stop|avoid|teleop|plan|fus|filter|base|robot|sim|odom|"
+    r"match|joint|tilt|goal|map|graph|mount|pan_"
 )
 _SENSED_NEVER: Final = COMMANDS | {"Joy", "Path", "OccupancyGrid", "JointState", "PoseArray"}
 

@@ -47,7 +47,7 @@ def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Findi
         return ()
     if any(_WATCHDOGS.search(_SLEEPS.sub("", module.text)) for module in modules):
         return ()
-    program = _Program(modules, {name for one in flows for name in _callbacks(one)})
+    program = Program(modules, {name for one in flows for name in _callbacks(one)})
     return tuple(one for one in findings if one.flow is not None and program.goes_on(one.flow))
 
 
@@ -55,7 +55,7 @@ def _callbacks(flow: Flow) -> set[str]:
     return {name.strip() for name in flow.source.callback.split(",")} - {""}
 
 
-class _Program:
+class Program:
     """The functions of a program by their names, and which of them call which. `callbacks` receive messages."""
 
     def __init__(self, modules: Sequence[Module], callbacks: set[str]) -> None:
@@ -109,7 +109,10 @@ class _Program:
         explicit = flow.kind == "explicit" and "ubscri" in flow.source.api
         if not explicit or not is_command(flow.sink.type, flow.sink.topics):
             return False
-        if flow.sink.qualname in self._callbacks or not self._again(flow):
+        sink = flow.sink
+        if sink.qualname in self._callbacks or not self.repeats(
+            _last(sink.qualname), sink.span.path, sink.span.line
+        ):
             return False
         # functions that callbacks call may store the message
         storing = self._reached({_last(one) for one in _callbacks(flow)}) - self._running()
@@ -142,9 +145,8 @@ class _Program:
         nodes = ast.walk(self._trees[path]) if path in self._trees else iter(())
         return any(isinstance(one, ast.Global | ast.Nonlocal) and name in one.names for one in nodes)
 
-    def _again(self, flow: Flow) -> bool:
-        """Return whether a timer or a loop makes the publish call, directly or through functions."""
-        name, line, path = _last(flow.sink.qualname), flow.sink.span.line, flow.sink.span.path
+    def repeats(self, name: str, path: str, line: int) -> bool:
+        """Return whether a timer or a loop runs a line of a function, directly or through other functions."""
         if any(one.lineno <= line <= (one.end_lineno or 0) for one in self._ticks) or self._looped(
             name, path, line
         ):

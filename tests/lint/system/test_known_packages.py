@@ -65,6 +65,11 @@ def codes(root: Path, launch: str, pilot: str = "Twist", base: str = "Twist") ->
         ("unknown_driver", "node", []),
         ("map_server", "map_saver", ["TARL301"]),
         ("rviz", "rviz", ["TARL301"]),
+        ("openni2_camera", "openni2_camera_node", ["TARL301"]),
+        ("robot_pose_ekf", "robot_pose_ekf", ["TARL301"]),
+        ("radar_driver", "radar", ["TARL301"]),
+        ("laser_scan_matcher", "laser_scan_matcher_node", []),
+        ("tilting_laser", "tilt", []),
     ],
 )
 def test_a_node_that_was_not_read_may_be_the_other_end_only_if_its_package_uses_the_type(
