@@ -155,7 +155,7 @@ class Placing:
         )
         passed = re.search(rf"""["'_]{key}\b""", text)
         if passed is None and ".launch(" in text and computed:
-            return f"{start}{computed}, which contains no number to change. Change the parameter there"
+            return f"{start}{computed}, where no number alone determines it. Change the parameter there"
         if passed is None and ".launch(" in text:
             return f"{start}the launch file of the test sets it. Change the parameter there"
         who = "the test itself passes it (parameters=…, argv=…)" if passed else "this test sets it"

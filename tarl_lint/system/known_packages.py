@@ -141,7 +141,7 @@ _SENSOR: Final = re.compile(
 # what makes a package more than the driver of a sensor
 _ACTIVE: Final = re.compile(
     r"follow|control|nav|track|servo|drive(?!r)|slam|pilot|guard|safe|stop|avoid|teleop|plan|fus|filter|base|robot|sim|odom|"
-    r"match|joint|tilt|goal|map|graph|mount|pan_"
+    r"match|joint|tilt|goal|map|graph|mount|(?<![a-z])pan(?![a-z])"
 )
 _SENSED_NEVER: Final = COMMANDS | {"Joy", "Path", "OccupancyGrid", "JointState", "PoseArray"}
 

@@ -358,4 +358,4 @@ def test_a_note_names_the_expression_in_which_a_launch_file_has_no_number_to_cha
 ) -> None:
     where, told, _ = launched(worn, "pick()")
     assert where.startswith("keeper.py:")
-    assert "keeper.launch.py:13 computes it as `pick()`, which contains no number to change" in told
+    assert "keeper.launch.py:13 computes it as `pick()`, where no number alone determines it" in told

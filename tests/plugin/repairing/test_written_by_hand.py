@@ -107,7 +107,7 @@ def test_only_values_of_the_same_kind_and_a_limited_number_of_files_are_tried(pl
         (
             "tarl.launch('a')",
             "a.launch.py:3 computes it",
-            "a.launch.py:3 computes it, which contains no number",
+            "a.launch.py:3 computes it, where no number alone determines it",
         ),
         ("tarl.start('n.py')", "a.launch.py:3 computes it", "this test sets it, and TARL never edits tests"),
         ("again = 3", "", "this test sets it"),
