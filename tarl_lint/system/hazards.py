@@ -26,10 +26,17 @@ class Rule(Protocol):
 ARCHITECTURE: Final = tuple(code for code in RULES if code.startswith("TARL3"))
 
 
+# rules about each program by itself; the others assume that the nodes of a system run together
+_OF_PROGRAMS: Final = ("TARL306", "TARL309")
+
+
 def hazards(system: System, config: Config) -> tuple[Finding, ...]:
-    """Return the hazards of the enabled rules, with fingerprints, sorted by place."""
+    """Return the hazards of the enabled rules, with fingerprints, sorted by place.
+
+    Without a launch file, the system contains all nodes of a folder, also those of different robots.
+    """
     found: set[Finding] = set()
-    for code in ARCHITECTURE:
+    for code in _OF_PROGRAMS if system.file.is_dir() else ARCHITECTURE:
         if config.enabled(code):
             rule = cast("Rule", import_module(f"tarl_lint.rules.{code.lower()}"))
             found |= {_identified(one) for one in rule.findings(system)}

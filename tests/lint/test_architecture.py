@@ -97,6 +97,19 @@ def test_the_example_workspace_has_no_hazards(capsys, monkeypatch):
     assert reported(capsys, "all") == []
 
 
+@pytest.mark.parametrize(
+    ("code", "found"), [("TARL305", []), ("TARL306", ["TARL306"]), ("TARL309", ["TARL309"])]
+)
+def test_without_a_launch_file_nodes_are_not_judged_together(code, found, tmp_path, capsys, monkeypatch):
+    folder = workspace(tmp_path, known_rules()[code].INVALID[0]).parents[1]
+    scripts = " ".join(f"scripts/{one.name}" for one in (folder / "scripts").iterdir())
+    (folder / "CMakeLists.txt").write_text(f"catkin_install_python(PROGRAMS {scripts})")
+    monkeypatch.chdir(tmp_path)
+    main(["--from", "/odom", "--to", "/cmd_vel", "--format", "json"])
+    (system,) = json.loads(capsys.readouterr().out)["systems"]
+    assert sorted({one["code"] for one in system["diagnostics"]}) == found
+
+
 def test_accepted_hazards_stay_in_the_baseline_after_runs_without_launch_files(tmp_path, capsys, monkeypatch):
     file = str(workspace(tmp_path, known_rules()["TARL301"].INVALID[0]))
     monkeypatch.chdir(tmp_path)
