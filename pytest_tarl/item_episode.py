@@ -197,7 +197,7 @@ def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestRepor
 def add_notes(item: pytest.Item, report: pytest.TestReport) -> None:
     """Add to the report of a failed plain run how its nodes were started; other runs show this in their summary."""
     episode = getattr(item, "funcargs", {}).get("tarl")
-    if report.failed and report.when == "call" and episode is not None and EPISODE not in item.stash:
+    if episode is not None and EPISODE not in item.stash and report.failed and report.when == "call":
         notes = [f"note: {one}" for one in dict.fromkeys(episode.starting_notes)]
         if notes:
             report.sections.append(("TARL", "\n".join(notes)))
