@@ -89,6 +89,14 @@ def part_of(nearest: Nearest, chain: Sequence[Point]) -> Part:
     return "loss" if by_rate.max() < UNLIKELY else "both"
 
 
+def likely(nearest: Nearest, point: Point) -> bool:
+    """Return whether the model covers a drift and expects that fresh episodes show its failure."""
+    coordinates = nearest.coordinates
+    if not coordinates.covers(point):
+        return False
+    return float(nearest.model().failing(coordinates.vector(point)[None, :])[0]) >= POSSIBLE
+
+
 def finer(nearest: Nearest, chain: Sequence[Point], part: Part) -> list[Point]:
     """Return a chain with further drifts on the ray through its near end, if the model covers this end.
 

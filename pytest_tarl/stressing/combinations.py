@@ -15,7 +15,7 @@ from pytest_tarl.stressing import chains
 from pytest_tarl.stressing.boundary import COARSE, bisect
 from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, Evaluator
 from pytest_tarl.stressing.findings import APART, Curve, Failure, MarginMap, confirmed, contains, failure
-from pytest_tarl.stressing.guarantee import Part
+from pytest_tarl.stressing.guarantee import Part, recorded_mean
 from pytest_tarl.stressing.nearest import EXPECTED, LARGEST, ROUNDS, Nearest
 from pytest_tarl.stressing.rate_tests import RateTests
 from pytest_tarl.stressing.rays import Ray, distance, joined
@@ -31,9 +31,41 @@ LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep
 ALONE = 3  # number of rounds of the search with nominal options before other options are searched
 REFINED = 0.08  # share of the budget for the search that runs between the first two chains of tests
 ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first chain that confirms a drift
+RECORDED = 0.05  # share of the whole risk for the bound of the recorded mean reward
 # shares of the whole risk for the first chains; each further chain gets half of the rest
-SHARES = (0.4, 0.3, 0.15, 0.05)
+SHARES = (0.4, 0.3, 0.1, 0.05)
 QUICK = SIZES[0]  # number of episodes that the search runs at a confirmed failure
+# a new chain comes before an interrupted one if its near end is below this share of the distance of the latter's next
+# drift
+AHEAD = 0.97
+
+
+@dataclass
+class Chain:
+    """A chain of drifts, farthest first, and its tests; `left` are the drifts that are not decided yet.
+
+    All drifts are chosen before the first episode of the pool, so the tests may be interrupted and continued at any
+    time (fixed-sequence procedure). Each drift is tested at the whole `risk` of the chain.
+    """
+
+    left: list[Point]
+    evaluator: Evaluator
+    pool: str
+    risk: float
+    part: Part
+    least: float | None = None  # lower bound of the nominal mean reward if the tests run no nominal episodes
+
+    def __post_init__(self) -> None:
+        """Prepare the tests about the failure rate."""
+        self._rates = RateTests(self.evaluator, self.pool, self.risk)
+
+    def confirm(self, point: Point) -> bool:
+        """Return whether fresh episodes show that the guarantee fails at a point. Raise BudgetSpentError."""
+        if self.part == "rate":
+            return self._rates.confirm(point)
+        return self.evaluator.confirm(
+            point, self.pool, self.risk, NEAREST, SPENT, self.part, strict=True, least=self.least
+        )
 
 
 @dataclass
@@ -49,6 +81,7 @@ class Together:
     margin_map: MarginMap | None = None
     chains: int = 0  # number of chains tested so far
     tested: list[Point] = field(default_factory=list)  # the drifts of these chains at which episodes ran
+    interrupted: Chain | None = None  # the last chain, if a spent budget interrupted its tests
     # drifts that fail according to the model but are not confirmed
     expected: list[Failure] = field(default_factory=list)
 
@@ -57,10 +90,14 @@ class Together:
         """Return the confirmed failing drifts along single directions and in combination."""
         return [*confirmed(self.curves), *self.every]
 
-    def confirm(self, chain: Sequence[Point], evaluator: Evaluator, part: Part = "both") -> bool:
+    def confirm(
+        self, chain: Sequence[Point], evaluator: Evaluator, part: Part = "both", *, unpaired: bool = False
+    ) -> bool:
         """Test drifts on fresh seeds, farthest first, until one is not confirmed; return whether one was confirmed.
 
-        The tests are about this part of the guarantee, which must not depend on the fresh seeds.
+        The tests are about this part of the guarantee, which must not depend on the fresh seeds. Those that are
+        `unpaired` compare with a lower bound of the recorded mean reward. This bound has a share of the risk of its
+        own and is the same in all chains, so their drifts may depend on it.
 
         Each test has the whole risk of the chain: if the guarantee holds at some of the drifts, an error needs the
         confirmation of the first of these. The seeds are new for each chain, so its drifts may depend on the outcomes
@@ -75,24 +112,31 @@ class Together:
         ]
         if not chain:
             return False
-        pool, risk = f"chain {self.chains}", self.risk * _share(self.chains)
-        self.chains += 1
-        found = False
-        rates = RateTests(evaluator, pool, risk)
+        risk = self.risk * _share(self.chains)
+        number, self.chains = self.chains, self.chains + 1
+        least = recorded_mean(evaluator.guarantee, self.risk * RECORDED) if unpaired else None
+        return self.run(Chain(chain, evaluator, f"chain {number}", risk, part, least))
+
+    def run(self, chain: Chain) -> bool:
+        """Begin or continue the tests of a chain; return whether a further drift was confirmed.
+
+        If the budget is spent, raise BudgetSpentError and keep the chain in `interrupted`.
+        """
+        found, self.interrupted = False, chain
         try:
-            for point in chain:
-                self.tested.append(point)
-                if not (
-                    rates.confirm(point)
-                    if part == "rate"
-                    else evaluator.confirm(point, pool, risk, NEAREST, SPENT, part, strict=True)
-                ):
+            while chain.left:
+                point = chain.left[0]
+                if point not in self.tested[-1:]:
+                    self.tested.append(point)
+                if not chain.confirm(point):
                     break
                 found = True
-                self._add(failure(evaluator.space, point), evaluator)
+                del chain.left[0]
+                self._add(failure(chain.evaluator.space, point), chain.evaluator)
+            self.interrupted = None
         finally:
-            evaluator.release(pool)
-            self.found = _apart(self.every, evaluator)
+            chain.evaluator.release(chain.pool)
+            self.found = _apart(self.every, chain.evaluator)
         return found
 
     def _add(self, found: Failure, evaluator: Evaluator) -> None:
@@ -112,10 +156,10 @@ class Together:
 
 
 def _share(number: int) -> float:
-    """Return the share of the risk of a chain, by its number from 0; the sum over all chains is 1."""
+    """Return the share of the risk of a chain, by its number from 0; with RECORDED, the sum over all chains is 1."""
     if number < len(SHARES):
         return SHARES[number]
-    return (1.0 - sum(SHARES)) * 0.5 ** (number - len(SHARES) + 1)
+    return (1.0 - RECORDED - sum(SHARES)) * 0.5 ** (number - len(SHARES) + 1)
 
 
 def _apart(found: Sequence[Failure], evaluator: Evaluator) -> list[Failure]:
@@ -165,7 +209,7 @@ class Combined:
         with self.evaluator.limited(CONFIRMED):
             with self.evaluator.limited(self.evaluator.spent / self.evaluator.budget + REFINED):
                 self._leading.refine()
-            if not self._confirm(chains.NEXT):
+            if not self._continue():
                 self._approach_confirmed()
 
     def end(self) -> None:
@@ -221,8 +265,25 @@ class Combined:
 
     def _confirm(self, plan: chains.Plan) -> bool:
         """Test a chain that leads nearer to nominal than every confirmed drift. Raise BudgetSpentError."""
+        return self._test(self._next(plan))
+
+    def _next(self, plan: chains.Plan) -> list[Point]:
         limit = min((one.distance for one in self.together.confirmed), default=inf)
-        return self._test(chains.chain(self._leading, plan, limit))
+        return chains.chain(self._leading, plan, limit)
+
+    def _continue(self) -> bool:
+        """Continue the interrupted chain, or test a chain that leads nearer; return whether a drift was confirmed.
+
+        An interrupted chain needs fewer episodes than a new one, because its seeds have run already at the drift
+        before. It is not continued if the model, which has learned from it, no longer expects a confirmation. Raise
+        BudgetSpentError.
+        """
+        begun = self.together.interrupted
+        if begun is None or not chains.likely(self._leading, begun.left[0]):
+            return self._confirm(chains.NEXT)
+        chain = self._next(chains.NEXT)
+        nearer = chain and self.nearest.distance(chain[-1]) < AHEAD * self.nearest.distance(begun.left[0])
+        return (bool(nearer) and self._test(chain)) or self.together.run(begun)
 
     def _approach_confirmed(self) -> None:
         """Test chains in small steps from the nearest confirmed drift, until one confirms none. Raise BudgetSpentError.
@@ -244,7 +305,8 @@ class Combined:
     def _run(self, chain: Sequence[Point], part: Part) -> bool:
         self.together.tried = len(self.nearest.tried)
         try:
-            return self.together.confirm(chain, self.evaluator, part)
+            unpaired = part != "rate" and self._leading.unpaired
+            return self.together.confirm(chain, self.evaluator, part, unpaired=unpaired)
         finally:
             for one in (self.nearest, *self.options):
                 one.tested = self.together.tested

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
+from statistics import fmean
 from time import monotonic
 from typing import NamedTuple
 
@@ -79,6 +80,7 @@ class Evaluator:
     _released: list[str] = field(default_factory=list)
     _orders: dict[tuple[str | float, ...], list[int]] = field(default_factory=dict)
     _counts: dict[str, list[Count]] = field(default_factory=dict)
+    _unpaired: set[str] = field(default_factory=set)
 
     @contextmanager
     def limited(self, share: float) -> Iterator[None]:
@@ -140,6 +142,7 @@ class Evaluator:
         part: Part = "both",
         *,
         strict: bool = False,
+        least: float | None = None,
     ) -> bool:
         """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails at a point.
 
@@ -147,12 +150,17 @@ class Evaluator:
         outcomes. The test checks for a decision after each of `sizes` episodes, at its share of `risk`; without
         `shares`, `risk` is divided evenly. With `part`, only this part of the guarantee is tested, at the whole risk;
         the choice of the part must not depend on the pool. The test also stops once a failure can hardly be shown any
-        more, with `strict` earlier (see `hopeless`). Raise BudgetSpentError.
+        more, with `strict` earlier (see `hopeless`). With `least`, a lower bound of the nominal mean reward, the test
+        compares with this bound and needs no nominal episodes. Raise BudgetSpentError.
         """
+        if least is not None:
+            self._unpaired.add(pool)
         risks = [risk * share for share in shares or [1.0 / len(sizes)] * len(sizes)]
         for size, share in zip(sizes, risks, strict=True):
             outcomes = self._of(pool, point, size)
-            nominal = self._of(pool, self.space.nominal, size)
+            nominal = (
+                self._of(pool, self.space.nominal, size) if least is None else [Outcome(True, least)] * size
+            )
             if refuted(self.guarantee, outcomes, nominal, share, part):
                 return True
             if hopeless(self.guarantee, outcomes, nominal, sizes[-1], risks[-1], part, strict=strict):
@@ -188,7 +196,8 @@ class Evaluator:
 
     def release(self, pool: str) -> None:
         """Let the model of the search learn from the fresh episodes of a pool that no later test uses."""
-        self._released.append(pool)
+        if pool not in self._released:
+            self._released.append(pool)
 
     def knows(self, point: Point) -> bool:
         """Return whether `losses` has an episode at a point; the budget may have ended before."""
@@ -212,6 +221,15 @@ class Evaluator:
         shares = [one / unit if unit > 0.0 else 2.0 * (one > 0.0) for one in lost]
         return shares, sum(not one.passed for one in outcomes)
 
+    def totals(self, point: Point) -> list[tuple[float, float]]:
+        """Return the reward of each episode of the search at a point, with that of the nominal episode of its seed."""
+        return [(one.total, usual.total) for one, usual in zip(*self._pairs(SEARCH, point), strict=True)]
+
+    @property
+    def usual_mean(self) -> float:
+        """Return the mean reward of the nominal episodes of the search. Raise StatisticsError if there are none."""
+        return fmean(one.total for one in self._known.get((SEARCH, *self._usual), []))
+
     def sources(self, point: Point) -> list[tuple[str, int]]:
         """Return the pool and the number of the seed of each episode of `losses`, in the same order."""
         return [
@@ -233,9 +251,15 @@ class Evaluator:
         outcomes = self._known.get((pool, *point.values()))
         if not outcomes:
             return (), ()
-        nominal = self._known.get((pool, *self._usual), [])
+        nominal = self._nominal(pool, len(outcomes))
         rows = [row for row in self._rows(pool, point, len(outcomes)) if row < len(nominal)]
         return outcomes[: len(rows)], [nominal[row] for row in rows]
+
+    def _nominal(self, pool: str, count: int) -> Sequence[Outcome]:
+        """Return the nominal outcomes of a pool; in a pool without any, the recorded mean takes their place."""
+        if pool in self._unpaired:
+            return [Outcome(True, fmean(self.guarantee.totals))] * count
+        return self._known.get((pool, *self._usual), [])
 
     @cached_property
     def _usual(self) -> tuple[float, ...]:
@@ -260,8 +284,12 @@ class Evaluator:
         return dict(zip(order, known, strict=True))
 
     def count(self, pool: str, count: Count) -> None:
-        """Keep an estimate of how many episodes of a pool fail; the model learns from it once the pool is released."""
-        self._counts.setdefault(pool, []).append(count)
+        """Keep an estimate of how many episodes of a pool fail, in place of an earlier one about the same drift.
+
+        The model learns from it once the pool is released.
+        """
+        known = self._counts.setdefault(pool, [])
+        self._counts[pool] = [*(one for one in known if one.point != count.point), count]
 
     @property
     def counts(self) -> list[Count]:
@@ -311,7 +339,7 @@ class Evaluator:
         """
         known = self._known.get((pool, *point.values()), [])
         rows = self._rows(pool, point, len(known))
-        usual = self._known.get((pool, *self._usual), [])
+        usual = self._nominal(pool, len(known))
         seeds = self._seeds(pool, point, len(known))
         return [
             (

@@ -185,6 +185,14 @@ def refuted(
     return mean_of(_losses(outcomes, nominal), 1.0 - share, _differences(given)).low > given.tolerance
 
 
+def recorded_mean(given: Guarantee, risk: float) -> float:
+    """Return a lower bound of the nominal mean reward from the recorded rewards, with error probability `risk`.
+
+    The bound is exact if the marker declares total_range; otherwise, it is Student's.
+    """
+    return mean_of(given.totals, 1.0 - risk, given.declared).low
+
+
 def most_passed(given: Guarantee, count: int, risk: float, part: Part = "both") -> int:
     """Return the largest number of passed episodes that refutes the guarantee, or -1 if no number does."""
     return _most_passed(given.rate, count, risk / 2 if part == "both" else risk)

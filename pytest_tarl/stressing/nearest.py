@@ -26,6 +26,7 @@ from pytest_tarl.stressing.fitting import fitted
 from pytest_tarl.stressing.generating import generate
 from pytest_tarl.stressing.guarantee import most_passed
 from pytest_tarl.stressing.mapping import margin_map
+from pytest_tarl.stressing.noise import cut_off, pairing_wastes
 from pytest_tarl.stressing.prediction import Prediction, Shown
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
@@ -163,6 +164,22 @@ class Nearest:
                 near.append(point)
         return near
 
+    @property
+    def unpaired(self) -> bool:
+        """Return whether tests about losses should compare with the recorded mean, not with nominal episodes.
+
+        Only the episodes of the search decide, so that the answer does not depend on fresh seeds.
+        """
+        evaluator = self.evaluator
+        points = {tuple(point.values()): point for point in (*self.tried, *self._swept)}.values()
+        found = [evaluator.totals(point) for point in points]
+        usual, unit = evaluator.usual_mean, evaluator.guarantee.tolerance
+        if unit <= 0.0:
+            return False
+        paired = [cut_off([(before - after) / unit for after, before in pairs]) for pairs in found]
+        alone = [cut_off([(usual - after) / unit for after, _ in pairs]) for pairs in found]
+        return pairing_wastes(evaluator.guarantee, paired, alone, NEAREST[-1])
+
     def map(self) -> MarginMap | None:
         """Return the map of margins that the model predicts, or None with fewer than two ranges."""
         return margin_map(self.curves, self.model(), self.coordinates)
@@ -188,9 +205,13 @@ class Nearest:
         return [self.coordinates.vector(point) for point in self._known() if self.coordinates.covers(point)]
 
     def _known(self) -> list[Point]:
-        single = [curve.ray.point(t) for curve in self.curves for t in curve.evidence]
         tested = [point for point in self.tested if self.evaluator.knows(point)]
-        return [*single, *self.tried, *tested]
+        return [*self._swept, *self.tried, *tested]
+
+    @property
+    def _swept(self) -> list[Point]:
+        """Return the drifts along single directions at which episodes of the search ran."""
+        return [curve.ray.point(t) for curve in self.curves for t in curve.evidence]
 
     @cached_property
     def coordinates(self) -> Coordinates:

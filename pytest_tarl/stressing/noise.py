@@ -15,6 +15,9 @@ HIGHEST = 1.0 - LOWEST  # larger losses count as this one, because margins below
 WIDTH = 0.3  # standard deviation of the weights of drifts by their mean loss, in units of the tolerated loss
 # weight (degrees of freedom) of the typical variance, averaged with the variances of drifts of similar mean loss
 LIKE = 2.0
+WORSE = (
+    1.2  # maximum standard error of an unpaired test, as a multiple of that of a paired test, to be preferred
+)
 PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
 
 
@@ -59,6 +62,22 @@ def variance_near(loss: float, every: Sequence[Vector], typical: float) -> float
     weights = np.exp(-(((means - loss) / WIDTH) ** 2) / 2.0)
     squares, free = np.array([_squares(one) for one in known]), np.array([len(one) - 1.0 for one in known])
     return float((weights @ squares + LIKE * typical) / (weights @ free + LIKE))
+
+
+def pairing_wastes(
+    given: Guarantee, paired: Sequence[Vector], unpaired: Sequence[Vector], episodes: int
+) -> bool:
+    """Return whether nominal episodes with the same seeds would make a test of `episodes` hardly more precise.
+
+    `paired` are the cut-off losses of drifts from nominal episodes with the same seeds, and `unpaired` those from the
+    mean of nominal episodes, in units of the tolerated loss. An unpaired test takes half as many episodes, but the
+    recorded mean is uncertain.
+    """
+    if len(given.totals) < 2 or given.tolerance <= 0.0:
+        return False
+    apart, alone = (variance_near(1.0, every, typical_variance(every)) for every in (paired, unpaired))
+    recorded = float(np.var(given.totals, ddof=1)) / given.tolerance**2 / len(given.totals)
+    return sqrt(alone / episodes) + sqrt(recorded) <= WORSE * sqrt(apart / episodes)
 
 
 def standard_error(losses: Vector, typical: float) -> float:

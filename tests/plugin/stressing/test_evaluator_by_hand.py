@@ -291,6 +291,25 @@ def test_the_model_learns_from_fresh_episodes_once_their_pool_is_released() -> N
     assert made.knows(UP)
 
 
+def test_an_unpaired_test_runs_no_nominal_episodes_and_the_model_learns_losses_from_the_recorded_mean() -> (
+    None
+):
+    made, ran = evaluator(constant(9.25))
+    assert made.confirm(UP, "chain 0", 0.01, (16, 32), part="loss", least=10.0)
+    assert [plan.point for plan in ran.plans] == [UP] * 16
+    assert not made.confirm(DOWN, "chain 0", 0.01, (16, 32), part="loss", least=9.7)
+    made.release("chain 0")
+    assert made.losses(UP) == ([pytest.approx(1.5)] * 16, 0)
+    assert all(failed for _, failed in made.recalled("chain 0", UP))
+
+
+def test_the_rewards_of_the_search_are_paired_with_nominal_ones() -> None:
+    made, _ = evaluator(constant(9.25))
+    made.glance(UP)
+    assert made.totals(UP) == [(9.25, 10.0)] * GLANCE
+    assert made.usual_mean == 10.0
+
+
 def test_the_margin_is_measured_again_after_further_episodes() -> None:
     totals = iter([10.0] * 4 + [9.9, 9.9, 9.0, 9.0])
     made, _ = evaluator(lambda point, _: (True, next(totals)))
@@ -314,9 +333,10 @@ def test_the_seeds_of_a_chain_run_in_the_requested_order() -> None:
 
 def test_the_counts_of_a_pool_are_known_once_it_is_released() -> None:
     made, _ = evaluator(constant(9.5))
-    made.count("chain 0", Count(UP, 1.5, 16))
+    made.count("chain 0", Count(UP, 1.0, 8))
     made.count("chain 1", Count(DOWN, 2.0, 8))
     assert made.counts == []
+    made.count("chain 0", Count(UP, 1.5, 16))  # a continued test replaces its first count
     made.release("chain 1")
     made.release("chain 0")
     assert made.counts == [Count(DOWN, 2.0, 8), Count(UP, 1.5, 16)]

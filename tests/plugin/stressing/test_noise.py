@@ -10,11 +10,13 @@ import pytest
 from pytest_tarl import Drift
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.findings import failure
+from pytest_tarl.stressing.guarantee import Guarantee, recorded_mean
 from pytest_tarl.stressing.map_figure import answer
 from pytest_tarl.stressing.noise import (
     HIGHEST,
     cut_off,
     nominal_variance,
+    pairing_wastes,
     standard_error,
     typical_variance,
     variance_near,
@@ -89,3 +91,18 @@ def test_the_map_and_the_nearest_failure_are_right_if_losses_are_large_and_noisy
     assert found.failures
     # alone, a may change by 0.041 and b by 0.081: distances of 0.025 and 0.027
     assert 0.025 <= min(failure(SPACE, one.point).distance for one in found.failures) < 0.08
+
+
+def test_nominal_episodes_are_saved_only_if_they_hardly_make_a_test_more_precise() -> None:
+    given = Guarantee(0.9, 1.0, (9.9, 10.1) * 50, 1.0)
+    noisy = [cut_off([0.4, 1.6, 1.0])] * 30
+    quiet = [cut_off([0.9, 1.1, 1.0])] * 30
+    assert pairing_wastes(given, noisy, noisy, 64)
+    assert not pairing_wastes(given, quiet, noisy, 64)  # the same seeds cause the same losses
+    assert not pairing_wastes(
+        replace(given, totals=(9.0, 11.0) * 3), noisy, noisy, 64
+    )  # few, varied recordings
+    assert not pairing_wastes(replace(given, totals=(10.0,)), noisy, noisy, 64)
+    assert not pairing_wastes(replace(given, tolerance=0.0), noisy, noisy, 64)
+    assert recorded_mean(given, 0.01) < 10.0
+    assert recorded_mean(given, 0.001) < recorded_mean(given, 0.01)

@@ -12,7 +12,7 @@ from pytest_tarl import Drift
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import combinations, search
 from pytest_tarl.stressing.chains import FIRST, NEXT, clear, part_of
-from pytest_tarl.stressing.combinations import SHARES, Combined, Together, _inside
+from pytest_tarl.stressing.combinations import SHARES, Chain, Combined, Together, _inside
 from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.evaluating import BudgetSpentError
 from pytest_tarl.stressing.findings import Curve, Failure, failure
@@ -241,7 +241,15 @@ class Confirming:
         self.released: list[str] = []
 
     def confirm(
-        self, point: Point, pool: str, risk: float, sizes: Any, shares: Any, part: str, strict: bool
+        self,
+        point: Point,
+        pool: str,
+        risk: float,
+        sizes: Any,
+        shares: Any,
+        part: str,
+        strict: bool,
+        least: float | None,
     ) -> bool:
         self.asked.append((point["a"], pool, risk, part))
         return point["a"] >= self.least
@@ -289,16 +297,24 @@ def test_when_the_budget_ends_the_pool_is_released_and_confirmed_drifts_are_kept
     together, evaluator = Together(0.1, []), Confirming(0.0)
     confirm = evaluator.confirm
 
-    def spent(point: Point, *given: Any, strict: bool) -> bool:
+    def spent(point: Point, *given: Any, **named: Any) -> bool:
         if point["a"] < 0.5:
             raise BudgetSpentError
-        return confirm(point, *given, strict=strict)
+        return confirm(point, *given, **named)
 
     evaluator.confirm = spent  # type: ignore[method-assign]
     with pytest.raises(BudgetSpentError):
         together.confirm([drift(a=0.9, b=0.9), drift(a=0.4, b=0.4)], evaluator)  # type: ignore[arg-type]
     assert evaluator.released == ["chain 0"]
     assert [one.point["a"] for one in together.found] == [0.9]
+    evaluator.confirm = confirm  # type: ignore[method-assign]
+    begun = together.interrupted
+    assert begun is not None
+    assert together.run(begun)
+    assert evaluator.asked[-1][:2] == (0.4, "chain 0")
+    assert [point["a"] for point in together.tested] == [0.9, 0.4]
+    assert together.interrupted is None
+    assert together.chains == 1
 
 
 # the search in several directions
@@ -427,6 +443,42 @@ def test_no_small_steps_follow_if_the_next_chain_confirms_a_drift(
     both = made(CUBE)
     both.together.every.append(failure(CUBE, drift(a=0.9, b=0.9)))
     both.begin()
+
+
+@pytest.mark.parametrize(
+    ("expected", "near", "order"),
+    [
+        (True, 0.5, ["continued"]),  # the new chain would not lead much nearer than the interrupted one
+        (True, 0.1, ["new", "continued"]),
+        (False, 0.1, ["new", "closer"]),  # the model no longer expects the interrupted chain to go on
+    ],
+)
+def test_an_interrupted_chain_goes_on_if_its_next_drift_is_still_expected_to_fail(
+    expected: bool, near: float, order: list[str], leading: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    happened: list[str] = []
+    both = made(CUBE)
+
+    def interrupt(self: Combined, chain: Any) -> bool:
+        happened.append("new")
+        return False
+
+    def continued(self: Together, chain: Any) -> bool:
+        happened.append("continued")
+        return True
+
+    monkeypatch.setattr(Combined, "_test", interrupt)
+    monkeypatch.setattr(Combined, "_approach_confirmed", lambda self: happened.append("closer"))
+    monkeypatch.setattr(Together, "run", continued)
+    monkeypatch.setattr(combinations.chains, "clear", lambda nearest: [])
+    monkeypatch.setattr(combinations.chains, "chain", lambda *_: [drift(a=near, b=near)])
+    monkeypatch.setattr(combinations.chains, "likely", lambda *_: expected)
+    both.begin()
+    happened.clear()
+    both.together.interrupted = Chain([drift(a=0.4, b=0.4)], both.evaluator, "chain 0", 0.01, "loss")
+    with both.evaluator.limited(1.0):
+        both.begin()
+    assert happened[3:] == order  # after two first chains and one of clear failures
 
 
 def test_the_end_of_a_search_improves_tests_pairs_and_confirms_from_far_to_near(

@@ -302,8 +302,9 @@ def test_a_chain_has_one_risk_for_each_of_its_tests_and_ends_at_the_first_that_f
     risks: list[tuple[str, float]] = []
     released: list[str] = []
 
-    def confirm(point: Any, pool: str, risk: float, *_: Any, strict: bool) -> bool:
+    def confirm(point: Any, pool: str, risk: float, *_: Any, strict: bool, least: float | None) -> bool:
         assert strict
+        assert least is None
         risks.append((pool, risk))
         return point["mud"] >= 2.0
 
