@@ -18,9 +18,11 @@ from pytest_tarl.stressing.chains import (
     LIKELY,
     NEARER,
     OUTWARD,
+    POSSIBLE,
     UNLIKELY,
     closer,
     finer,
+    likely,
     part_of,
 )
 from pytest_tarl.stressing.evaluating import Count
@@ -275,3 +277,12 @@ def test_no_small_steps_lead_from_a_drift_that_the_model_does_not_cover() -> Non
     assert closer(nearest, {"a": 0.6, "b": 0.8, "option": 1.0}) == []
     nearest.best = None
     assert closer(nearest, DRIFTS[0]) == []
+
+
+def test_a_drift_is_likely_to_be_confirmed_from_a_probability_of_one_half_on() -> None:
+    nearest = model_of((), ())
+    for chance, answer in ((POSSIBLE, True), (POSSIBLE - 0.01, False)):
+        failing = SimpleNamespace(failing=lambda vectors, chance=chance: np.full(len(vectors), chance))
+        nearest.model = lambda failing=failing: failing
+        assert likely(nearest, DRIFTS[0]) is answer
+        assert not likely(nearest, {"a": 0.6, "b": 0.8, "option": 1.0})  # the model does not cover it

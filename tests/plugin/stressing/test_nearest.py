@@ -18,6 +18,7 @@ from pytest_tarl.stressing.evaluating import Evaluator
 from pytest_tarl.stressing.evolving import evolve
 from pytest_tarl.stressing.findings import Curve
 from pytest_tarl.stressing.generating import generate
+from pytest_tarl.stressing.nearest import Nearest
 from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
 from pytest_tarl.stressing.rays import distance, rays
 from pytest_tarl.stressing.spreading import CLOSEST, spread
@@ -219,3 +220,24 @@ def test_a_failure_under_another_option_is_approached_as_closely_as_one_under_th
     found = [one.distance for one in stressed(world, space, budget=600).combinations]
     # at the boundary, b is 0.25 or a little less with some a: 0.5 is lost at (0.1, 0.2), 0.224 from nominal
     assert sqrt(1.0 + 0.05) < min(found) < sqrt(1.0 + 0.3**2)
+
+
+@pytest.mark.parametrize(("common", "own", "unpaired"), [(0.3, 0.0, False), (0.0, 0.3, True)])
+def test_nominal_episodes_are_saved_if_rewards_vary_independently_under_drifts(
+    common: float, own: float, unpaired: bool
+) -> None:
+    space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
+
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        shared, alone = draws.normal(size=2)
+        lost = 0.5 * (point["a"] + point["b"])
+        # the noise of `common` is that of the nominal episode with the same seed, the other grows with the loss
+        return True, 10.0 - lost + common * float(shared) + own * lost * float(alone)
+
+    evaluator = evaluator_of(world, space)
+    nearest = Nearest(evaluator, [])
+    for number in range(12):
+        nearest.tried.append({"a": 0.3 + 0.05 * number, "b": 0.4})
+        evaluator.common(space.nominal, 4)
+        evaluator.common(nearest.tried[-1], 4)
+    assert nearest.unpaired is unpaired
