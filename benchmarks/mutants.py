@@ -7,7 +7,13 @@ than without the fault. A test that also fails without the fault catches nothing
 caught. The tests of the file that is named after the module run first, then the other tests, in both cases from fast
 to slow, until the next test would exceed `--budget`. Slower tests might still catch a fault that survives these, so
 the share is a lower bound. Tests with a pytest.ini of their own run by themselves. The script prints the share of
-caught faults with its exact 95 % interval, and the surviving faults.
+caught faults with its exact 95 % interval, for each package and in total, and the surviving faults.
+
+`--forks` takes a small part of this time. One pytest imports everything and collects all tests, and each fault is put
+into the functions of a fork of it (`forked_tests.py`). A fault in a line that runs during the imports is tried in a
+fresh process instead. The lines of each test are measured with marks in place of coverage (`reach_marks.py`); tests
+that take more than a second, and all that follows in a file after a few seconds, are left out. Tests with a pytest.ini
+of their own are not run.
 """
 
 from __future__ import annotations
@@ -21,12 +27,15 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from py_compile import PycInvalidationMode
 
+from forked_tests import IMPORTED, UNCHANGED, Forks, forks
 from nearest_tests import Nearest
+from reach_marks import FOLDER, compiled
 from reached_lines import Reached, from_coverage, read
 from scipy.stats import beta
 from sown_faults import Fault, faults
@@ -39,6 +48,8 @@ LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache",
 # CPU seconds of tests that are run for each fault; the times are those measured without the fault
 BUDGET = 120.0
 PATIENCE = 120.0  # seconds allowed beyond three times the CPU time of the tests without the fault
+SLOWED = 10  # times that a test may take its CPU seconds, on a busy machine, until a fork is killed
+LONGEST_FILE = 45.0  # seconds for one file of tests in `measured_in_forks`
 SETTINGS = """[run]
 source = {source}
 parallel = true
@@ -55,6 +66,7 @@ class Outcome:
     fault: Fault
     word: str
     tests: int
+    failed: str = ""  # the test that failed with the fault, if one is known
 
 
 def main() -> None:
@@ -82,6 +94,11 @@ def main() -> None:
         type=int,
         metavar="N",
         help="run the N files of --tests that are nearest to the changed module by imports, without coverage",
+    )
+    parser.add_argument(
+        "--forks",
+        action="store_true",
+        help="run the tests in forks of one pytest that has imported everything, and measure without coverage",
     )
     parser.add_argument(
         "--keep",
@@ -116,12 +133,15 @@ def main() -> None:
         elif given.without_coverage:
             reached = Reached.of_files(given.tests)
         else:
-            reached = known(given.keep, copy, given.package, given.tests)
-        collected(copy, sorted({test.partition("::")[0] for test in reached.tests}))
+            measure = measured_in_forks if given.forks else measured
+            reached = known(given.keep, lambda: measure(copy, given.package, given.tests))
+        if not given.forks:
+            collected(copy, sorted({test.partition("::")[0] for test in reached.tests}))
         chosen = sample(copy, given.package, set(given.only), given.each, given.seed, given.count)
         proven: dict[str, str] = json.loads(EQUIVALENT.read_text())
         outcomes = []
-        with warm(copy, environment(copy)) as runner:
+        with warm(copy, environment(copy)) as runner, ExitStack() as stack:
+            forked = stack.enter_context(forks(copy, environment(copy), given.tests)) if given.forks else None
             for fault in chosen:
                 if fault.name in proven:
                     print(f"equivalent  {fault.name}: {proven[fault.name]}", flush=True)
@@ -131,7 +151,10 @@ def main() -> None:
                     reached.seconds |= dict.fromkeys(tests, 0.0)
                 else:
                     tests = reached.within(given.budget, reached.at(fault.path, fault.lines), fault.path)
-                outcomes.append(tried(fault, copy, tests, reached.seconds, runner, given.patience))
+                outcome = None
+                if forked and not reached.has(IMPORTED, fault.path, fault.lines):
+                    outcome = tried_in_fork(fault, copy, tests, reached.seconds, forked, given.patience)
+                outcomes.append(outcome or tried(fault, copy, tests, reached.seconds, runner, given.patience))
                 print(
                     f"{outcomes[-1].word:<11} {fault.path}:{fault.line} {fault.kind}: {fault.was!r} → {fault.now!r}",
                     flush=True,
@@ -139,16 +162,29 @@ def main() -> None:
     report(outcomes)
 
 
-def known(keep: Sequence[Path], copy: Path, package: str, tests: Sequence[str]) -> Reached:
+def known(keep: Sequence[Path], measure: Callable[[], Reached]) -> Reached:
     """Return which tests reach which lines; measure it, or read it from the files."""
     if not keep:
-        return measured(copy, package, tests)
+        return measure()
     reached = Reached()
     for file in keep:
         if not file.exists():
-            measured(copy, package, tests).write(file)
+            measure().write(file)
         reached.add(read(file))
     return reached
+
+
+def measured_in_forks(copy: Path, package: str, tests: Sequence[str]) -> Reached:
+    """Run the tests once with marks in the package; see `reach_marks.py`."""
+    with tempfile.TemporaryDirectory(prefix="marks-") as folder:
+        compiled(copy, package, Path(folder))
+        start = f"import sys\nsys.path.append({str(Path(__file__).parent)!r})\n"
+        start += "import reach_marks\nreach_marks.install()\n"
+        (Path(folder) / "sitecustomize.py").write_text(start)
+        surroundings = {**environment(copy), FOLDER: folder}
+        surroundings["PYTHONPATH"] += os.pathsep + folder
+        with forks(copy, surroundings, tests) as running:
+            return running.measured(LONGEST_FILE)
 
 
 def measured(copy: Path, package: str, tests: Sequence[str]) -> Reached:
@@ -303,6 +339,45 @@ def tried(
     return Outcome(fault, word if sound else "unclear", len(tests))
 
 
+def tried_in_fork(
+    fault: Fault,
+    copy: Path,
+    tests: Sequence[str],
+    seconds: Mapping[str, float],
+    forked: Forks,
+    patience: float = PATIENCE,
+) -> Outcome | None:
+    """Insert a fault, run the tests that reach it in a fork, and remove it; return None if only `tried` can do it.
+
+    The fault is caught if the same tests, up to the one that failed, pass within the same time without the fault.
+    """
+    if not tests:
+        return Outcome(fault, "unreached", 0)
+    file = copy / fault.path
+    text = file.read_bytes()
+    file.write_bytes(fault.sown(text))
+    limit = patience + SLOWED * sum(seconds[test] for test in tests)
+    try:
+        ran = forked(tests, limit, str(file), fault.line)
+    finally:
+        file.write_bytes(text)
+        without_caches(copy)
+    if ran.status == str(UNCHANGED):
+        return None
+    if ran.status == "0":
+        return Outcome(fault, "survived", len(tests))
+    sound = bool(ran.started) and forked(ran.started, limit).status == "0"
+    without_caches(copy)
+    word = "timeout" if ran.status == "timeout" else "caught"
+    return Outcome(fault, word if sound else "unclear", len(tests), ran.failed)
+
+
+def without_caches(copy: Path) -> None:
+    """Remove the caches of TARL from the copy."""
+    for cache in copy.rglob(".tarl"):
+        shutil.rmtree(cache, ignore_errors=True)
+
+
 def tested(copy: Path, tests: Sequence[str], limit: float, runner: Runner) -> tuple[int, str]:
     """Return pytest's exit status and the first failed test, or no test if pytest itself failed.
 
@@ -311,11 +386,20 @@ def tested(copy: Path, tests: Sequence[str], limit: float, runner: Runner) -> tu
     for arguments in apart(copy, tests):
         try:
             status, told = runner(
-                ["-q", "-x", "-rfE", "-p", "no:cacheprovider", "--no-header", *arguments], limit
+                [
+                    "-q",
+                    "-x",
+                    "-rfE",
+                    "-p",
+                    "no:cacheprovider",
+                    "--assert=plain",
+                    "--no-header",
+                    *arguments,
+                ],
+                limit,
             )
         finally:
-            for cache in copy.rglob(".tarl"):
-                shutil.rmtree(cache, ignore_errors=True)
+            without_caches(copy)
         if status:
             lines = (line.split(" ", 1) for line in told.splitlines())
             first = next((line[1] for line in lines if line[0] in ("FAILED", "ERROR") and line[1:]), "")
@@ -340,17 +424,23 @@ def report(outcomes: Sequence[Outcome]) -> None:
     """Print the shares by package and in total, and the survivors."""
     words = ("caught", "timeout", "survived", "unreached", "unclear")
     packages = sorted({home(one) for one in outcomes})
-    print(f"\n| package | {' | '.join(words)} |\n|---|---|---|---|---|---|")
+    print(f"\n| package | faults | {' | '.join(words)} | share (95 % interval) |\n|{'---|' * 8}")
     for name in [*packages, "all"]:
-        counts = [sum(one.word == word and name in (home(one), "all") for one in outcomes) for word in words]
-        print(f"| {name} | {' | '.join(map(str, counts))} |")
-    total, good = len(outcomes), sum(one.word in ("caught", "timeout") for one in outcomes)
-    low = beta.ppf(0.025, good, total - good + 1) if good else 0.0
-    high = beta.ppf(0.975, good + 1, total - good) if good < total else 1.0
-    print(f"\n{good} of {total} caught: {good / max(1, total):.0%} (95 % interval {low:.0%} to {high:.0%})")
+        chosen = [one for one in outcomes if name in (home(one), "all")]
+        counts = [sum(one.word == word for one in chosen) for word in words]
+        print(f"| {name} | {len(chosen)} | {' | '.join(map(str, counts))} | {share(chosen)} |")
+    print()
     for one in outcomes:
         if one.word in ("survived", "unreached", "unclear"):
             print(f"{one.word}: {one.fault.name} (line {one.fault.line}, {one.tests} tests)")
+
+
+def share(outcomes: Sequence[Outcome]) -> str:
+    """Return the share of caught faults with its exact (Clopper-Pearson) 95 % interval, for a table."""
+    total, good = len(outcomes), sum(one.word in ("caught", "timeout") for one in outcomes)
+    low = beta.ppf(0.025, good, total - good + 1) if good else 0.0
+    high = beta.ppf(0.975, good + 1, total - good) if good < total else 1.0
+    return f"{100 * good / max(1, total):.0f} % ({100 * low:.0f} % to {100 * high:.0f} %)"
 
 
 def home(outcome: Outcome) -> str:

@@ -35,6 +35,10 @@ class Reached:
             bits |= self.lines.get((path, line), 0)
         return sorted({name for number, name in enumerate(self.tests) if bits >> number & 1})
 
+    def has(self, test: str, path: str, lines: Iterable[int]) -> bool:
+        """Return whether a test reaches one of the lines of a file."""
+        return test in self.at(path, lines)
+
     def within(self, budget: float, tests: Iterable[str], module: str) -> list[str]:
         """Return passing tests that together take at most `budget` CPU seconds, but at least one test.
 

@@ -1,0 +1,313 @@
+"""Plugin of pytest that collects once and then runs chosen tests in forks, with or without a fault in the code.
+
+A fork changes the functions of the file with the fault, so nothing is imported again. This equals a fresh process if
+no changed line has run before, while modules were imported; the caller has to check this (`IMPORTED` in the results of
+`measured`). Processes that a test starts read the changed file from the disk. Needs `os.fork`.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from types import CodeType, FrameType, FunctionType
+from typing import Any, TextIO
+
+import pytest
+from reach_marks import Marks, marks
+from reached_lines import Reached
+from warm_pytest import ended
+
+CHANNELS = "FORKED_TESTS"  # environment variable with the two ends of pipes, "read,write"
+IMPORTED = "(import)"  # stands for the import of all modules among the tests that reach a line
+UNCHANGED = 77  # exit status if a fault cannot be put into the functions of the process
+SLOWEST = 1.0  # CPU seconds until a test that is measured is interrupted
+MOST_OF_FILE = 2.5  # CPU seconds of one file of tests that is measured
+
+
+@dataclass(frozen=True)
+class Ran:
+    """Result of a fork: its exit status ("timeout" if it was killed), and the last test that began, if not all passed.
+
+    `started` are the tests that began, in order.
+    """
+
+    status: str
+    failed: str
+    started: tuple[str, ...]
+
+
+class Forks:
+    """Runs tests in forks of a pytest that has collected them."""
+
+    def __init__(self, requests: int, answers: int, output: Path) -> None:
+        self._requests = os.fdopen(requests, "w")
+        self._answers = os.fdopen(answers)
+        self._output = output
+        first = self._answers.readline()
+        if not first:
+            self.close()
+            raise EOFError
+        self.tests: list[str] = json.loads(first)
+
+    def __call__(self, tests: Sequence[str], limit: float, path: str = "", line: int = 0) -> Ran:
+        """Run tests until one fails, with the text that the file `path` has now.
+
+        `line` is the first line that differs from the text that was imported. All of the fork is killed after `limit`
+        seconds.
+        """
+        status, lines = self._asked(
+            {"tests": [*tests], "limit": limit, "path": path, "line": line, "measure": False}
+        )
+        started = tuple(one["test"] for one in lines if one["passed"] is None)
+        passed = {one["test"] for one in lines if one["passed"]}
+        failed = next((one for one in reversed(started) if one not in passed), "")
+        return Ran(status, failed, started)
+
+    def measured(self, limit: float) -> Reached:
+        """Run all tests once, one fork per file, and return the lines that they reach.
+
+        Needs a pytest with marks. The rest of a file is left out after MOST_OF_FILE CPU seconds or `limit` seconds.
+        """
+        files: dict[str, list[str]] = {}
+        for test in self.tests:
+            files.setdefault(test.partition("::")[0], []).append(test)
+        found = Reached([IMPORTED])
+        left_out = 0
+        for number, tests in enumerate([[], *files.values()]):
+            _, lines = self._asked({"tests": tests, "limit": limit, "path": "", "line": 0, "measure": True})
+            _add(found, lines)
+            left_out += len(tests) - sum(one["passed"] is not None for one in lines if one["test"])
+            print(
+                f"{number} of {len(files)} files measured, {left_out} tests left out",
+                file=sys.stderr,
+                flush=True,
+            )
+        return found
+
+    def close(self) -> None:
+        """Let pytest end."""
+        self._requests.close()
+        self._answers.close()
+
+    def _asked(self, request: Mapping[str, object]) -> tuple[str, list[dict[str, Any]]]:
+        print(json.dumps({**request, "output": str(self._output)}), file=self._requests, flush=True)
+        status = self._answers.readline().strip()
+        lines = self._output.read_text().splitlines()
+        return status, [json.loads(one) for one in lines if one.endswith("}")]
+
+
+def _add(found: Reached, lines: Sequence[Mapping[str, Any]]) -> None:
+    for one in lines:
+        if one["passed"] is None:
+            continue
+        test = one["test"] or IMPORTED
+        if test != IMPORTED:
+            found.tests.append(test)
+        bit = 1 << found.tests.index(test)
+        if one["passed"] and test != IMPORTED:
+            found.seconds[test] = one["seconds"]
+        for path, numbers in one["lines"]:
+            for line in numbers:
+                found.lines[path, line] = found.lines.get((path, line), 0) | bit
+
+
+@contextmanager
+def forks(folder: Path, environment: Mapping[str, str], arguments: Sequence[str]) -> Iterator[Forks]:
+    """Start pytest with the arguments in the folder, and end it afterwards.
+
+    Raises EOFError if pytest ends during the collection.
+    """
+    (read, asking), (answering, write) = os.pipe(), os.pipe()
+    with tempfile.TemporaryDirectory(prefix="forks-") as place:
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-q",
+            "-p",
+            "forked_tests",
+            "-p",
+            "no:cacheprovider",
+            "--assert=plain",
+        ]
+        command += ["--basetemp", str(Path(place) / "base"), *arguments]
+        surroundings = {**environment, CHANNELS: f"{read},{write}"}
+        surroundings["PYTHONPATH"] = os.pathsep.join(
+            [environment.get("PYTHONPATH", ""), str(Path(__file__).parent)]
+        )
+        with (
+            (Path(place) / "log").open("w+b") as log,
+            subprocess.Popen(
+                command,
+                cwd=folder,
+                env=surroundings,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                pass_fds=(read, write),
+            ),
+        ):
+            os.close(read)
+            os.close(write)
+            try:
+                running = Forks(asking, answering, Path(place) / "output")
+            except EOFError:
+                log.seek(0)
+                raise EOFError(log.read().decode(errors="replace")[-2000:]) from None
+            try:
+                yield running
+            finally:
+                running.close()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtestloop(session: pytest.Session) -> bool | None:
+    """Run what is requested until the pipe ends; without pipes, leave the run to pytest."""
+    channels = os.environ.pop(CHANNELS, "")
+    if not channels:
+        return None
+    read, write = map(int, channels.split(","))
+    # tests that run pytest inside are slow, and the end of a file may be left out
+    quick_first = sorted(session.items, key=lambda item: "pytester" in getattr(item, "fixturenames", ()))
+    items = {item.nodeid: item for item in quick_first}
+    known = functions()
+    own = marks() if os.environ.get("REACH_MARKS") else None
+    imported = own.taken() if own else []
+    gc.collect()
+    gc.freeze()
+    with os.fdopen(read) as requests, os.fdopen(write, "w") as answers:
+        print(json.dumps([*items]), file=answers, flush=True)
+        for line in requests:
+            request = json.loads(line)
+            Path(request["output"]).write_text("")
+            child = os.fork()
+            if not child:
+                _run(session, items, known, own, imported, request)
+            print(ended(child, request["limit"]), file=answers, flush=True)
+    return True
+
+
+def functions() -> dict[str, list[FunctionType]]:
+    """Return the Python functions of this process by file."""
+    found: dict[str, list[FunctionType]] = {}
+    for one in gc.get_objects():
+        if type(one) is FunctionType:
+            found.setdefault(one.__code__.co_filename, []).append(one)
+    return found
+
+
+def changed(known: Sequence[FunctionType], text: bytes, path: str, line: int) -> int:
+    """Give the functions of a file the code of a new text of it; return how many functions this changes.
+
+    `line` is the first line that differs: functions below it may have moved, but cannot have changed. Raises
+    ValueError if a function uses other variables of the functions around it than before.
+    """
+    codes: dict[tuple[str, int], list[CodeType]] = {}
+    waiting = [compile(text, path, "exec", dont_inherit=True)]
+    while waiting:
+        code = waiting.pop()
+        waiting += [one for one in code.co_consts if isinstance(one, CodeType)]
+        codes.setdefault(_place(code), []).append(code)
+    number = 0
+    for function in known:
+        new = codes.get(_place(function.__code__), [])
+        if function.__code__.co_firstlineno <= line and len(new) == 1 and new[0] != function.__code__:
+            function.__code__ = new[0]
+            number += 1
+    return number
+
+
+def _place(code: CodeType) -> tuple[str, int]:
+    return getattr(code, "co_qualname", code.co_name), code.co_firstlineno
+
+
+def _run(
+    session: pytest.Session,
+    items: Mapping[str, pytest.Item],
+    known: Mapping[str, Sequence[FunctionType]],
+    own: Marks | None,
+    imported: Sequence[int],
+    request: Mapping[str, Any],
+) -> None:
+    """Run the tests of a request in this process, a fork, and end it."""
+    status = 1
+    try:
+        os.setsid()
+        path = request["path"]
+        if path:
+            with suppress(ValueError):
+                if changed(known.get(path, ()), Path(path).read_bytes(), path, request["line"]):
+                    path = ""
+        if path:
+            status = UNCHANGED
+        else:
+            names = request["tests"]
+            with Path(request["output"]).open("a", buffering=1) as output:
+                measured = own if request["measure"] else None
+                if measured and not names:
+                    print(_told("", True, 0.0, measured, imported), file=output)
+                status = _tested(session, [items[name] for name in names], output, measured)
+    finally:
+        os._exit(status)
+
+
+def _tested(
+    session: pytest.Session, items: Sequence[pytest.Item], output: TextIO, measured: Marks | None
+) -> int:
+    """Run the items; return 1 at the first failure, unless they are measured."""
+    failures: list[str] = []
+
+    class Reports:
+        def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+            if report.failed:
+                failures.append(report.nodeid)
+
+    session.config.pluginmanager.register(Reports())
+    if measured:
+        signal.signal(signal.SIGPROF, _too_slow)
+    total = 0.0
+    for item, following in zip(items, [*items[1:], None], strict=True):
+        print(json.dumps({"test": item.nodeid, "passed": None}), file=output)
+        before, failed = sum(os.times()[:4]), len(failures)
+        if measured:
+            measured.taken()
+            signal.setitimer(signal.ITIMER_PROF, SLOWEST)
+        try:
+            session.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
+        except TimeoutError:
+            failures.append(item.nodeid)
+        if measured:
+            signal.setitimer(signal.ITIMER_PROF, 0)
+        seconds = sum(os.times()[:4]) - before
+        passed = len(failures) == failed
+        reached = measured.taken() if measured else []
+        print(_told(item.nodeid, passed, seconds, measured, reached), file=output)
+        if not passed and not measured:
+            return 1
+        total += seconds
+        if measured and total > MOST_OF_FILE:
+            return 1
+    return 0
+
+
+def _too_slow(_number: int, _frame: FrameType | None) -> None:
+    raise TimeoutError(f"the test takes more than {SLOWEST:g} s of CPU time")
+
+
+def _told(test: str, passed: bool, seconds: float, measured: Marks | None, reached: Sequence[int]) -> str:
+    """Return a line of the output of a fork."""
+    lines: dict[str, list[int]] = {}
+    for mark in reached if measured else ():
+        assert measured is not None
+        path, numbers = measured.pieces[mark]
+        lines.setdefault(path, []).extend(numbers)
+    return json.dumps({"test": test, "passed": passed, "seconds": seconds, "lines": [*lines.items()]})
