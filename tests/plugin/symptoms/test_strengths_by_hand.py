@@ -265,6 +265,13 @@ def test_pairs_without_designed_steps_and_values_of_zero_have_no_jumps() -> None
     assert strength("jumps", Pair(series(np.zeros(120)), series(step(60), lost_at(60, 31)))) == 0.0
 
 
+def test_a_designed_mission_without_values_does_not_count_as_a_large_value() -> None:
+    none = Series(np.zeros(0), np.zeros(0, np.int32), np.zeros(120))
+    steady = Pair(series(np.full(120, 0.1)), series(step(60)))
+    found = Pair(none, series(step(60, high=0.05), lost_at(60, 31)))
+    assert strength("jumps", found, steady) == pytest.approx(1.0 - 6 / 120 / 2)  # one first value of six steps
+
+
 # offset: the second halves of 20 values, and half of the range is certain
 
 
