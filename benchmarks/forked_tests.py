@@ -30,7 +30,8 @@ CHANNELS = "FORKED_TESTS"  # environment variable with the two ends of pipes, "r
 IMPORTED = "(import)"  # stands for the import of all modules among the tests that reach a line
 UNCHANGED = 77  # exit status if a fault cannot be put into the functions of the process
 SLOWEST = 1.0  # CPU seconds until a test that is measured is interrupted
-MOST_OF_FILE = 2.5  # CPU seconds of one file of tests that is measured
+# of one file of tests that is measured, as multiples of those seconds: CPU seconds, and seconds on a busy machine
+MOST_OF_FILE, LONGEST_FILE = 2.5, 45.0
 
 
 @dataclass(frozen=True)
@@ -65,17 +66,18 @@ class Forks:
         seconds.
         """
         status, lines = self._asked(
-            {"tests": [*tests], "limit": limit, "path": path, "line": line, "measure": False}
+            {"tests": [*tests], "limit": limit, "path": path, "line": line, "slowest": 0.0}
         )
         started = tuple(one["test"] for one in lines if one["passed"] is None)
         passed = {one["test"] for one in lines if one["passed"]}
         failed = next((one for one in reversed(started) if one not in passed), "")
         return Ran(status, failed, started)
 
-    def measured(self, limit: float) -> Reached:
+    def measured(self, slowest: float = SLOWEST) -> Reached:
         """Run all tests once, one fork per file, and return the lines that they reach.
 
-        Needs a pytest with marks. The rest of a file is left out after MOST_OF_FILE CPU seconds or `limit` seconds.
+        Needs a pytest with marks. A test is interrupted after `slowest` CPU seconds of this process, and the rest of a
+        file is left out after MOST_OF_FILE times as much.
         """
         files: dict[str, list[str]] = {}
         for test in self.tests:
@@ -83,7 +85,9 @@ class Forks:
         found = Reached([IMPORTED])
         left_out = 0
         for number, tests in enumerate([[], *files.values()]):
-            _, lines = self._asked({"tests": tests, "limit": limit, "path": "", "line": 0, "measure": True})
+            _, lines = self._asked(
+                {"tests": tests, "limit": LONGEST_FILE * slowest, "path": "", "line": 0, "slowest": slowest}
+            )
             _add(found, lines)
             left_out += len(tests) - sum(one["passed"] is not None for one in lines if one["test"])
             print(
@@ -252,16 +256,22 @@ def _run(
         else:
             names = request["tests"]
             with Path(request["output"]).open("a", buffering=1) as output:
-                measured = own if request["measure"] else None
+                measured = own if request["slowest"] else None
                 if measured and not names:
                     print(_told("", True, 0.0, measured, imported), file=output)
-                status = _tested(session, [items[name] for name in names], output, measured)
+                status = _tested(
+                    session, [items[name] for name in names], output, measured, request["slowest"]
+                )
     finally:
         os._exit(status)
 
 
 def _tested(
-    session: pytest.Session, items: Sequence[pytest.Item], output: TextIO, measured: Marks | None
+    session: pytest.Session,
+    items: Sequence[pytest.Item],
+    output: TextIO,
+    measured: Marks | None,
+    slowest: float,
 ) -> int:
     """Run the items; return 1 at the first failure, unless they are measured."""
     failures: list[str] = []
@@ -280,7 +290,7 @@ def _tested(
         before, failed = sum(os.times()[:4]), len(failures)
         if measured:
             measured.taken()
-            signal.setitimer(signal.ITIMER_PROF, SLOWEST)
+            signal.setitimer(signal.ITIMER_PROF, slowest)
         try:
             session.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
         except TimeoutError:
@@ -294,13 +304,13 @@ def _tested(
         if not passed and not measured:
             return 1
         total += seconds
-        if measured and total > MOST_OF_FILE:
+        if measured and total > MOST_OF_FILE * slowest:
             return 1
     return 0
 
 
 def _too_slow(_number: int, _frame: FrameType | None) -> None:
-    raise TimeoutError(f"the test takes more than {SLOWEST:g} s of CPU time")
+    raise TimeoutError("the test takes too much CPU time to be measured")
 
 
 def _told(test: str, passed: bool, seconds: float, measured: Marks | None, reached: Sequence[int]) -> str:

@@ -11,9 +11,9 @@ caught faults with its exact 95 % interval, for each package and in total, and t
 
 `--forks` takes a small part of this time. One pytest imports everything and collects all tests, and each fault is put
 into the functions of a fork of it (`forked_tests.py`). A fault in a line that runs during the imports is tried in a
-fresh process instead. The lines of each test are measured with marks in place of coverage (`reach_marks.py`); tests
-that take more than a second, and all that follows in a file after a few seconds, are left out. Tests with a pytest.ini
-of their own are not run.
+fresh process instead. The lines of each test are measured with marks in place of coverage (`reach_marks.py`). Tests
+that take more than `--slowest` CPU seconds, and all that follow in a file after 2.5 times as much, are left out. Tests
+with a pytest.ini of their own are not run.
 """
 
 from __future__ import annotations
@@ -30,10 +30,11 @@ import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from py_compile import PycInvalidationMode
 
-from forked_tests import IMPORTED, UNCHANGED, Forks, forks
+from forked_tests import IMPORTED, SLOWEST, UNCHANGED, Forks, forks
 from nearest_tests import Nearest
 from reach_marks import FOLDER, compiled
 from reached_lines import Reached, from_coverage, read
@@ -49,7 +50,6 @@ LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache",
 BUDGET = 120.0
 PATIENCE = 120.0  # seconds allowed beyond three times the CPU time of the tests without the fault
 SLOWED = 10  # times that a test may take its CPU seconds, on a busy machine, until a fork is killed
-LONGEST_FILE = 45.0  # seconds for one file of tests in `measured_in_forks`
 SETTINGS = """[run]
 source = {source}
 parallel = true
@@ -101,6 +101,13 @@ def main() -> None:
         help="run the tests in forks of one pytest that has imported everything, and measure without coverage",
     )
     parser.add_argument(
+        "--slowest",
+        type=float,
+        default=SLOWEST,
+        metavar="S",
+        help=f"with --forks, leave out tests that take more CPU seconds than this (default {SLOWEST:g})",
+    )
+    parser.add_argument(
         "--keep",
         type=Path,
         nargs="*",
@@ -133,7 +140,7 @@ def main() -> None:
         elif given.without_coverage:
             reached = Reached.of_files(given.tests)
         else:
-            measure = measured_in_forks if given.forks else measured
+            measure = partial(measured_in_forks, slowest=given.slowest) if given.forks else measured
             reached = known(given.keep, lambda: measure(copy, given.package, given.tests))
         if not given.forks:
             collected(copy, sorted({test.partition("::")[0] for test in reached.tests}))
@@ -174,7 +181,7 @@ def known(keep: Sequence[Path], measure: Callable[[], Reached]) -> Reached:
     return reached
 
 
-def measured_in_forks(copy: Path, package: str, tests: Sequence[str]) -> Reached:
+def measured_in_forks(copy: Path, package: str, tests: Sequence[str], slowest: float = SLOWEST) -> Reached:
     """Run the tests once with marks in the package; see `reach_marks.py`."""
     with tempfile.TemporaryDirectory(prefix="marks-") as folder:
         compiled(copy, package, Path(folder))
@@ -184,7 +191,7 @@ def measured_in_forks(copy: Path, package: str, tests: Sequence[str]) -> Reached
         surroundings = {**environment(copy), FOLDER: folder}
         surroundings["PYTHONPATH"] += os.pathsep + folder
         with forks(copy, surroundings, tests) as running:
-            return running.measured(LONGEST_FILE)
+            return running.measured(slowest)
 
 
 def measured(copy: Path, package: str, tests: Sequence[str]) -> Reached:

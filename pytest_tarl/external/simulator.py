@@ -114,6 +114,7 @@ class Simulator:
         if one.ros == "ros1":
             KEPT.close()
             self._client = KEPT.opened()
+        self._forget()
         environment = {
             "PYTHONUNBUFFERED": "1",
             **os.environ,
@@ -139,10 +140,14 @@ class Simulator:
         except SimulatorError:
             self._current = False
             return False
+        self._forget()
+        return True
+
+    def _forget(self) -> None:
+        """Drop the time of the simulator before its start or reset, so that it does not count as ready at once."""
         self._heard.clear()
         self._clock = None
         self._waiting = []
-        return True
 
     def _ready(self) -> bool:
         connected = {*self._graph["subscribed"], *self._heard}

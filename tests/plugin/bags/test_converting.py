@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pytest_tarl.bags.converting import class_named, converted
-from pytest_tarl.ros.messages import find_class
+from pytest_tarl.bags.converting import _value, class_named, converted
+from pytest_tarl.ros.messages import find_class, times
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.values import FieldError
 
@@ -138,3 +138,20 @@ def test_sequences_of_messages_and_texts_are_converted(kind: Kind) -> None:
     odd = [told("my/msg/Odd", x=1.0)]
     with pytest.raises(FieldError, match="the type my/msg/Odd is unknown"):
         converted(told("p", points=odd), one("geometry_msgs/Polygon", kind))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", ["Time", "Duration"])
+def test_sequences_of_times_become_the_times_of_each_ros_version(kind: Kind, name: str) -> None:
+    recorded = [told(f"builtin_interfaces/msg/{name}", sec=sec, nanosec=5) for sec in (1, 2)]
+    found = _value(recorded, [], kind)
+    if kind == "ros1":
+        assert found == [getattr(times, name)(1, 5), getattr(times, name)(2, 5)]
+        assert {type(one) for one in found} == {getattr(times, name)}
+    else:
+        assert [(one.sec, one.nanosec) for one in found] == [(1, 5), (2, 5)]
+        assert {type(one) for one in found} == {one_of("ros2", name)}
+
+
+def one_of(kind: Kind, name: str) -> Any:
+    return class_named(f"builtin_interfaces/msg/{name}", kind)

@@ -247,6 +247,25 @@ def test_several_changes_in_a_row_cause_one_run(session: Session, monkeypatch: p
     assert len(linted.buffers) == 2
 
 
+def test_linting_starts_after_a_pause(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    linted: Any = Linted(NOTHING)
+    session.server.linted = linted
+    waits: list[tuple[float, int]] = []
+
+    async def sleep(seconds: float) -> None:
+        waits.append((seconds, len(linted.buffers)))
+
+    monkeypatch.setattr(server_module.asyncio, "sleep", sleep)
+
+    async def run() -> None:
+        session.server.changed()
+        assert session.server._waiting is not None
+        await session.server._waiting
+
+    asyncio.run(run())
+    assert (waits, len(linted.buffers)) == ([(server_module.PAUSE, 0)], 1)
+
+
 @pytest.mark.parametrize("event", server_module.CHANGES)
 def test_each_change_of_a_file_is_noticed(
     session: Session, event: str, monkeypatch: pytest.MonkeyPatch
@@ -398,6 +417,10 @@ def test_code_actions_belong_to_the_diagnostics_on_the_chosen_lines(
 def test_other_files_have_no_actions(answering: Session) -> None:
     assert titles(answering, 0, 9, "map.py") == []
     assert titles(answering, 0, 9, "../outside.py") == []
+
+
+def test_before_the_first_result_there_are_no_actions(session: Session) -> None:
+    assert titles(session, 0, 9) == []
 
 
 def test_actions_use_the_text_of_the_published_diagnostics(answering: Session) -> None:

@@ -49,6 +49,25 @@ def test_a_simulator_that_does_not_answer_its_reset_is_started_again(guardian: G
     assert made.clock == 2.0
 
 
+def test_a_new_simulator_is_not_ready_because_of_what_the_former_one_sent(
+    guardian: Guardian, ros: Ros
+) -> None:
+    quick = replace(RESET, patience=0.05, timeout=0.05)
+    module.KEPT.running = quick
+    events = {"call": [message("/odom", 9.0), clock(9.0)], "start": [{"kind": "stopped"}]}
+    guardian.react = lambda what, **_: events.get(what, [])
+    with pytest.raises(SimulatorError, match=r"was not ready after 0.05 s: no message on /odom"):
+        Simulator(quick, ros, ()).begin()
+
+
+def test_a_start_ends_when_the_former_simulator_has_ended(guardian: Guardian, ros: Ros) -> None:
+    made = Simulator(SETUP, ros, ())
+    assert made.clock == 0.0
+    guardian.react = lambda what, **_: [clock(9.0), {"kind": "stopped"}] if what == "start" else []
+    made._start()
+    assert (made._current, made.clock) == (True, 0.0)
+
+
 @pytest.mark.parametrize("setup", [SETUP, RESET])
 def test_a_simulator_stops_after_an_episode_without_reset_or_with_an_error(
     guardian: Guardian, ros: Ros, setup: Setup, capsys: pytest.CaptureFixture[str]
