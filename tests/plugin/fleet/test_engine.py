@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
@@ -56,6 +57,19 @@ def test_a_limited_number_of_tasks_runs_at_a_time_and_results_keep_their_order(w
         next(results)
         results.close()  # type: ignore[attr-defined]
     assert 1 <= len(ran) <= engine.WINDOW * workers
+
+
+@pytest.mark.parametrize(("workers", "threaded"), [(1, False), (2, True), (7, True)])
+def test_several_workers_are_threads_and_one_worker_is_the_process_itself(
+    workers: int, threaded: bool
+) -> None:
+    with engine.local(workers) as some:
+        names = set(some.each(lambda: threading.current_thread().name, [()] * 20))
+    assert some.workers == workers
+    if threaded:
+        assert {name.rpartition("_")[0] for name in names} == {"tarl-fleet"}
+    else:
+        assert names == {threading.current_thread().name}
 
 
 def test_an_argument_that_equals_a_key_of_the_task_graph_is_passed_on_unchanged() -> None:

@@ -133,3 +133,34 @@ def test_a_formula_that_is_lost_is_violated_whatever_happens_later(
     known = lost
     signals = {name: [*world.signals[name][: known + 1], *following.signals[name]] for name in NAMES}
     assert oracle.value(tree, oracle.World(signals, known + 1 + following.end)) <= 0
+
+
+ORDER = [4, 8, 12, 16, 20]
+
+
+@pytest.mark.parametrize(
+    ("text", "values", "lost"),
+    [
+        ("always (x > 0)", [(0, 1.0)], None),
+        ("always (x > 0)", [(0, -1.0)], 4),
+        ("always (x > 0)", [(0, 1.0), (7, -1.0)], 8),
+        ("always (x > 0)", [(0, 1.0), (8, -1.0)], 8),
+        ("always (x > 0)", [(0, 1.0), (9, -1.0)], 12),
+        ("always (x > 0)", [(0, 1.0), (20, -1.0)], 20),
+        ("always (x > 0)", [(0, 1.0), (21, -1.0)], None),
+        ("eventually (x > 0)", [(0, -1.0)], None),
+        ("eventually[0:9ns] (x > 0)", [(0, -1.0)], 12),
+        ("eventually[0:9ns] (x > 0)", [(0, -1.0), (9, 1.0)], None),
+        ("(x > 0) -> always (y > 0)", [(0, 1.0), (6, -1.0)], None),
+        ("(x > 0) until (y > 0)", [(0, 1.0), (6, -1.0)], 8),
+    ],
+)
+def test_a_formula_is_lost_at_the_first_instant_at_which_no_future_satisfies_it(
+    text: str, values: list[tuple[int, float]], lost: int | None
+) -> None:
+    line = Timeline(NAMES)
+    line.give("y", 1.0 if "->" in text else -1.0, 0)
+    for time, value in values:
+        line.give("x", value, time)
+    assert lost_at(course(formula("here", text, NAMES), line.samples(NAMES)), ORDER) == lost
+    assert lost_at(course(formula("here", text, NAMES), line.samples(NAMES)), []) is None

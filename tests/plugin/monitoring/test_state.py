@@ -29,7 +29,7 @@ def world(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("state")
     fixture(root / "f.npz", walks(60, 1))
     log(root / "a.log", [*walks(60, 2), *walks(40, 3, drift=1.0)])
-    log(root / "b.log", walks(80, 4), first=1990.5)
+    log(root / "b.log", walks(80, 4), first=1990.5, time=990.0)
     return root
 
 
@@ -63,6 +63,34 @@ def test_a_watch_continued_from_its_state_ends_with_the_same_bytes(world: Path, 
         patch.undo()
     assert read(begun(world, world / "parts.npz")) == whole
     (world / "parts.npz").unlink()
+
+
+def test_the_state_is_saved_only_if_missions_were_counted_since(
+    world: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    saves: list[int] = []
+    watched = begun(world, tmp_path / "s.npz")
+    monkeypatch.setattr(Watch, "save", lambda self: saves.append(self.monitor.counts.missions))
+    assert len([*watched.poll()]) == 1
+    assert saves == [180]
+    assert [*watched.poll()] == []
+    assert saves == [180]
+    watched.close()
+
+
+def test_a_long_run_saves_the_state_after_each_second(
+    world: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    saves: list[int] = []
+    watched = begun(world, tmp_path / "s.npz")
+    monkeypatch.setattr(Watch, "save", lambda self: saves.append(self.monitor.counts.missions))
+    monkeypatch.setattr(watch, "PORTION", 60)
+    # begun at 10 s; portions end at 11 s (not later than one second), 11.5 s (saved, then 12 s), and 13 s
+    clock = iter([10.0, 11.0, 11.5, 12.0, 13.0])
+    monkeypatch.setattr(watch, "monotonic", lambda: next(clock))
+    assert len([*watched.poll()]) == 3
+    assert saves == [120, 180]
+    watched.close()
 
 
 def test_the_seed_decides_how_ties_are_broken(world: Path, tmp_path: Path) -> None:

@@ -24,6 +24,7 @@ from pytest_tarl.monitoring import (
     stated,
     words,
 )
+from pytest_tarl.monitoring import monitor as monitor_module
 from pytest_tarl.monitoring import status as module
 from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.monitor import Monitor, begun, shares
@@ -299,6 +300,17 @@ def test_a_monitor_without_missions_has_no_leading_score_and_no_onset(monitor: M
 def test_new_cells_are_named_once_two_missions_visited_them(monitor: Monitor) -> None:
     found = replace(changed(monitor), new={(9, 1): 2, (8, 0): 2, (7, 0): 1})
     assert module.status(found).new == ((8, 0), (9, 1))
+
+
+def test_once_there_are_many_new_cells_only_the_known_ones_are_counted(
+    monitor: Monitor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(monitor_module, "MOST_NEW", 2)
+    one = replace(changed(monitor), new={})
+    nothing = np.zeros(0)
+    for cell in ((9, 1), (8, 0), (7, 0), (9, 1), (8, 0), (9, 1)):
+        one.told(np.zeros(0, bool), nothing, np.zeros(0, np.int64), nothing, [cell])
+    assert one.new == {(9, 1): 3, (8, 0): 2}
 
 
 def test_a_monitor_notes_missing_bounds_and_incomplete_missions(monitor: Monitor) -> None:

@@ -189,6 +189,8 @@ def test_a_loss_is_printed_with_interval_confidence_and_effect_size(varied: Vari
     )
     for few in ({"online": (1.0,)}, {"offline": (1.0,)}):
         assert words.loss_words(varied(totals=totals | few, verdict=verdict)) == ""
+    two = varied(totals={"offline": (1.0, 3.0), "online": (0.0, 2.0)}, verdict=verdict)
+    assert words.loss_words(two) == "about 90 % confidence 0.50 to 1.50; 0.4 standard deviations"
 
 
 def test_worsened_parts_of_the_reward_are_listed_with_the_largest_loss_first(varied: Varied) -> None:
