@@ -30,6 +30,24 @@ def test_a_pipe_or_device_is_written_to_and_not_replaced(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["pipe"]
 
 
+def test_an_interrupt_is_passed_on_before_and_after_the_rename(tmp_path, monkeypatch):
+    rename = type(tmp_path).replace
+    target = tmp_path / "report.html"
+
+    def interrupted(path, new):
+        if before:
+            raise KeyboardInterrupt
+        rename(path, new)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(type(tmp_path), "replace", interrupted)
+    for before, content in ((True, b""), (False, b"new")):
+        with pytest.raises(KeyboardInterrupt):
+            write_atomically(target, b"new")
+        assert (target.read_bytes() if target.exists() else b"") == content
+        assert [path.name for path in tmp_path.iterdir()] == ["report.html"] * (not before)
+
+
 @pytest.mark.parametrize("there", ["", "a", "a/b"])
 def test_checking_whether_a_file_is_writable_leaves_nothing_behind(tmp_path, there):
     (tmp_path / there).mkdir(parents=True, exist_ok=True)

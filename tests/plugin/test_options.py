@@ -70,6 +70,34 @@ def test_an_invalid_marker_is_reported_in_one_sentence(change: dict[str, Any], w
     assert str(raised.value).startswith("t.py::test")
 
 
+@pytest.mark.parametrize(
+    ("name", "least", "most", "beyond"),
+    [
+        ("episodes", 2, 1_000_000, (1, 1_000_001)),
+        ("min_success", 0, 1, (-0.001, 1.001)),
+        ("tolerance", 0, 1e300, (-1e-300, float("inf"))),
+    ],
+)
+def test_numbers_of_a_marker_may_be_equal_to_their_limits(
+    name: str, least: float, most: float, beyond: tuple[float, float]
+) -> None:
+    for value in (least, most):
+        assert getattr(designation("here", (), GOOD | {name: value}), name) == value
+    for value in beyond:
+        with pytest.raises(SettingsError, match=f"here: {name} must be"):
+            designation("here", (), GOOD | {name: value})
+
+
+@pytest.mark.parametrize(("value", "accepted"), [(0.5, True), (1 - 1e-9, True), (0.499, False), (1.0, False)])
+def test_a_confidence_is_at_least_one_half_and_less_than_one(value: float, accepted: bool) -> None:
+    arguments = GOOD | {"confidence": value, "min_success": 0.9}
+    if accepted:
+        assert designation("here", (), arguments).confidence == value
+    else:
+        with pytest.raises(SettingsError, match="here: confidence must be"):
+            designation("here", (), arguments)
+
+
 def test_positional_arguments_are_refused() -> None:
     with pytest.raises(SettingsError, match="named arguments only"):
         designation("t.py::test", (["a.py"],), GOOD)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pytest_tarl.resuming.journal import KEY, Journal, TakenError, conditions_of
+from pytest_tarl.resuming.journal import KEY, SYNC, Journal, TakenError, conditions_of
 
 CONDITIONS = {"keeper.py": "a1", "--tarl-seed": "0"}
 
@@ -104,6 +104,23 @@ def test_on_a_full_disk_the_run_continues_without_keeping_episodes(
     assert journal.problem is not None
     assert journal.problem.errno == errno.ENOSPC
     journal.close()
+
+
+def test_episodes_are_written_to_the_disk_once_their_time_is_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = [100.0]
+    synced: list[float] = []
+    monkeypatch.setattr("pytest_tarl.resuming.journal.monotonic", lambda: now[0])
+    monkeypatch.setattr("pytest_tarl.resuming.journal.os.fsync", lambda _: synced.append(now[0]))
+    kept = Journal(tmp_path / "a.episodes", CONDITIONS)
+    for after in (0.0, SYNC / 2, SYNC, SYNC + SYNC / 2, 2 * SYNC, 4 * SYNC):
+        now[0] = 100.0 + after
+        kept.keep(key(1), b"x")
+    of_episodes = sorted({one - 100.0 for one in synced} - {0.0})
+    assert of_episodes == [SYNC, 2 * SYNC, 4 * SYNC]
+    kept.close()
+    assert conditions_of(kept.path) == (CONDITIONS, 6)
 
 
 def test_removing_the_file_also_removes_its_empty_folder(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.ros.kdl import Frame, Rotation, Vector
+from pytest_tarl.ros.moveit_commander import move_group
 from pytest_tarl.ros.moveit_commander.conversions import (
     list_to_pose,
     list_to_transform,
@@ -387,6 +388,28 @@ def test_a_cartesian_path_needs_a_positive_step(start: Start) -> None:
     found.append(group.compute_cartesian_path([pose], 0.1, True)[1])
     """
     assert run(start, source) == ["refused"] * 3 + [1.0, 1.0]
+
+
+def test_a_cartesian_path_has_a_part_for_each_step_from_the_previous_pose(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    goals: list[int] = []
+
+    def counted(model: Any, begin: Any, parts: Any, share: float) -> Any:
+        goals.append(len(parts))
+        return straight(model, begin, parts, share)
+
+    monkeypatch.setattr(move_group, "straight", counted)
+    monkeypatch.setattr(RobotModel, "reached", lambda *_: {})  # the arm has too few joints to keep its direction
+    source = """
+    begin, near = group.get_current_pose().pose, group.get_current_pose().pose
+    near.position.x -= 0.19
+    for waypoints in ([begin], [near], [near, begin], [near, near]):
+        group.set_start_state_to_current_state()
+        found.append(group.compute_cartesian_path(waypoints, 0.05, 0.0)[1])
+    """
+    assert run(start, source, 30.0) == [1.0] * 4
+    assert goals[-4:] == [1, 4, 4 + 4, 4 + 1]  # 0.19 m in steps of at most 0.05 m
 
 
 def test_a_trajectory_without_points_is_not_executed(start: Start) -> None:

@@ -269,7 +269,9 @@ def test_a_designed_mission_without_values_does_not_count_as_a_large_value() -> 
     none = Series(np.zeros(0), np.zeros(0, np.int32), np.zeros(120))
     steady = Pair(series(np.full(120, 0.1)), series(step(60)))
     found = Pair(none, series(step(60, high=0.05), lost_at(60, 31)))
-    assert strength("jumps", found, steady) == pytest.approx(1.0 - 6 / 120 / 2)  # one first value of six steps
+    assert strength("jumps", found, steady) == pytest.approx(
+        1.0 - 6 / 120 / 2
+    )  # one first value of six steps
 
 
 # offset: the second halves of 20 values, and half of the range is certain
@@ -323,6 +325,16 @@ def test_an_offset_needs_three_values_in_each_second_half() -> None:
     assert strength("offset", Pair(series(designed), sparse)) == 0.0
     assert strength("offset", Pair(Series(designed[few], few, reward), dense)) == 0.0
     assert strength("offset", pair(np.ones(20), ends(4.0, 2.0))) == 0.0
+
+
+def test_one_pair_with_too_few_values_is_enough_to_find_no_offset_and_no_swing() -> None:
+    known, few = pair(ends(4.0, 0.0), ends(4.0, 2.0)), pair(ends(4.0, 0.0, 4), ends(4.0, 2.0, 4))
+    assert strength("offset", known) == 1.0
+    assert strength("offset", known, few) == strength("offset", few, known) == 0.0
+    swinging = pair(at_rest(24), array(np.zeros(24), square(1.0, *[3] * 8)))
+    short = pair(at_rest(5), array(np.zeros(5), square(1.0, 3, 2)))
+    assert strength("swing", swinging) > 0.0
+    assert strength("swing", swinging, short) == strength("swing", short, swinging) == 0.0
 
 
 # swing: at a growth by 2 it begins, by 6 it is certain, and the root of 12 is the middle
