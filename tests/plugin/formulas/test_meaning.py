@@ -164,3 +164,31 @@ def test_a_formula_is_lost_at_the_first_instant_at_which_no_future_satisfies_it(
         line.give("x", value, time)
     assert lost_at(course(formula("here", text, NAMES), line.samples(NAMES)), ORDER) == lost
     assert lost_at(course(formula("here", text, NAMES), line.samples(NAMES)), []) is None
+
+
+WORLDS = [
+    oracle.World({"x": [1.0, 2.0, -1.0, 3.0, -2.0, 1.0], "y": [-1.0, -2.0, 2.0, -3.0, 1.0, -1.0]}, 5),
+    oracle.World({"x": [-2.0, -2.0, 1.0, 1.0, 3.0, -1.0], "y": [3.0, -1.0, -1.0, 2.0, -2.0, 0.0]}, 5),
+    oracle.World({"x": [0.0, 1.0, 1.0, -3.0, 2.0, 2.0], "y": [1.0, 0.0, -2.0, -1.0, 3.0, -3.0]}, 5),
+]
+WINDOWS = (None, (0, 0), (0, 2), (1, 3), (2, 2))
+X, Y = (">", "x", 0), (">", "y", 0)
+INNER = [
+    *[(kind, window, X) for kind in ("always", "eventually", "once", "historically") for window in WINDOWS],
+    *[(kind, window, X, Y) for kind in ("until", "since") for window in WINDOWS],
+]
+
+
+@pytest.mark.parametrize("outer", ["", "always", "eventually"])
+@pytest.mark.parametrize("inner", INNER, ids=lambda inner: f"{inner[0]}{inner[1] or ''}")
+def test_each_temporal_operator_equals_its_definition(inner: oracle.Tree, outer: str) -> None:
+    """Generated formulas seldom have an operator of the past that no earlier value can decide."""
+    for tree in (inner, ("not", inner)):
+        whole = (outer, None, tree) if outer else tree
+        parsed = read(whole)
+        if parsed is None:
+            assert inner[0] in ("once", "historically", "since")
+            assert not outer
+            continue
+        for world in WORLDS:
+            assert robustness(course(parsed, samples(world)), world.end) == oracle.value(whole, world)
