@@ -130,6 +130,27 @@ def test_invalid_flags_are_reported_in_one_sentence(change: dict[str, Any], word
 
 
 @pytest.mark.parametrize(
+    ("given", "name", "least", "most", "beyond"),
+    [
+        ({}, "episodes", 2, 1_000_000, (1, 1_000_001)),
+        ({}, "looks", 1, 5, (0, 6)),
+        ({}, "alpha", 1e-6, 0.5, (0.9e-6, 0.500001)),
+        ({}, "budget", "1", "1000000", ("0", "1000001")),
+        ({}, "stress-budget", "32", "1000000", ("31", "1000001")),
+        ({}, "workers", "1", "1024", ("0", "1025")),
+    ],
+)
+def test_numbers_of_a_flag_may_be_equal_to_their_limits(
+    given: dict[str, Any], name: str, least: Any, most: Any, beyond: tuple[Any, Any]
+) -> None:
+    for value in (least, most):
+        options(FLAGS | given | {name: value})
+    for value in beyond:
+        with pytest.raises(SettingsError, match=f"--tarl-{name}"):
+            options(FLAGS | given | {name: value})
+
+
+@pytest.mark.parametrize(
     ("name", "value"), [("nodes", 5), ("tolerance", float("inf")), ("tolerance", float("nan"))]
 )
 def test_values_out_of_range_are_refused_in_one_sentence(name: str, value: object) -> None:
