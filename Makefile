@@ -94,10 +94,10 @@ $(ROS2_VENV)/.installed: pyproject.toml
 	$(ROS2_VENV)/bin/python $(PIP_INSTALL) $(ROS_TOOLS)
 	@touch $@
 
-# Small faults sown into a package, ten in each of its packages: how many do the tests catch? Hours; nightly
+# Small faults sown into a package, ten in each of its packages: how many do the tests catch? Nightly
 .PHONY: mutants
 mutants: setup
-	$(BIN)/python benchmarks/mutants.py --of $${OF:-pytest_tarl} --seed $${SEED:-0}
+	$(BIN)/python benchmarks/mutants.py --forks --slowest 6 --budget 30 --of $${OF:-pytest_tarl} --seed $${SEED:-0}
 
 bench-paper: setup
 	$(BIN)/python benchmarks/paper.py
