@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -38,14 +39,25 @@ def test_a_bag_has_its_channels_and_messages_in_order_of_time(tmp_path: Path, en
 def test_a_type_that_the_bag_defines_is_read(tmp_path: Path) -> None:
     channel = Channel("/a", "my_msgs/msg/Pair", "float64 x\nfloat64 y\n")
     bag = Bag(tmp_path, "ros1", {"/a": channel}, lambda: iter(()), 0)
-    import struct
-
     assert bag.decode("/a", struct.pack("<dd", 1.0, 2.0)).y == 2.0
     idl = Channel(
         "/b", "my_msgs/msg/One", "module my_msgs { module msg { struct One { double x; }; }; };", idl=True
     )
     bag = Bag(tmp_path, "ros2", {"/b": idl}, lambda: iter(()), 0)
     assert bag.decode("/b", b"\x00\x01\x00\x00" + struct.pack("<d", 4.0)).x == 4.0
+
+
+def test_a_type_that_the_bag_does_not_define_is_that_of_its_ros_version(tmp_path: Path) -> None:
+    """The header of ROS 1 begins with a counter."""
+    channels = {"/h": Channel("/h", "std_msgs/msg/Header")}
+    stamp, frame = struct.pack("<iI", 3, 4), struct.pack("<I", 3) + b"map"
+    bag = Bag(tmp_path, "ros1", channels, lambda: iter(()), 0)
+    found = bag.decode("/h", struct.pack("<I", 9) + stamp + frame)
+    assert (found.seq, found.stamp.sec, found.stamp.nanosec, found.frame_id) == (9, 3, 4, "map")
+    bag = Bag(tmp_path, "ros2", channels, lambda: iter(()), 0)
+    found = bag.decode("/h", b"\x00\x01\x00\x00" + stamp + struct.pack("<I", 4) + b"map\x00")
+    assert (found.stamp.sec, found.stamp.nanosec, found.frame_id) == (3, 4, "map")
+    assert not hasattr(found, "seq")
 
 
 def test_an_undefined_type_is_a_key_error(tmp_path: Path) -> None:
