@@ -111,7 +111,8 @@ def _interval(found: _Fit, replicates: Floats, confidence: float) -> tuple[Float
     ends = np.quantile(replicates, [tail, 1.0 - tail], axis=0)
     low, high = np.maximum(ends - shift, 0.0)
     low = np.where(random, np.minimum(low, np.maximum(ends[0], 0.0)), low)
-    scale = np.where(random & (value > mean) & (mean > 0), value / np.where(mean > 0, mean, 1.0), 1.0)
+    scale = np.ones(value.size)
+    np.divide(value, mean, out=scale, where=random & (value > mean) & (mean > 0))
     high = np.where(random, np.maximum(high, ends[1] * scale), high)
     for n in np.flatnonzero(positive).tolist():
         ratio = np.quantile(replicates[:, n], [1.0 - tail, tail]) / mean[n]

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from pytest_tarl.fleet import components as module
+from pytest_tarl.fleet import decomposition
 from pytest_tarl.fleet.components import Component, components
 from pytest_tarl.fleet.decomposition import Decomposition, summed
 from pytest_tarl.fleet.decomposition_words import lines, lowest
@@ -121,3 +124,68 @@ def test_with_few_robots_a_component_has_no_interval(monkeypatch: pytest.MonkeyP
         )
     ]
     assert all("too few robots for an interval" in one for one in said[1:])
+
+
+@pytest.mark.parametrize(
+    ("value", "replicates", "interval"),
+    [
+        # percentiles 1 and 3, shifted by 2, and scaled by 4 / 2
+        (4.0, [0.0, 1.0, 2.0, 3.0, 4.0], (1.0, 6.0)),
+        # percentiles 1 and 3, shifted by -1, and not scaled
+        (1.0, [0.0, 1.0, 2.0, 3.0, 4.0], (0.0, 3.0)),
+        (2.0, [0.0, 1.0, 2.0, 3.0, 4.0], (1.0, 3.0)),
+        # percentiles -1 and 1, shifted by 0.2; replicates with the mean 0 cannot be scaled
+        (0.2, [-2.0, -1.0, 0.0, 1.0, 2.0], (0.0, 1.2)),
+        (0.5, [-3.0, -2.0, -1.0, 0.0, 1.0], (0.0, 1.5)),
+        # all positive: 3 divided by the percentiles 4 and 2 of the ratio to the mean 3
+        (3.0, [1.0, 2.0, 4.0, 4.0, 4.0], (2.25, 4.5)),
+        (0.0, [1.0, 2.0, 4.0, 4.0, 4.0], (0.0, 4.0)),
+    ],
+)
+def test_the_interval_of_a_random_component_spans_shifted_and_scaled_percentiles(
+    value: float, replicates: list[float], interval: tuple[float, float]
+) -> None:
+    columns = np.array([[1.0] * 5, replicates, [1.0] * 5]).T
+    fit = module._Fit(np.array([1.0, value, 1.0]), np.zeros(3), np.zeros(0))
+    low, high = module._interval(fit, columns, 0.5)
+    assert (low[1], high[1]) == pytest.approx(interval)
+
+
+def test_the_interval_of_a_factor_loses_the_part_of_the_errors() -> None:
+    columns = np.array([[0.0, 1.0, 2.0, 3.0, 4.0], [1.0] * 5, [1.0] * 5]).T
+    fit = module._Fit(np.array([2.0, 1.0, 1.0]), np.array([1.5, 9.0, 9.0]), np.zeros(0))
+    low, high = module._interval(fit, columns, 0.5)
+    assert (low[0], high[0]) == pytest.approx((0.0, 1.5))
+
+
+@pytest.mark.parametrize(
+    ("months", "repairs", "season", "factors"),
+    [
+        (2, 1, "week", ["version", "site", "season"]),
+        (3, 1, "month", ["version", "site", "season"]),
+        (3, 2, "month", ["version", "site", "season", "repair"]),
+        (0, 0, "week", ["version", "site", "season"]),
+    ],
+)
+def test_seasons_are_months_if_there_are_three_and_repairs_count_if_some_robots_have_none(
+    months: int, repairs: int, season: str, factors: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counts = {decomposition.BY["month"]: months, decomposition.BY["repair"]: repairs}
+    asked: list[str] = []
+
+    def names(query: str) -> list[tuple[object, ...]]:
+        for column, count in counts.items():
+            if query == decomposition.COUNT.format(column=column):
+                return [(count,)]
+        return [(name,) for name in (1, "b")]
+
+    def found(totals: object, columns: tuple[str, ...], *_: object) -> tuple[()]:
+        asked.extend(columns)
+        assert totals == (factors, (2,) * len(factors))
+        return ()
+
+    monkeypatch.setattr(decomposition, "_totals", lambda _, columns, sizes: ([*columns], sizes))
+    monkeypatch.setattr(decomposition, "components", found)
+    database: Any = SimpleNamespace(run=lambda _: None, names=names)
+    result = decomposition.decomposed(database)
+    assert (result.season, asked, result.levels) == (season, factors, (("1", "b"),) * len(factors))

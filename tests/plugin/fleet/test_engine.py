@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import threading
+import warnings
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor
 from multiprocessing import get_context
+from typing import Any
 
 import pytest
 
@@ -14,6 +16,7 @@ pytest.importorskip("dask")
 import numpy as np
 from threadpoolctl import threadpool_info, threadpool_limits
 
+from pytest_tarl.errors import FleetError
 from pytest_tarl.fleet import engine
 
 
@@ -70,6 +73,50 @@ def test_several_workers_are_threads_and_one_worker_is_the_process_itself(
         assert {name.rpartition("_")[0] for name in names} == {"tarl-fleet"}
     else:
         assert names == {threading.current_thread().name}
+
+
+class Executor:
+    """Runs a task when its result is needed; warns about each argument, as Dask does about large ones."""
+
+    def __init__(self) -> None:
+        self.submitted: list[Future[Any]] = []
+
+    def submit(self, function: Any, *arguments: Any) -> Any:
+        warnings.warn("large argument", UserWarning, stacklevel=1)
+        future = Future[Any]()
+        future.result = lambda timeout=None: function(*arguments)  # type: ignore[method-assign]
+        self.submitted.append(future)
+        return future
+
+
+def test_a_cluster_has_two_tasks_per_thread_and_cancels_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    executor: Any = Executor()
+    limits: list[int] = []
+    monkeypatch.setattr(engine, "threadpool_limits", lambda limit, user_api: limits.append(limit))
+    results = engine.Cluster(executor, 3).each(lambda a, b: a - b, ((n, 1) for n in range(20)))
+    assert [next(results), next(results)] == [-1, 0]
+    assert (len(executor.submitted), limits) == (engine.AHEAD * 3 + 1, [1, 1])
+    results.close()  # type: ignore[attr-defined]
+    assert [one.cancelled() for one in executor.submitted] == [False] * 2 + [True] * (engine.AHEAD * 3 - 1)
+    every = engine.Cluster(Executor(), 3).each(lambda a, b: a - b, ((n, 1) for n in range(20)))  # type: ignore[arg-type]
+    assert list(every) == list(range(-1, 19))
+
+
+def test_errors_of_a_cluster_are_told_apart_from_those_of_a_task() -> None:
+    def failing(problem: BaseException) -> Future[None]:
+        future = Future[None]()
+        future.set_exception(problem)
+        return future
+
+    lost = type("KilledWorker", (Exception,), {"__module__": "distributed.scheduler"})("worker died")
+    with pytest.raises(FleetError, match=r"could not run a task \(worker died\)"):
+        engine._result(failing(lost))
+    with pytest.raises(ValueError, match="own"):
+        engine._result(failing(ValueError("own")))
+    cancelled = Future[None]()
+    cancelled.cancel()
+    with pytest.raises(FleetError, match="cancelled a task"):
+        engine._result(cancelled)
 
 
 def test_an_argument_that_equals_a_key_of_the_task_graph_is_passed_on_unchanged() -> None:
