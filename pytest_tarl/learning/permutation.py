@@ -181,6 +181,5 @@ def _smallest(draws: Floats, first: int) -> Floats:
     # rows in which several numbers equal the limit, so that fewer than `first` are below it
     tied = np.flatnonzero(picked.sum(axis=1) != first)
     for row in tied.tolist():
-        picked[row] = 0.0
         picked[row, np.argpartition(draws[row], first)[:first]] = 1.0
     return picked
