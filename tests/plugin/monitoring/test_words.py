@@ -27,7 +27,7 @@ from pytest_tarl.monitoring import (
 from pytest_tarl.monitoring import monitor as monitor_module
 from pytest_tarl.monitoring import status as module
 from pytest_tarl.monitoring.moments import Moments
-from pytest_tarl.monitoring.monitor import Monitor, begun, shares
+from pytest_tarl.monitoring.monitor import Counts, Monitor, begun, shares
 from pytest_tarl.monitoring.scores import WHOLE
 from pytest_tarl.monitoring.status import Evidence, Moment, Score, Status
 from pytest_tarl.report.regions import Vocabulary
@@ -311,6 +311,20 @@ def test_once_there_are_many_new_cells_only_the_known_ones_are_counted(
     for cell in ((9, 1), (8, 0), (7, 0), (9, 1), (8, 0), (9, 1)):
         one.told(np.zeros(0, bool), nothing, np.zeros(0, np.int64), nothing, [cell])
     assert one.new == {(9, 1): 3, (8, 0): 2}
+
+
+def test_missions_judged_elsewhere_are_counted(monitor: Monitor) -> None:
+    one = replace(changed(monitor), new={}, counts=Counts(), moments=Moments())
+    lost = np.array([np.nan, 1.0, np.nan, 99.0])
+    for first in (0, 4):
+        times = np.arange(4.0) + 100.0 + first
+        one.told(np.array([True, False, True, True]), lost, np.array([0, 3, 5, 7]), times, [(9, 9)])
+        counted = first + 4
+        assert (one.counts.missions, one.counts.passed) == (counted, 3 * counted // 4)
+        assert (one.counts.without_steps, one.counts.without_rewards) == (counted // 4, counted // 4)
+    assert one.counts.beyond_range == 2  # 99 is beyond the range from -20 to 20
+    assert one.new == {(9, 9): 2}
+    assert [one.moments.at(n) for n in (0, 7)] == [100.0, 107.0]
 
 
 def test_a_monitor_notes_missing_bounds_and_incomplete_missions(monitor: Monitor) -> None:
