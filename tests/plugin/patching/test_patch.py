@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.mutate import Mutation
-from pytest_tarl.patching.patch import apply_command, blob_id, readable, unified_diff, write
+from pytest_tarl.patching.patch import _file_diff, apply_command, blob_id, readable, unified_diff, write
 from pytest_tarl.patching.rewriting import rewrite
 from tests.plugin.patching.repairs import MUD, TOPICS, HandMade, TinyRos, odometry, subscribing, terrain
 
@@ -122,6 +122,19 @@ def test_new_text_keeps_its_own_line_endings(tmp_path: Path) -> None:
     patch = patched(tmp_path, {node: "a = 7\r\nb = 2\n"})
     shell(apply_command(patch, tmp_path), tmp_path)
     assert node.read_bytes() == b"a = 7\r\nb = 2\n"
+
+
+def test_frequent_lines_between_two_changes_are_kept() -> None:
+    """difflib by default does not match lines that are frequent in a file of at least 200 lines."""
+    lines = [f"x{n} = 0\n" for n in range(300)]
+    for blank in (10, 20, 30, 40, 101, 102):
+        lines[blank] = "\n"
+    after = [*lines]
+    after[100], after[103] = "y = 1\n", "z = 1\n"
+    diff = _file_diff("node.py", "".join(lines).encode(), "".join(after).encode()).splitlines()
+    changes = ["-x100 = 0", "+y = 1", " ", " ", "-x103 = 0", "+z = 1"]
+    around = [f" x{n} = 0" for n in (97, 98, 99, 104, 105, 106)]
+    assert diff[4:] == ["@@ -98,10 +98,10 @@", *around[:3], *changes, *around[3:]]
 
 
 def test_mixed_line_endings_are_kept_in_unchanged_lines(tmp_path: Path) -> None:

@@ -75,7 +75,9 @@ NODE = "import a\n\nx = 1\ny = 2\nz = 3\n"
 
 def result(found: reading.Patch) -> dict[str, Any]:
     """Return the only result of the patch as SARIF."""
-    ((one,),) = (run["results"] for run in json.loads(suggesting.sarif(found))["runs"])
+    (run,) = json.loads(suggesting.sarif(found))["runs"]
+    (one,) = run["results"]
+    assert run["tool"]["driver"]["rules"][one["ruleIndex"]]["id"] == one["ruleId"]
     return dict(one)
 
 

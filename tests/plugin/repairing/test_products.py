@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from pytest_tarl.repairing import products
 from pytest_tarl.repairing.products import one_of_each
 from tarl_lint.api import analyse
 
@@ -102,3 +105,39 @@ def test_the_use_of_a_constant_that_a_constructor_stores_is_searched(tmp_path: P
     assert {one.code for one in stored} >= {"pitch", "most"}
     assert {one.code for one in same} == {"pitch", "most"}
     assert {"self.pitch", "self.most"} <= set(used)
+
+
+@dataclass(frozen=True)
+class Use:
+    """An operand of a statement, and what it is part of."""
+
+    code: str
+    definition: str | None = None
+    stored: bool = False
+    product: str | None = None
+    site: str = "site"
+    value: float = 1.0
+
+
+@pytest.mark.parametrize(
+    ("operands", "kept"),
+    [
+        ([Use("limit", "d", stored=True), Use("self.limit", "d")], "self.limit"),
+        ([Use("self.limit", "d"), Use("limit", "d", stored=True)], "self.limit"),
+        ([Use("limit", "d", stored=True), Use("self.other", "e")], "limit self.other"),
+        ([Use("limit", "d", stored=True)], "limit"),
+        ([Use("a", stored=True), Use("b")], "a b"),  # neither has a definition
+        ([Use("a", product="p"), Use("b", product="p"), Use("c", product="q")], "a c"),
+        ([Use("a", product="p"), Use("a", product="p"), Use("b", product="p")], "a a b"),  # used twice
+    ],
+)
+def test_what_is_equivalent_to_another_constant_is_not_searched(
+    operands: list[Use], kept: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(products, "_stored", lambda _, one: one.stored)
+    monkeypatch.setattr(products, "_product", lambda _, one: one.product)
+    some: Any = operands
+    analysis: Any = None
+    found, same = one_of_each(analysis, some)
+    assert " ".join(one.code for one in found) == kept
+    assert len(found) + len(same) == len(operands)
