@@ -400,7 +400,9 @@ def test_a_cartesian_path_has_a_part_for_each_step_from_the_previous_pose(
         return straight(model, begin, parts, share)
 
     monkeypatch.setattr(move_group, "straight", counted)
-    monkeypatch.setattr(RobotModel, "reached", lambda *_: {})  # the arm has too few joints to keep its direction
+    monkeypatch.setattr(
+        RobotModel, "reached", lambda *_: {}
+    )  # the arm has too few joints to keep its direction
     source = """
     begin, near = group.get_current_pose().pose, group.get_current_pose().pose
     near.position.x -= 0.19
