@@ -32,11 +32,11 @@ class Progress(NamedTuple):
     unfinished: int = 0  # number of missions without an `end` record
 
 
-@dataclass(frozen=True, eq=False)  # arrays have no truth value, and `columns` only joins steps of the same table
+@dataclass(frozen=True, eq=False)
 class Table:
     """The cells of a `steps` record; `rows` are their rows in the recording, followed by -1.
 
-    `new` holds the cells that the recording lacks. Tables are compared by identity.
+    `new` holds the cells that the recording lacks. Tables are compared by identity, since arrays have no truth value.
     """
 
     cells: list[Any]
