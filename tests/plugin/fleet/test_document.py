@@ -182,3 +182,12 @@ def test_clusters_have_their_cells_and_residuals() -> None:
         {"robots": ["r1", "r2"], "cells": [[2, 0], [3, 1]], "residuals": [-1.0, -0.5]}
     ]
     assert shown["unclear"] == ["r3"]
+
+
+def test_the_text_keeps_names_readable_and_refuses_numbers_that_json_lacks() -> None:
+    found = text(answer(groups=(group("Zoë"),), onsets=robots(robot("Zoë"))))
+    assert '"Zoë"' in found
+    assert found.endswith("}\n")
+    assert found.startswith('{\n "format": 1,\n')
+    with pytest.raises(ValueError, match="JSON compliant"):
+        text(answer(groups=(group("a", reward=nan),)))
