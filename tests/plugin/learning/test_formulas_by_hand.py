@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pytest_tarl.learning.bounds import STAKE, bet_low
-from pytest_tarl.learning.packing import _before, _visited
+from pytest_tarl.learning.packing import UNIT, _before, _unpacked_in_turn, _visited
 from pytest_tarl.learning.permutation import _smallest
 from pytest_tarl.learning.tables import Edges, Visits
 
@@ -70,3 +70,13 @@ def test_visits_are_the_sums_of_their_outgoing_edges() -> None:
     )
     found = [column.tolist() for column in _visited(edges)]
     assert found == [[0, 0, 1, 1], [0, 2, 0, 2], [1, 7, 1, 2]]
+
+
+def test_values_are_predicted_by_the_previous_row_unless_it_is_zero() -> None:
+    signs = np.array([1, -1, 1, 0, 1, 1], np.int8)
+    away = np.array([3, 2, -1, 0, 4, 5]) * UNIT
+    before = np.array([-1, 0, 1, 2, 3, -1])
+    values, code = _unpacked_in_turn((signs, away), before)
+    assert (code // UNIT).tolist() == [3, 5, 4, 0, 4, 5]
+    assert values.tolist() == [8.0, -32.0, 16.0, 0.0, 16.0, 32.0]
+    assert _unpacked_in_turn((signs[:0], away[:0]), before[:0])[0].tolist() == []
