@@ -17,7 +17,7 @@ from tarl_lint.evidence import Evidence
 from tarl_lint.model import Finding
 from tarl_lint.prefilter.by_words import code, whole
 from tarl_lint.read.module_names import KNOWN
-from tarl_lint.read.source import Module
+from tarl_lint.read.source import Module, occurs
 from tarl_lint.settings.config import Config
 from tarl_lint.trees import outside_functions
 
@@ -87,10 +87,14 @@ def two_sided(texts: Sequence[str], config: Config) -> bool:
 
 def _hears_and_says(texts: Sequence[str], config: Config) -> tuple[bool, bool]:
     """Return two truth values: whether texts contain words used to subscribe, and words used to publish."""
-    hears, says, answers = (any(map(words.search, texts)) for words in (HEARS, SAYS, ANSWERS))
-    hears |= config.tf2 and any(map(LOOKS_UP.search, texts))
-    answers |= config.clients and any(map(CLIENTS.search, texts))
+    hears, says, answers = (_in_any(words, texts) for words in (HEARS, SAYS, ANSWERS))
+    hears |= config.tf2 and _in_any(LOOKS_UP, texts)
+    answers |= config.clients and _in_any(CLIENTS, texts)
     return (True, True) if answers else (hears, says)
+
+
+def _in_any(words: re.Pattern[str], texts: Sequence[str]) -> bool:
+    return any(occurs(words, text) for text in texts)
 
 
 def _inherits_from_elsewhere(tree: ast.Module, ours: Set[str]) -> bool:

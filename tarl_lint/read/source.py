@@ -10,6 +10,7 @@ import tokenize
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -44,7 +45,13 @@ class Module:
 
     def matches(self, pattern: re.Pattern[str]) -> bool:
         """Return whether a pattern occurs in the text."""
-        return self.answer(lambda text: pattern.search(text) is not None)
+        return self.answer(lambda text: occurs(pattern, text))
+
+
+@lru_cache(maxsize=2048)
+def occurs(pattern: re.Pattern[str], text: str) -> bool:
+    """Return whether a pattern occurs in the text of a file, which may be part of many programs."""
+    return pattern.search(text) is not None
 
 
 @dataclass(frozen=True)
