@@ -130,10 +130,15 @@ class Parts:
 
     def _formers_of(self, node: int, after: int) -> tuple[tuple[int, ...], int]:
         """Return the nodes of other statements than `after` that a node depends on, and the bits of the statements."""
-        key_of = self.statements.key_of
-        formers = tuple(f for f in self.statements.nodes_before(node) if key_of[f] not in (None, after))
-        asked = self.bits.union(key for f in formers if (key := key_of[f]) is not None)
-        known = self._formers[node] = formers, self._bits.setdefault(asked, asked)
+        key_of, bits = self.statements.key_of, self.bits
+        formers: list[int] = []
+        asked = 0
+        for former in self.statements.nodes_before(node):
+            key = key_of[former]
+            if key is not None and key != after:
+                formers.append(former)
+                asked |= bits[key]
+        known = self._formers[node] = tuple(formers), self._bits.setdefault(asked, asked)
         return known
 
     def _add_entrances(self, part: Part, nodes: Iterable[int]) -> None:

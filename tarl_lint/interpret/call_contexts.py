@@ -36,8 +36,10 @@ def all_used(ctx: Interpreter, arguments: Arguments) -> Nodes:
     """Return the nodes of all data among the arguments."""
     plain, named = arguments
     deps = NONE
-    for value in (*plain, *named.values()):
-        deps |= ctx.use(value)
+    for value in (*plain, *named.values()) if named else plain:
+        if value.pts or value.deps:
+            used = ctx.use(value)
+            deps = deps | used if deps else used
     return deps
 
 

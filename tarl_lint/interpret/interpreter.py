@@ -334,12 +334,13 @@ class Interpreter:
 
     def use(self, value: Value) -> Nodes:
         """Return the nodes whose data is used where the whole value is used."""
-        if not value.pts:
-            return value.deps if value.consts is None else self.settled(value)
-        content = self.ops.deep(self, value.pts)
+        deps, pts = value.deps, value.pts
+        if not pts:
+            return deps if value.consts is None or not deps else self.settled(value)
+        content = self.ops.deep(self, pts)
         if not content:
-            return value.deps
-        return value.deps | self.graph.through(content, value.deps)
+            return deps
+        return deps | self.graph.through(content, deps) if deps else content
 
     def settled(self, value: Value) -> Nodes:
         """Return a value's dependencies, without branch conditions if all paths give the same constant."""

@@ -87,6 +87,8 @@ def _note_copy(
 
 
 def _holds_data(ctx: Interpreter, value: Value) -> bool:
+    if not value.pts:
+        return bool(value.deps)
     ctx.look(value.pts)
     return bool(value.deps) or any(o.laden for o in value.pts)
 

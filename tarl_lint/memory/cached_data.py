@@ -21,6 +21,7 @@ class Contents:
     state: State
     nodes: Nodes  # data of the fields
     summary: Nodes  # data of all elements and unknown fields
+    all: Nodes  # `nodes` and `summary`
     summarised: bool  # whether the object has a summary field of its own
     overwritten: bool  # whether this run has overwritten every field of a message
     # values of the fields that need a further step: pointers, and constants with data, in the order of the fields

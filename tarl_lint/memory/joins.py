@@ -6,13 +6,12 @@ from collections.abc import Sequence
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap
-from tarl_lint.memory.shared import BORN
-from tarl_lint.memory.store import Delta
+from tarl_lint.memory.store import Delta, Made
 from tarl_lint.memory.values import (
     ABSENT,
     BOTTOM,
     BY_CLASS,
-    Obj,
+    Key,
     Value,
     join,
 )
@@ -35,19 +34,28 @@ def joined(ctx: Interpreter, deltas: Sequence[Delta]) -> Delta:
         deltas = [*{id(delta): delta for delta in deltas}.values()]
     if len(deltas) == 1:
         return deltas[0]
-    keys: dict[tuple[Obj, str], None] = {}
+    keys: dict[Key, None] = {}
     for delta in deltas:
         keys.update(dict.fromkeys(delta))
     ctx.work.spent += len(keys) // JOINS
     result: Delta = {}
+    first, others = deltas[0], deltas[1:]
+    made: Made = {}
     for key in keys:
-        value = _join_of(ctx, key, deltas)
+        value = first.get(key)
+        # most keys have the same value in all continuations, because a layer repeats what an outer one stored
+        for other in others:
+            if other.get(key) is not value:
+                value = None
+                break
+        if value is None or value is ABSENT:
+            value = _join_of(ctx, key, deltas, made)
         if value is not None:
             result[key] = value
     return result
 
 
-def _join_of(ctx: Interpreter, key: tuple[Obj, str], deltas: Sequence[Delta]) -> Value | None:
+def _join_of(ctx: Interpreter, key: Key, deltas: Sequence[Delta], made: Made) -> Value | None:
     """Return the join of a key's values in several continuations."""
     value: Value | None = None
     blank: Value | None = None
@@ -59,7 +67,7 @@ def _join_of(ctx: Interpreter, key: tuple[Obj, str], deltas: Sequence[Delta]) ->
                 if before:
                     continue
                 before = True
-                here = _former(ctx, key)
+                here = _former(ctx, key, made)
             else:
                 here = ctx.ops.default(ctx, *key)
             if here is not None and key[0].kind == "lib" and _unset(ctx, key, here):
@@ -72,7 +80,7 @@ def _join_of(ctx: Interpreter, key: tuple[Obj, str], deltas: Sequence[Delta]) ->
     return value
 
 
-def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
+def _unset(ctx: Interpreter, key: Key, value: Value) -> bool:
     """Return whether a library object's field is a field of a new message that is still unset."""
     owner = key[0]
     ctx.look(value.pts)
@@ -85,15 +93,15 @@ def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
     )
 
 
-def _former(ctx: Interpreter, key: tuple[Obj, str]) -> Value | None:
+def _former(ctx: Interpreter, key: Key, made: Made) -> Value | None:
     """Return the value of a key in a continuation that does not store to it."""
-    value = ctx.store.former(key)
+    value = ctx.store.former(key, made)
     if value is not None:
         return value
     owner, name = key
     if owner.kind in ("frame", "module", "class", "closure"):
         return None
-    if owner.kind != "message" and ctx.store.get((owner.whole, BORN)) is None:
+    if owner.kind != "message" and not ctx.store.made(owner.outermost or owner, made):
         return None  # the object does not exist in this continuation
     return heap.content(ctx, owner) if name == "*" else ctx.ops.default(ctx, owner, name)
 

@@ -62,9 +62,10 @@ def _read(ctx: Interpreter, obj: Obj, state: State) -> Contents:
                 steps.append(value)
     parts = _parts(ctx, obj, overwritten)
     store.reads = ctx.graph.reads = outer
+    own = frozenset(nodes)
     return Contents(
-        obj, state, frozenset(nodes), summary, ANY in obj.fields, overwritten, tuple(steps), frozenset(constants),
-        tuple(parts), reads.keys, reads.stored, reads.objects,
+        obj, state, own, summary, own | summary if own else summary, ANY in obj.fields, overwritten, tuple(steps),
+        frozenset(constants), tuple(parts), reads.keys, reads.stored, reads.objects,
     )  # fmt: skip
 
 

@@ -16,6 +16,8 @@ from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value, in_order
 # results with at most this number of visited objects are not cached, because computing them again is as fast as
 # checking a cached result
 FEW = 4
+# kinds of objects that are always searched; instances of some classes and HOLLOW objects are not
+PLAIN = frozenset(["lib", "sequence", "mapping", "message"])
 VISIT = 60  # visiting an object takes as long as looking up this number of values
 
 
@@ -39,6 +41,12 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
         if not obj.laden:
             ctx.store.doubt(obj)
             return NONE
+        if obj.kind in PLAIN and objects not in ctx.store.wide:
+            own = contents(ctx, obj)
+            if not own.steps and not own.parts:  # as below, without the state of a search
+                note(ctx, own)
+                ctx.work.handled += VISIT
+                return own.all
     store = ctx.store
     visit = Visit()
     if len(objects) <= FEW and objects not in store.wide:

@@ -12,6 +12,7 @@ from tarl_lint.memory.shared import BORN, Root, Shared
 from tarl_lint.memory.values import ABSENT, Key, Obj, Value, join
 
 Delta = dict[Key, Value]
+Made = dict[Obj, bool]  # object → whether it exists on the current path
 
 CLEARED = frozenset(["lib", "sequence", "mapping"])  # kinds of objects whose allocation clears their fields
 # kinds of objects for which the newest object of an allocation site is kept apart from older objects
@@ -73,16 +74,30 @@ class Store:
 
     def get(self, key: Key) -> Value | None:
         """Return the current value; None if unset. Records the read."""
-        reads = self.reads
         value = self.now.get(key)
-        if value is None and not self.waited and self._new(whole := key[0].outermost or key[0]):
-            if (whole, BORN) not in reads.written:
+        reads = self.reads
+        if self.waited:
+            if key not in reads.written:
                 reads.keys.add(key)
-            return None
+            return self.peek(key)
+        if value is None:
+            owner = key[0]
+            whole = owner.outermost or owner
+            # as in `_new`, written out because most reads of the memory pass here
+            if whole.kind in CLEARED and (born := (whole, BORN)) in self.now:
+                if born not in reads.written:
+                    reads.keys.add(key)
+                return None
+            if key not in reads.written:
+                reads.keys.add(key)
+            if key not in self.found:
+                return self._first(key)
+            if key in self.merged:
+                self.merged.discard(key)
+                self.shared.read(key, self.root)
+            return self.found[key]
         if key not in reads.written:
             reads.keys.add(key)
-        if value is None or self.waited:
-            return self.peek(key)
         return None if value is ABSENT else value
 
     def peek(self, key: Key) -> Value | None:
@@ -101,19 +116,22 @@ class Store:
         owner = key[0]
         if not self.waited and self._new(owner.outermost or owner):
             return None
-        local = owner.kind == "frame" and private(key)
-        value = found[key] = None if local else self.shared.entry(key, self.root)
+        return self._first(key)
+
+    def _first(self, key: Key) -> Value | None:
+        """Return the initial value of a key that this root has neither stored nor read so far."""
+        local = key[0].kind == "frame" and private(key)
+        value = self.found[key] = None if local else self.shared.entry(key, self.root)
         return value
 
-    def former(self, key: Key) -> Value | None:
+    def former(self, key: Key, made: Made) -> Value | None:
         """Return the current value of a key to which another path stores, for the join with the value of that path.
 
         If this run creates the object only on other paths, every run creates its own. Then the run's own stores to the
-        object's keys do not make the root run again, as long as only joins read these keys.
+        object's keys do not make the root run again, as long as only joins read these keys. `made` has the answers of
+        the method `made` for this join.
         """
-        owner = key[0]
-        whole = owner.outermost or owner
-        if key in self.now or self.waited or not self._made_elsewhere(whole):
+        if key in self.now or self.waited or not self._made_elsewhere(key[0].outermost or key[0], made):
             return self.get(key)
         if key not in self.reads.written:
             self.reads.keys.add(key)
@@ -122,11 +140,18 @@ class Store:
             self.found[key] = self.shared.entry(key, self.root, joining=True)
         return self.found[key]
 
-    def _made_elsewhere(self, whole: Obj) -> bool:
+    def made(self, whole: Obj, made: Made) -> bool:
+        """Return whether an object exists on the current path; `made` has the answers since the last store."""
+        known = made.get(whole)
+        if known is None:
+            known = made[whole] = self.get((whole, BORN)) is not None
+        return known
+
+    def _made_elsewhere(self, whole: Obj, made: Made) -> bool:
         """Return whether an object belongs to a single run and does not exist on the current path."""
         if isinstance(whole, Frame):
             return whole.captured
-        return BORN in whole.fields and self.get((whole, BORN)) is None
+        return BORN in whole.fields and not self.made(whole, made)
 
     def isolated(self, obj: Obj) -> bool:
         """Return whether no store of another run is visible inside an object now."""

@@ -214,16 +214,20 @@ class Graph:
         """
         if not content or not carriers or len(content) * len(carriers) > MAX_CARRIED:
             return content
-        self.reads.ask(Graph.large, self)
-        if self.large():
+        large, facts = self.made > MAX_NODES, self.reads.facts
+        question = (Graph.large, self)
+        if question not in facts:
+            facts[question] = large
+        if large:
             return content
         if self.asking:  # inside a cycle of carriers, the result is not complete
             return self._through(content, carriers)
         known = self.ways_through.get((content, carriers))
-        if known is None or not self._still(known):
+        if known is None or (known.grown != self.grown and not self._still(known)):
             known = self._consulting(lambda: self._through(content, carriers))
             self.ways_through[content, carriers] = known
-        self._note(known)
+        if known not in self.reads.arrivals:
+            self._note(known)
         return known.nodes
 
     def arriving_through(self, item: int, carriers: Set[int]) -> Set[int]:
@@ -269,10 +273,8 @@ class Graph:
 
     def _note(self, known: Arrival) -> None:
         """Make the running call depend on the carriers that were consulted for a result."""
-        reads = self.reads
-        if known not in reads.arrivals:
-            reads.arrivals.add(known)
-            complete(reads.held, known.consulted)
+        self.reads.arrivals.add(known)
+        complete(self.reads.held, known.consulted)
 
     def _through(self, content: Nodes, carriers: Nodes) -> Nodes:
         """Return content as passed on through carriers; create the necessary carry nodes."""
@@ -332,7 +334,8 @@ class Graph:
         if known is None or not self._still(known):
             known = self._consulting(lambda: frozenset(self._by(carrier, item)))
             self.arrivals[carrier, item] = known
-        self._note(known)
+        if known not in self.reads.arrivals:
+            self._note(known)
         return known.nodes
 
     def forget_arrivals(self) -> None:

@@ -189,7 +189,8 @@ class Value:
     @property
     def objects(self) -> list[Obj]:
         """Return the objects in order of creation."""
-        return in_order(self.pts)
+        pts = self.pts
+        return sorted(pts, key=NUMBER) if len(pts) > 1 else list(pts)
 
     def constant(self) -> tuple[bool, object]:
         """Return (whether the value is one known constant, the constant)."""

@@ -33,7 +33,7 @@ def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Cal
     """Let a library call a function among its arguments at any time, with the arguments that follow the function."""
     plain, named = arguments
     for number, value in enumerate(plain):
-        for target in value.objects:
+        for target in value.objects if value.pts else ():
             if target.kind == "method":
                 calls.call_object(ctx, target, (plain[number + 1 :], {}), frame, call)
             elif target.kind in LATER:
@@ -50,7 +50,13 @@ def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Cal
 
 def _nested(ctx: Interpreter, values: Iterable[Value]) -> list[Obj]:
     """Return the functions inside containers, such as a list of tools."""
-    inner = [containers.elements_of_any(ctx, _only(o)) for v in values for o in v.objects if o.kind in INSIDE]
+    inner = [
+        containers.elements_of_any(ctx, _only(o))
+        for v in values
+        if v.pts
+        for o in v.objects
+        if o.kind in INSIDE
+    ]
     return [o for o in _callables(ctx, inner, MAX_INSIDE - 1) if o.kind in LATER]
 
 
@@ -90,7 +96,7 @@ def answering(ctx: Interpreter, arguments: Arguments) -> list[Obj]:
 def _callables(ctx: Interpreter, values: Iterable[Value], depth: int) -> list[Obj]:
     found: dict[Obj, None] = {}
     for value in values:
-        for obj in value.objects:
+        for obj in value.objects if value.pts else ():
             if obj.kind in LATER or (obj.kind == "instance" and _functor(ctx, obj)):
                 found[obj] = None
             elif obj.kind in INSIDE and depth:

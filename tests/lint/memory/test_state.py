@@ -416,10 +416,13 @@ def test_an_object_created_on_another_path_has_only_the_stores_of_other_entry_po
     store.push()
     store.put((obj, BORN), BOTTOM)
     store.put((obj, "x"), ONE)
-    assert store.former((obj, "x")) is ONE
+    assert store.former((obj, "x"), {}) is ONE
+    assert store.made(obj, {})
     store.pop()
+    assert not store.made(obj, {})
+    assert store.made(obj, {obj: True})
     shared.leave(shared.ends, other, (obj, "x"), TWO)
-    assert store.former((obj, "x")) == TWO
+    assert store.former((obj, "x"), {}) == TWO
     shared.dirty.clear()
     shared.leave(shared.ends, mine, (obj, "x"), ONE)
     assert shared.dirty == set()
