@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -61,6 +62,24 @@ def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
     if len(places) < len(spans):
         return ()
     return tuple(place for place in places if place.value or operand.value == 0)
+
+
+def alternatives(analysis: Analysis, places: Sequence[Place]) -> bool:
+    """Return whether one of several numbers is selected: rows of one table, or arms of one conditional expression."""
+    holders = [_holders(analysis, place) for place in places] if len(places) > 1 else []
+    return any(one & other for one, other in itertools.combinations(holders, 2))
+
+
+def _holders(analysis: Analysis, place: Place) -> set[tuple[str, int, int]]:
+    """Return the displays and conditional expressions around a number, by path and offsets."""
+    source = document(place.path, analysis.sources[place.path])
+    return {
+        (place.path, source.start(node), source.end(node))
+        for node in ast.walk(source.tree)
+        if isinstance(node, ast.Dict | ast.List | ast.Tuple | ast.IfExp)
+        and source.start(node) <= place.start
+        and place.end <= source.end(node)
+    }
 
 
 def _defined_at(analysis: Analysis, operand: Operand, span: Span) -> Place | None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.definitions import (
     Place,
+    alternatives,
     computed_at,
     configured,
     defined,
@@ -23,7 +24,7 @@ from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
 LOOKED_AT = 3  # number of seeds on which a repair must pass if it is moved to the definition
-MOST_PLACES = 6  # maximum number of configuration files to try for one parameter
+MOST_PLACES = 6  # maximum number of configuration files or rows of a table to try for one constant
 MOST_NAMED = 5  # maximum number of other users of a constant that a note names
 
 
@@ -104,8 +105,10 @@ class Placing:
         analysis, operand = self.order.analysis, mutation.operand
         name = parameter(analysis, operand)
         written = defined(analysis, operand)
-        if self._moves(mutation, written, candidate, trials):
-            return written
+        apart = alternatives(analysis, written)
+        for places in [(one,) for one in written[:MOST_PLACES]] if apart else [written]:
+            if self._moves(mutation, places, candidate, trials):
+                return places
         if not name:
             return ()
         file = (self.order.root / operand.span.path).resolve()
@@ -153,12 +156,12 @@ class Placing:
             f"`{operand.code}` is changed at its use. The parameter {name!r} has a default and possibly a value in the "
             "package, but "
         )
-        passed = re.search(rf"""["'_]{key}\b""", text)
-        if passed is None and ".launch(" in text and computed:
+        in_test = re.search(rf"""["'_]{key}\b""", text)
+        if in_test is None and ".launch(" in text and computed:
             return f"{start}{computed}, where no number alone determines it. Change the parameter there"
-        if passed is None and ".launch(" in text:
+        if in_test is None and ".launch(" in text:
             return f"{start}the launch file of the test sets it. Change the parameter there"
-        who = "the test itself passes it (parameters=…, argv=…)" if passed else "this test sets it"
+        who = "the test itself passes it (parameters=…, argv=…)" if in_test else "this test sets it"
         return f"{start}{who}, and TARL never edits tests. Change the parameter where your robot sets it"
 
     def _users(self, place: Place, used: Sequence[Operand]) -> Iterator[str]:

@@ -63,8 +63,8 @@ class World:
     def place(self, mutation: Mutation) -> Place | None:
         """Return the definition of a mutation's constant, in a configuration file if it was loaded from one."""
         found = defined(self.analysis, mutation.operand)
-        if found is not None:
-            return found
+        if len(found) == 1:
+            return found[0]
         texts = {
             key: text
             for key, text in package_files(self.folder, self.folder / "keeper.py").items()

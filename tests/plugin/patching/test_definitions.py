@@ -127,8 +127,7 @@ def test_the_default_of_an_entry_is_the_definition_and_its_key_the_parameter(
     path.write_text(ENTRIES.format(definition=definition))
     analysis = analyse([path], root=tmp_path)
     (operand,) = {one for step in analysis.sites for one in analysis.operands(step.site)}
-    place = defined(analysis, operand)
-    assert place is not None
+    (place,) = defined(analysis, operand)
     assert (place.value, path.read_text()[place.start : place.end]) == (0.28, "0.28")
     assert (place.name, parameter(analysis, operand)) == (name or "value", name)
 

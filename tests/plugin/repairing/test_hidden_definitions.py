@@ -48,6 +48,6 @@ def test_a_definition_is_tried_beside_the_other_changes(
     order: Any = SimpleNamespace(goal=SimpleNamespace(pairs=(Pair(1, 0.0),)))
     mutants: Any = SimpleNamespace(order=order)
     run: Any = trials
-    assert Placing(mutants)._moves(USES[1], PLACE, Candidate(USES, ALWAYS), run) is expected
+    assert Placing(mutants)._moves(USES[1], [PLACE], Candidate(USES, ALWAYS), run) is expected
     assert len(ran) == most
     assert all(one.operand == REACH for one in ran[-1].mutations) is (most == 3)

@@ -242,6 +242,55 @@ def test_a_call_that_passes_zero_stays_as_it_is(tmp_path: Path) -> None:
     assert turned(tmp_path, "0.1", "0.0")[1] == [("speed", 13, 0.2)]
 
 
+ROWS = """\
+import os
+
+import rospy
+from std_msgs.msg import Float64
+
+RECIPES = {{"plum": {{"pulse": 0.2}}, "peach": {{"pulse": 0.4}}, "pear": {{"pulse": 0.6}}}}
+recipe = RECIPES[rospy.get_param("~fruit", "peach")]
+value = {value}
+
+
+def on_goal(msg):
+    out.publish(Float64(data=value * msg.data))
+
+
+rospy.init_node("ejector")
+out = rospy.Publisher("/out", Float64, queue_size=1)
+rospy.Subscriber("/goal", Float64, on_goal)
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "number", "name"),
+    [
+        ('recipe["pulse"]', "0.4", 'RECIPES["peach"]["pulse"]'),
+        ('0.2 if os.name == "nt" else 0.4', "0.4", "value"),
+    ],
+    ids=["row", "conditional expression"],
+)
+def test_only_the_alternative_that_the_test_uses_is_changed(
+    tmp_path: Path, value: str, number: str, name: str
+) -> None:
+    text = ROWS.format(value=value)
+    of = placing(tmp_path, text=text)
+    (use,) = (one for one in operands(of.order) if one.code == "value")
+    start = text.index(number)
+
+    class Rows(Scripted):
+        def __call__(self, candidate: Candidate, seed: int) -> Outcome:
+            starts = {one.place.start if one.place else start for one in candidate.mutations}
+            return Outcome(9.5 if starts == {start} else 1.0, passed=True)
+
+    trials = Rows(lambda moved, seed: 9.5)
+    found: Any = of(Candidate((Mutation(use, 2.0),), ALWAYS), trials)  # type: ignore[arg-type]
+    (mutation,) = found.mutations
+    assert (mutation.place.name, mutation.place.start, redefinition(mutation)) == (name, start, 0.8)
+
+
 def test_a_changed_number_and_a_factor_on_its_use_become_one_change(tmp_path: Path) -> None:
     of = placing(tmp_path, text=HELPER.format(first="0.0", second="0.1"))
     uses = [one for one in operands(of.order) if one.code == "speed" and one.site.qualname.endswith("turn")]

@@ -59,8 +59,7 @@ def test_an_entry_is_used_where_its_key_is_read(tmp_path: Path, line: str, code:
     assert (use.code, use.value, use.span.line) == (code, value, 17)
     assert use.site in {step.site for step in analysis.sites}
     assert writing(use) is Oddness.NAMED
-    place = defined(analysis, use)
-    assert place is not None
+    (place,) = defined(analysis, use)
     assert (place.line, place.value) == (9, value)
 
 

@@ -33,7 +33,7 @@ def placing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
         options=SimpleNamespace(edit="auto"),
     )
     made: Any = Placing(SimpleNamespace(order=of, texts={}))  # type: ignore[arg-type]
-    made.name, made.written, made.places, made.computed = "~pid/gain", None, [], ""
+    made.name, made.written, made.places, made.computed = "~pid/gain", (), [], ""
     module = "pytest_tarl.repairing.placing"
     monkeypatch.setattr(f"{module}.parameter", lambda *_: made.name)
     monkeypatch.setattr(f"{module}.defined", lambda *_: made.written)
@@ -73,19 +73,19 @@ def test_a_parameter_is_changed_at_the_first_place_that_has_an_effect(placing: A
     one, two, three = (place(number) for number in (1, 2, 3))
     placing.places = [one, two, three]
     trials, tried = effective(two, three, breaks=(one,))
-    assert found(placing, trials) == two
+    assert found(placing, trials) == (two,)
     assert tried == [(one, 5), (two, 5)]
     assert placing.mutants.texts == {"a.yaml": "gain: 2.0"}
     assert not placing._why
 
 
 def test_the_definition_in_the_code_comes_first(placing: Any) -> None:
-    placing.written, placing.places = place(0), [place(1)]
+    placing.written, placing.places = (place(0),), [place(1)]
     trials, tried = effective(place(0), place(1))
-    assert found(placing, trials) == place(0)
+    assert found(placing, trials) == (place(0),)
     assert len(tried) == 1
     placing.name = ""
-    assert found(placing, effective()[0]) is None
+    assert found(placing, effective()[0]) == ()
     assert not placing._why  # a constant of the code needs no explanation
 
 
@@ -93,7 +93,7 @@ def test_only_values_of_the_same_kind_and_a_limited_number_of_files_are_tried(pl
     numbers = [place(number) for number in range(1, 9)]
     placing.places = [place(20, value=True), *numbers]
     trials, tried = effective(place(20, value=True))
-    assert found(placing, trials) is None
+    assert found(placing, trials) == ()
     assert [one for one, _ in tried] == numbers[:MOST_PLACES]
 
 
@@ -120,7 +120,7 @@ def test_the_note_on_a_parameter_says_who_sets_its_value(
     placing.computed = computed
     if text is not None:
         (tmp_path / "test_it.py").write_text(text)
-    assert found(placing, effective()[0]) is None
+    assert found(placing, effective()[0]) == ()
     (note,) = placing.notes(Candidate((CHANGED,), ALWAYS))
     assert note.startswith("`gain` is changed at its use. The parameter '~pid/gain' has a default and")
     assert says in note
@@ -130,9 +130,8 @@ def test_definitions_are_looked_for_once(placing: Any) -> None:
     placing.places = [place(1)]
     trials, tried = effective(place(1))
     candidate = Candidate((CHANGED,), ALWAYS)
-    assert (
-        placing._place(CHANGED, candidate, trials) == placing._place(CHANGED, candidate, trials) == place(1)
-    )
+    first = placing._places(CHANGED, candidate, trials)
+    assert first == placing._places(CHANGED, candidate, trials) == (place(1),)
     assert len(tried) == 1
 
 
