@@ -36,6 +36,7 @@ JUDGING = (
     "drift_judging_19",
     "drift_judging_20",
     "drift_judging_21",
+    "drift_judging_22",
     "drift_structure",
 )
 TASKS = sorted(
@@ -307,6 +308,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "two constants",
     ],
+    "drift_judging_22": [
+        "narrow window",
+        "one constant",
+        "one constant",
+        "permanent",
+        "range",
+        "sparse reward",
+        "structure",
+        "two constants",
+    ],
 }
 
 
@@ -366,6 +377,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_19",
         "drift_judging_20",
         "drift_judging_21",
+        "drift_judging_22",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
