@@ -44,8 +44,8 @@ class Tree:
         self.gained = 0.0
         self.frequency += 0.7 * ((frequency.data if frequency else 0.0) - self.frequency)
         self.throw += 0.5 * ((throw.data if throw else 0.0) - self.throw)
-        sway = 1.0 / (1.0 + (self.frequency - self.resonance) ** 2)
-        fall = self.hanging * min(1.0, DT * 8.0 * self.throw * sway)
+        sway = (1.0 + (self.frequency - self.resonance) ** 2) ** -2
+        fall = self.hanging * min(1.0, DT * 14.0 * self.throw * sway)
         self.hanging -= fall
         self.gained += 2.0 * fall
         if self.load() > self.bark:
