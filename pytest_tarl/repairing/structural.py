@@ -34,8 +34,8 @@ FIRST = 2  # number of expressions tried first: the one ranked first, and the on
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
 LEAST = 50
-# A power is a multiple of a half in most laws of physics. If one nearly earns enough, the law holds only roughly, and
-# the power is moved in hundredths.
+# An exponent is a multiple of a half in most laws of physics. If such an exponent nearly earns enough, the law holds
+# only roughly, and the exponent is moved in hundredths.
 FINER = 0.02
 # if the candidates of a group need more than the group's own episodes, they leave this share of the remaining
 # episodes to later groups

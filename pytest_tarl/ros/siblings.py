@@ -59,7 +59,7 @@ def _of_package(files: tuple[Path, ...]) -> Mapping[str, Configuration]:
 
 
 def _fill(module: ModuleType, found: Configuration) -> None:
-    """Define the names of dynamic_reconfigure's template in a module."""
+    """Define in a module the names that dynamic_reconfigure's template for generated modules defines."""
     names = module.__dict__
     names.update(inf=float("inf"), config_description=found.description, all_level=0, **found.constants)
     names.update({name: {} for name in ("min", "max", "defaults", "level", "type")})

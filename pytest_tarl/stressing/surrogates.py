@@ -53,7 +53,7 @@ def scaled_covariances(vectors: Vector) -> Callable[[Vector], Matrix]:
 
 
 def _summed(one: Vector, other: Vector, singles: Sequence[Matrix]) -> Matrix:
-    """Return the whole covariances; `singles` are the squared-exponential ones of each range.
+    """Return the covariances of the whole model; `singles` has a matrix of squared-exponential covariances per range.
 
     The squared-exponential covariance of several ranges is the product of those of each range. All of them are
     conditioned on the value 0 at nominal.

@@ -21,7 +21,7 @@ from pytest_tarl.stressing.rays import Ray
 
 MOST_SHOWN = 5  # maximum number of combinations shown, and of statements shown
 SURE = f"{100 * CONFIDENCE:.3g} %"
-ROUNDING = 1e-9  # tolerance for rounding errors of places on a ray
+ROUNDING = 1e-9  # two places on a ray that differ by no more than this are the same
 
 ENDED = {
     "budget": "The budget of {budget} did not suffice for the whole search: raise --tarl-stress-budget.",

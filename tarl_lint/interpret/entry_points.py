@@ -152,7 +152,7 @@ def _framework_methods(ctx: Interpreter, obj: Obj, owner: Obj, info: ClassInfo) 
 
 
 def _called_by_others(ctx: Interpreter, obj: Obj) -> bool:
-    """Return whether outside code calls an object's methods, since no file makes objects of its class."""
+    """Return whether code outside the analysed files makes objects of this class, and calls their methods."""
     return obj.info in ctx.plugins or obj.info in ctx.guests
 
 

@@ -114,7 +114,7 @@ class Obj:
         return self.outermost or self
 
     def describe(self, info: object) -> None:
-        """Set the object's meaning, and increment the stamp if it changed."""
+        """Set `info`, the meaning of this object, and increment its stamp if the meaning changed."""
         if info is not self.info and info != self.info:
             self.changed()
         self.info = info

@@ -168,13 +168,13 @@ class _Namer:
         self._depth = 0
 
     def endpoint(self, one: Endpoint) -> Endpoint:
-        """Return an endpoint with its names at launch; without names if one of them is unknown."""
+        """Return an endpoint with the topic names that the launch file gives it; no names if one of them is unknown."""
         if not any(MARK in name for name in one.names):
             return one
         return replace(one, names=self._names(one.names), written=tuple(map(self._in_code, one.names)))
 
     def finding(self, one: Finding) -> Finding:
-        """Return a flow with its names at launch."""
+        """Return a finding whose topics have the names that the launch file gives them."""
         flow = one.flow
         if flow is None or not any(MARK in name for name in (*flow.source.topics, *flow.sink.topics)):
             return one

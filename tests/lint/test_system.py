@@ -126,7 +126,7 @@ def test_chains_can_be_queried_from_a_sensor_to_an_actuator(workspace, capsys):
     assert "No node that was read uses /sacn." in run(capsys, "--launch", file, "--from", "/sacn")[1]
 
 
-def test_without_a_launch_file_nodes_have_the_names_in_their_code(workspace, capsys):
+def test_nodes_without_a_launch_file_have_the_names_in_their_code(workspace, capsys):
     _, out, _ = run(capsys, "--to", "/out")
     assert out.startswith(".: ") or ", names as in the code: 1 node" in out
     assert flows(out) == ["/in → /relay → /out  explicit"]

@@ -505,7 +505,7 @@ def test_the_goal_of_a_search_is_the_designed_reward_minus_tolerance_and_spread(
     assert (nothing.pairs, nothing.near) == ((Pair(4, 10.0),), 8.5)
 
 
-def test_a_sensor_distinguishes_two_worlds_if_their_values_hardly_overlap(
+def test_a_sensor_distinguishes_two_worlds_if_its_values_in_them_hardly_overlap(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     worlds = {

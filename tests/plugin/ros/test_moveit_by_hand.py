@@ -253,7 +253,7 @@ def test_settings_are_kept_and_returned(start: Start) -> None:
     ) == [3.0, "RRT", (0.25, 0.5, 0.5), "arm", 2, "base", "lower", "base", "hand", "lower", 1.0]
 
 
-def test_targets_are_set_by_list_mapping_name_and_message(start: Start) -> None:
+def test_a_target_may_be_a_list_a_mapping_a_name_or_a_message(start: Start) -> None:
     assert run(
         start,
         """

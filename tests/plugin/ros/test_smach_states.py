@@ -74,7 +74,9 @@ def acted(start: Start, code: str, status: int | None = 3, seconds: float = 1.0)
         ('_, outcome = run()', ""),
     ],
 )  # fmt: skip
-def test_a_goal_comes_from_an_argument_userdata_or_a_function(start: Start, code: str, frame: str) -> None:
+def test_a_goal_comes_from_an_argument_from_userdata_or_from_a_function(
+    start: Start, code: str, frame: str
+) -> None:
     names, mover = acted(start, code)
     assert (mover.frames(), names["outcome"]) == ([frame], "succeeded")
 

@@ -44,7 +44,7 @@ def test_a_mission_that_earns_its_reward_later_deviates_more_from_the_designed_m
     assert deviation(STEADY, (0.0, 0.0)) == 0.0
 
 
-def test_rival_constants_have_the_same_scale_as_the_repaired_one() -> None:
+def test_rival_constants_have_the_scale_of_the_repaired_constant() -> None:
     units = [Unit((LEAK,)), Unit((POWER,)), Unit((POWER,), SHARE)]
     tried = {unit for unit, _ in rivals(units[0], 2.0, units, Gains(0.1), ALWAYS)}
     assert tried == {units[1]}

@@ -187,7 +187,7 @@ def test_the_search_for_plainer_changes_ends_after_twelve_episodes() -> None:
     assert search.trials.spent - 1 == PLAINER == len(search.log)
 
 
-def test_larger_steps_end_after_twelve_episodes_as_well() -> None:
+def test_trying_larger_steps_of_other_constants_takes_at_most_twelve_episodes() -> None:
     many = [Unit((constant(line, f"N{line}"),)) for line in range(20, 40)]
     search = Scripted([LITERAL, *many], proposed=True)
     for unit in many:
