@@ -51,7 +51,7 @@ class Online:
     sarsa: tuple[Floats, ...]
     # for each check of the verdict: number of episodes, uncorrected p-value of a decrease
     looks: tuple[tuple[int, float], ...] = ()
-    decided: bool = False  # whether the verdict is final at the last check
+    decided: bool = False  # whether the last check has made the verdict final
 
 
 def run_online(

@@ -14,7 +14,7 @@ Problem = tuple[str, int]  # (description of the problem, index of the wrong cha
 _LEGAL_ROS1 = re.compile(r"[~/A-Za-z][A-Za-z0-9_/]*")
 _TOPIC_LENGTH = 247  # longest absolute name of a topic or service: DDS allows 255, a prefix takes 8
 _NODE_LENGTH = 255
-_NAMESPACE_LENGTH = 245  # leaves room for a topic of one character
+_NAMESPACE_LENGTH = 245  # a slash and a topic of one character still fit into _TOPIC_LENGTH
 
 
 def objection(name: object) -> str:

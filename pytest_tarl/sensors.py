@@ -17,7 +17,7 @@ from pytest_tarl.message_fields import dotted, field_value
 from pytest_tarl.ros_names import objection
 from pytest_tarl.variables import prefixes
 
-Cell = tuple[int, ...]  # one bin per sensor
+Cell = tuple[int, ...]  # the index of a bin for each sensor
 CALLED = "()"  # suffix of `field` in files if `field` is a function, which is stored by name
 
 

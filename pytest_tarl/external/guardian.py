@@ -27,7 +27,7 @@ from pytest_tarl.external.link_ros1 import LinkROS1
 from pytest_tarl.rosmaster import Master
 
 LOOK = 0.05  # time between two checks of the ROS graph in the first CALM seconds (s); afterwards it is 1 s
-CALM = 5.0  # duration of the more frequent checks (s)
+CALM = 5.0  # time during which the ROS graph is checked every LOOK seconds (s)
 LAST = 20.0  # time from the end of the test until the simulator is killed if the middleware hangs (s)
 
 

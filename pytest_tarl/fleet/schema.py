@@ -48,9 +48,9 @@ SCHEMAS = {
         [
             ("mission", pa.uint64()),
             ("cell", _NAME),  # the cell, as the bins of the sensors: "3,0"
-            ("next_cell", _NAME),  # null after the last step
+            ("next_cell", _NAME),  # the cell of the next step; null for the last step of the mission
             ("count", pa.int64()),
-            ("reward", pa.float64()),  # sum over the steps
+            ("reward", pa.float64()),  # sum of the rewards of these `count` steps
         ]
     ),
     "statements": pa.schema(

@@ -24,7 +24,7 @@ COLUMNS = 512  # number of processes judged together; their state fits into the 
 class Watched:
     """Robots after all of their missions; columns are those of judging.py."""
 
-    robots: Ints  # indices of the robots
+    robots: Ints  # index of each robot in the whole fleet
     processes: Processes
     pool: Ints
     bounds: int

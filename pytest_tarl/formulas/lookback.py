@@ -18,7 +18,7 @@ class Followed:
     """The signals of one mission, collected from its log records; times are in seconds since it began."""
 
     changes: list[tuple[float, str, float]] = field(default_factory=list)  # (time, name, new value)
-    times: list[float] = field(default_factory=list)  # end of each step
+    times: list[float] = field(default_factory=list)  # time at which each step ends
     lasted: float | None = None  # length of the mission, or None if the log has no signals
 
     def add(self, record: Mapping[str, Any]) -> None:

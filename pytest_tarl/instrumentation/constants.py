@@ -18,8 +18,10 @@ def _mark(name: str) -> Mark:
     return hashlib.sha256(f"pytest_tarl.instrumentation {name}".encode()).digest()
 
 
-HOOK = _mark("hook")  # hook(number, value) returns value
-BUFFER = _mark("buffer")  # the list of events
+HOOK = _mark(
+    "hook"
+)  # the function `hook(number, value)`, which records the number of a site and returns the value
+BUFFER = _mark("buffer")  # the list to which instrumented code appends its events
 TYPE = _mark("type")  # the builtin `type`, since the program may shadow its name
 FLOAT = _mark("float")
 _BUILTINS: Mapping[Mark, Any] = {TYPE: type, FLOAT: float}

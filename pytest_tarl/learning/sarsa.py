@@ -32,7 +32,7 @@ class Learner:
         self.gamma = gamma
         self.alpha = alpha
         self._row: dict[Cell, int] = {}
-        self._full = [0.0]  # one entry per state, starting with START
+        self._full = [0.0]  # one number per state; the first is for the state START
         self._scaled = [0.0]
         self._seen = set[int]()
 

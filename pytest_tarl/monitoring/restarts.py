@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import Floats, Ints
 
-BETS = 12  # number of bets per process
+BETS = 12  # number of bets that one evidence process makes side by side
 LARGE = 600  # stakes above 2^LARGE are scaled down; a single factor is below 2^70
 # the size of stakes is checked only after a multiple of this number of missions, so that the result does not depend
 # on how missions are divided into calls

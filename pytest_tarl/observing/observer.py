@@ -57,7 +57,7 @@ class Observer:
         self.signals = tuple(signals)  # the signals of formulas that are read from messages
         self._signal_readers = {one.name: reader(one.field) for one in self.signals}
         self._following = following  # whether to record every change of a value, which formulas need
-        self._changes: deque[list[Any]] = deque()  # [seconds, name, value]; any thread appends
+        self._changes: deque[list[Any]] = deque()  # entries [seconds, name, value]; any thread may append
         self._times: list[float] = []  # times at which steps were closed
         self._begun = monotonic()
         self._outlet = Outlet(log, {"format": FORMAT, **about}, rotation)

@@ -45,8 +45,8 @@ class Cut(NamedTuple):
     """The events since the last cut, as plain values for `marshal`; `chunk` converts them to columns."""
 
     cells: list[Cell]  # cells that are new in this cut
-    latched: list[int]  # index of the current cell at each mark
-    rewards: list[int]  # indices of the marks that close a step
+    latched: list[int]  # for each mark in the buffer, the index of the cell that is current there
+    rewards: list[int]  # indices of the marks in the buffer at which a step ends
     totals: list[float]
     threads: list[
         tuple[list[Any], list[int]]

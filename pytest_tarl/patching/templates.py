@@ -39,7 +39,7 @@ FIELD = "field"  # a field of a published message that several statements build
 SENT_BY_SENSOR = "sent by sensor"  # a published value
 OF_SENSORS = ("sensor", SENT_BY_SENSOR)  # kinds that are tried with each numeric sensor
 SCALES = (  # units of a parameter's default
-    "",  # the default is used unscaled
+    "",  # parameters with this scale start with their default as it is
     "typical",  # the usual size of the value in the designed world
     "larger",  # the larger of the value's usual sizes in the designed and in the drifted world
     "sensor",  # 1 divided by the sensor's usual size in the drifted world

@@ -138,7 +138,7 @@ class RealRos(Ros):
 def _arguments(parameters: Mapping[str, Any], *, ros2: bool) -> Iterator[str]:
     """Yield command line arguments that set private parameters, in the syntax of remappings in ROS 1 or 2."""
     for name, value in parameters.items():
-        text = json.dumps(value)  # JSON is YAML
+        text = json.dumps(value)  # the YAML parser of ROS also reads JSON
         yield from ("-p", f"{name}:={text}") if ros2 else (f"_{name}:={text}",)
 
 

@@ -20,7 +20,7 @@ class SharedParticipant:
     """Mixin for rclpy's Context: the same interface, but all contexts share one DDS participant."""
 
     network: RclpyNetwork
-    error: Any  # rclpy's RCLError
+    error: Any  # the class RCLError of rclpy
     handle: Any
     _callbacks: list[Any]
     _call_on_shutdown_callbacks: Callable[[], None]

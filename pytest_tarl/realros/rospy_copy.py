@@ -22,7 +22,7 @@ class RospyCopy:
         self.argv = tuple(argv)
         self.modules: Modules = load_copy("rospy", _PARTS, argv)
         self.process: Process | None = None
-        self.name = ""  # set by init_node
+        self.name = ""  # `init_node` sets it
         self.real: dict[str, Callable[..., Any]] = {}  # originals of patched functions
         self.services: list[Any] = []  # services of the current episode
 

@@ -96,7 +96,7 @@ class RospyNetwork:
         Raise NodeError if the node's name has changed since the earlier episode.
         """
         if copy.core.is_initialized():
-            copy.real["init_node"](name, *args, **kwargs)  # raises if the arguments differ
+            copy.real["init_node"](name, *args, **kwargs)  # raises if its arguments have changed
             return
         given = dict(zip(("argv", "anonymous", "log_level"), args, strict=False)) | dict(kwargs)
         if not copy.name:

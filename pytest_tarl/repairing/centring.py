@@ -86,7 +86,7 @@ def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, e
                 best, totals = other, earned
         near = (moved(candidate, ratio, mutate) for ratio in (step, 1 / step))
         if all(one is not None and trials.same_as(one, candidate) for one in near):
-            return candidate  # smaller steps have no effect either
+            return candidate  # this step has no effect, so smaller steps have none either
     return best
 
 

@@ -52,7 +52,7 @@ class Early:
         self.spent = 0
         self.waiting = False
         self._recorded: tuple[Recorded, ...] | None = None
-        self._traces: dict[Candidate, Trace] = {}  # recorded missions of changes
+        self._traces: dict[Candidate, Trace] = {}  # changed program → its recorded mission
         self._signs: Signs | None = None
         self._structures: Structures | None = None
         self._surest: Structures | None = None  # the changes with the clearest symptoms, once they were tried

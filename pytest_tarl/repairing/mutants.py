@@ -85,7 +85,7 @@ class Mutants:
             try:
                 source = self.source(candidate)
             except RepairError:
-                continue  # `run` raises the error again
+                continue  # `run` meets the same error and raises it
             yield (candidate, seed, drift), EpisodePlan(seed, drift, source, outputs=True)
 
 

@@ -27,7 +27,7 @@ from pytest_tarl.searching.units import NEAR
 from pytest_tarl.symptoms.series import Pair, Series
 from tarl_lint.model import Operand, Step
 
-UP, DOWN = NEAR  # factors of a limit
+UP, DOWN = NEAR  # factors that are tried on a limit
 # a value stays at a bound if at least the share `OFTEN` of it equals the bound; a bound, or a result of a comparison,
 # is rare as designed up to the share `RARELY`
 OFTEN, RARELY = 0.3, 0.05

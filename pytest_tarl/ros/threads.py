@@ -34,8 +34,8 @@ def threads_as_tasks() -> Iterator[None]:
     replaced = [
         (threading, "Lock", _instead(threading.Lock, Lock)),
         (threading, "RLock", _instead(threading.RLock, ReentrantLock)),
-        (threading, "_allocate_lock", _instead(threading.Lock, Lock)),  # used by Condition.wait
-        (queue, "SimpleQueue", _simple_queue(queue.SimpleQueue)),  # used by concurrent.futures
+        (threading, "_allocate_lock", _instead(threading.Lock, Lock)),  # Condition.wait calls it
+        (queue, "SimpleQueue", _simple_queue(queue.SimpleQueue)),  # concurrent.futures uses it
         (threading.Thread, "start", _start(threading.Thread.start)),
         (threading.Thread, "join", _join(threading.Thread.join)),
         (threading.Thread, "is_alive", _is_alive(threading.Thread.is_alive)),

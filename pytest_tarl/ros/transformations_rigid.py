@@ -142,7 +142,7 @@ def quaternion_from_matrix(matrix: Any) -> Any:
     As in tf, w is positive for rotations below 120°; for larger ones, the largest component is positive.
     """
     m = matrix
-    squares = [  # 4x², 4y², 4z², 4w²
+    squares = [  # 4x², 4y², 4z² and 4w² of the quaternion
         1 + m[0][0] - m[1][1] - m[2][2],
         1 - m[0][0] + m[1][1] - m[2][2],
         1 - m[0][0] - m[1][1] + m[2][2],

@@ -42,7 +42,7 @@ class Rigid:
     """A rotation followed by a translation."""
 
     translation: Vector = (0.0, 0.0, 0.0)
-    rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)  # x, y, z, w
+    rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)  # in the order x, y, z, w
 
     def __matmul__(self, inner: Rigid) -> Rigid:
         moved = rotate(self.rotation, inner.translation)

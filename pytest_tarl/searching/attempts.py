@@ -99,10 +99,12 @@ class Attempts:
             Unit, ...
         ] = ()  # groups of constants that are tried together once one of them gains
         self._easy = easy(goal)
-        self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # change → pair of its first run
+        self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # change → mission pair of its first run
         self._tried: set[Candidate] = set()
         self._divided: set[Unit] = set()  # units of which no single value suits all missions
-        self._adjusted: set[tuple[Unit, Guard]] = set()  # units that nearly earned enough and were adjusted
+        self._adjusted: set[tuple[Unit, Guard]] = (
+            set()
+        )  # units that were adjusted because they nearly earned enough
         self._settled = Settled()
 
     def interlude(self, gain: float) -> Iterator[Candidate]:

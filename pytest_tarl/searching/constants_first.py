@@ -18,7 +18,7 @@ from pytest_tarl.searching.refining import between
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
-CONSTANTS = 2  # maximum number of constants that are refined
+CONSTANTS = 2  # maximum number of constants that are refined before the first structural change
 EPISODES = 8  # maximum number of episodes for each of them, without confirmations
 
 

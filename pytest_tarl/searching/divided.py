@@ -41,7 +41,7 @@ def divided(
         its = Candidate(unit.mutations(mutate, other), guard)
         there = [seed for seed in _reached(its, trials, goal) if seed not in here]
         if not there or not (failed or _failed(its, trials, goal)):
-            continue  # both may reach the goal everywhere
+            continue  # both candidates may reach the goal on all seeds
         if goal.reached(trials(mine, there[0]), there[0]):
             continue
         if not any(goal.reached(trials(its, seed), seed) for seed in here[:1]):

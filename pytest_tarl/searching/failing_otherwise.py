@@ -44,8 +44,8 @@ class Bracket:
     unit: Unit
     factor: float
     pair: int
-    unchanged: str  # reason of the failure without a change
-    changed: str  # reason with the factor
+    unchanged: str  # why the mission fails without a change
+    changed: str  # why the mission fails with the factor
 
 
 def in_between(search: Search, guard: Guard, units: Sequence[Unit]) -> Generator[Candidate, None, bool]:

@@ -21,9 +21,9 @@ MOST = 3  # maximum number of parts in a combined repair
 PROMISING = 0.5  # minimum gain of a combination that is balanced, as a share of the wanted gain
 # number of further units to combine with the first unit, because a useful unit may gain little alone
 LEADERS = 5
-STEPS = (1.5, 0.65)  # factors by which balancing moves a part
+STEPS = (1.5, 0.65)  # factors that are tried on one part of a combination to balance the combination
 CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is multiplied repeatedly
-CLIMB = 4  # maximum number of multiplications of one fixed parameter
+CLIMB = 4  # maximum number of times that one fixed parameter is multiplied by a factor of CLIMBS
 AMPLE = 1.02  # maximum gain of a refused combination that is adjusted, as a share of the wanted gain
 STRONG = 5.0  # factor for units that have no effect alone
 
@@ -241,7 +241,7 @@ class ForwardSelection:
                     yield from self.preferred(one, *least.parts[0])
                 yield one
                 if self.trials.gain(one, self.goal.pairs) > AMPLE * self.goal.wanted:
-                    return  # refused, but not because it earns too little
+                    return  # the combination was refused although it earns enough, so refining it does not help
                 break
         yield from self._polished(least)
 

@@ -13,7 +13,7 @@ SEEN = 6  # minimum number of units that must have been tried under a guard to c
 IDLE = 0.25  # a guard is idle if at most this share of the units tried under it changed an episode
 
 Key = tuple[Unit, Guard]
-Part = tuple[Unit, float]  # a unit with a factor
+Part = tuple[Unit, float]  # a unit, and the factor by which it is changed
 
 
 class Gains:

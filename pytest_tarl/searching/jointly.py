@@ -27,9 +27,9 @@ from tarl_lint.model import Operand
 
 Floats = NDArray[np.float64]
 
-DIMENSIONS = 8  # maximum number of constants to move
-LEAST = 2  # minimum number of constants to move
-EPISODES = 50  # maximum number of trials
+DIMENSIONS = 8  # maximum number of constants that are moved together
+LEAST = 2  # minimum number of constants that are moved together
+EPISODES = 50  # maximum number of trials of the joint search
 PATIENCE = 25  # maximum number of consecutive trials without an improvement
 # maximum number of such trials if they all earn the same reward, above that of the unrepaired program: then they only
 # avoid the part of the mission that costs reward
@@ -48,7 +48,7 @@ REFITTED = 4  # number of trials between two fits of the length scales
 NOISES = (0.05, 0.2)  # possible noise levels of a trial, as a share of the standard deviation of all trials
 WORST = 2.0  # maximum deviation from the designed mission; larger deviations are clipped
 REFUSED = 0.5  # penalty on the value of a point that is good on this seed but was refused on others
-SMALL = 0.02  # minimum |log(step)|; smaller ones are set to 0
+SMALL = 0.02  # a constant is left unchanged if |log| of its factor is smaller
 
 
 @dataclass

@@ -135,7 +135,7 @@ class Trials:
     # extra episodes, added to the budget once a candidate has gained the share `FAR` of the wanted gain
     reserve: int = 0
     limit: int | None = None  # most episodes of all phases together, which `granting` may use
-    worth: Goal | None = None  # goal whose wanted gain decides when `reserve` is released
+    worth: Goal | None = None  # `reserve` is released after a gain of FAR times the wanted gain of this goal
     # returns whether a candidate loses missions that were lost by rejected candidates
     loses: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world

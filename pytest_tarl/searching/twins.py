@@ -17,7 +17,7 @@ from tarl_lint.model import Operand
 
 FEWEST, MOST = 2, 8  # minimum and maximum number of twins
 
-Key = tuple[str, str, str, float]  # kind of twins, file, name, value
+Key = tuple[str, str, str, float]  # what twins have in common: "literal" or "name", file, name, value
 
 
 def twins(apart: Sequence[Unit]) -> tuple[Unit, ...]:

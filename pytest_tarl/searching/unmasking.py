@@ -18,7 +18,7 @@ from pytest_tarl.searching.units import NEAR, Unit
 
 GAINED = 0.3  # minimum gain of a change under which others are tried, as a share of the wanted gain
 LONGER = 1.2  # minimum ratio of the length of missions with the change to their length without it
-MOST = 24  # maximum number of constants to try under the change
+MOST = 24  # maximum number of other constants that are tried while the change is applied
 FINER = (1.5, 0.65)  # factors for a constant that has an effect under the change
 ROUNDS = 2  # number of times that the best factor of a constant is refined under the change
 

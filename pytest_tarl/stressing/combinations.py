@@ -258,7 +258,7 @@ class Combined:
             if best is None or any(
                 other is not one and other.coordinates.covers(best) for other in self.options
             ):
-                continue  # the model of the search with these options decides
+                continue  # the search `other` has the options of `best`, so its model decides about `best`
             if one.distance(best) < least:
                 leading, least = one, one.distance(best)
         return leading

@@ -38,8 +38,8 @@ NEAREST = (16, 32, 64)
 # shares of the risk for these numbers of episodes; the last share is the largest, because the largest number of
 # episodes shows most
 SPENT = (0.1, 0.2, 0.7)
-SEARCH = "search"  # name of the seeds of the search
-RAYS = "rays"  # name of the fresh seeds that all rays share; chains of combinations have seeds of their own
+SEARCH = "search"  # name of the pool of seeds on which the search runs
+RAYS = "rays"  # name of the pool of fresh seeds that all rays share; chains of combinations have pools of their own
 
 Progress = Callable[[int, int, str], None]
 

@@ -19,7 +19,7 @@ from pytest_tarl.stressing.rays import Ray
 
 # how the first and the second value divide the risk, and how the two tests at a value divide its part
 SHARES = (0.85, 0.15)
-SECOND = 0.5  # the second value, as a share of the first
+SECOND = 0.5  # the second value tested, as a share of the first value tested
 BATCH = 8  # a test checks after each batch of this many episodes whether it can still succeed
 PAIRED = (16, 32)  # numbers of episodes to bound the loss with, unless the marker declares total_range
 

@@ -34,7 +34,7 @@ from pytest_tarl.stressing.spreading import around, spread
 
 NEARER = 0.98  # maximum distance of the next failing drift, as a share of the best distance
 LARGEST = 2.0  # maximum distance of the drifts that are searched
-PREDICTED = 3  # number of predicted drifts to try in a row
+PREDICTED = 3  # number of predicted drifts that are tried in succession
 GAIN = 0.01  # minimum expected reduction of the distance, as a share of the best distance, for a drift to be tried
 # numbers of standard deviations by which successive predictions assume larger losses, in turn
 BOLD = (0.0, 1.0, 0.0, 0.5)

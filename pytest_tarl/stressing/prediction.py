@@ -27,7 +27,7 @@ PART = 0.75  # probability that a direction changes in a random drift
 # number of refinements around the best drift; initial standard deviation, which each refinement halves
 ROUNDS, SPREAD = 5, 0.15
 STRETCHED = (0.9, 1.0, 1.1)  # tried drifts are also compared at these multiples of their vectors
-NEAR = 64  # maximum number of these drifts
+NEAR = 64  # maximum number of tried drifts that are multiplied by STRETCHED
 RAREST = 0.007  # minimum failure rate that the model assumes at nominal
 LEAST_LOSS = 0.25  # minimum predicted loss of a drift that is used to estimate the factors of seeds
 LOGIT = 4.0  # difference of logits that is equivalent to the whole tolerated loss

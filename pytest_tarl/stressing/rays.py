@@ -23,7 +23,7 @@ class Ray:
     space: Space
     names: tuple[str, ...]
     farthest: Point
-    extra: tuple[float, ...] = ()  # additional places t of the sweep
+    extra: tuple[float, ...] = ()  # places t at which the sweep runs episodes in addition to the usual ones
 
     @property
     def continuous(self) -> bool:

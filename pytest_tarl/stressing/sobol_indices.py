@@ -23,7 +23,7 @@ ROWS = (
     64,
     32,
 )  # possible sizes of the base sample; a Sobol sequence is balanced at powers of two
-POOL = "sobol"  # name of the pool of seeds
+POOL = "sobol"  # name of the pool of seeds for the episodes of this analysis
 RESAMPLES = 200  # number of bootstrap resamples for the intervals
 
 

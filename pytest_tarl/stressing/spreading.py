@@ -10,7 +10,7 @@ import numpy as np
 
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
 
-CLOSEST = 0.4  # minimum length of a vector; the maximum is 1
+CLOSEST = 0.4  # minimum length of a random vector of drifts; the maximum length is 1
 PART = 0.8  # share of the vectors in which a given direction changes
 # minimum and maximum length of vectors around another vector, as shares of the other vector's length
 SHORTER = (0.8, 0.98)

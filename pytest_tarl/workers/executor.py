@@ -110,7 +110,7 @@ class Answer:
         def ended(future: Future[bytes]) -> None:
             if future.cancelled() or future.exception() is not None:
                 return
-            with suppress(TarlError):  # `result` raises the error instead
+            with suppress(TarlError):  # the caller gets this error from `result`, not from this callback
                 call(protocol.answered(self.plan, future.result()))
 
         self.future.add_done_callback(ended)

@@ -29,7 +29,7 @@ class Targets:
         self._group = groups[name]
         self._tip, self._frame = self._group.tip, ""
         self._goal: dict[str, float] | None = None  # joint values
-        self._pose: tuple[str, Any] | None = None  # link and PoseStamped
+        self._pose: tuple[str, Any] | None = None  # the link to move, and its PoseStamped
         self._start: dict[str, float] | None = None  # joint values, if the start is not the current state
         self._kept: dict[str, list[float]] = {}
         self._random = random.Random(name)

@@ -66,7 +66,7 @@ class Executor:
             True  # whether an entity other than a timer may have become ready since the last check
         )
         self._is_shutdown = False
-        self._active, self._limit = 0, 1  # number of running callbacks, and its limit
+        self._active, self._limit = 0, 1  # number of running callbacks, and the largest number allowed
         self.context.on_wake(self.wake)
 
     def add_node(self, node: Node) -> bool:
