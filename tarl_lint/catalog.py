@@ -104,13 +104,16 @@ BUFFERS: Final = frozenset(
     ["tf2_ros.Buffer", "tf2_ros.buffer.Buffer", "tf2_ros.BufferClient", "tf2_ros.buffer_client.BufferClient",
      "tf2_ros.BufferInterface", "tf2_ros.buffer_interface.BufferInterface"]
 )  # fmt: skip
-TRANSFORM: Final = Fact("transform", "tf2.transform")  # the method `transform` of these classes
+TRANSFORM: Final = Fact("transform", "tf2.transform")  # source: the method `transform` of BUFFERS
 BROADCASTERS: Final = frozenset(
     ["tf.TransformBroadcaster", "tf.broadcaster.TransformBroadcaster", "tf2_ros.TransformBroadcaster",
      "tf2_ros.transform_broadcaster.TransformBroadcaster", "tf2_ros.StaticTransformBroadcaster",
      "tf2_ros.static_transform_broadcaster.StaticTransformBroadcaster"]
 )  # fmt: skip
-LOOKUP_WORDS: Final = (*sorted(LOOKUPS), ".transform(")  # words of look-ups in a file
+LOOKUP_WORDS: Final = (
+    *sorted(LOOKUPS),
+    ".transform(",
+)  # a file that looks up a transform contains one of these words
 MARKER_SERVERS: Final = frozenset(
     [
         "interactive_markers.InteractiveMarkerServer",
@@ -336,7 +339,7 @@ ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     "numpy.fill_diagonal": 0, "setattr": 0, "struct.pack_into": 1,
     **dict.fromkeys(FILLS_MESSAGES, 0),
 }  # fmt: skip
-# method → position of the argument that it fills
+# method of an object of a library → position of the argument that the method fills with data
 METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}
 DEVICE_WRITERS: Final = frozenset(["write", "writelines", "send", "sendall", "sendto"])
 DEVICE_READERS: Final = frozenset(

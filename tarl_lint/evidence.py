@@ -116,7 +116,7 @@ class Evidence:
     """The data available to hazard rules."""
 
     def __init__(self, tracer: Tracer, flows: Sequence[Flow]) -> None:
-        self.tracer = tracer  # searches the value-flow graph
+        self.tracer = tracer  # with it, rules search the value-flow graph
         self.machine = machine = tracer.machine
         self.flows = flows
         self.ours = frozenset(f.function.name for f in machine.frames.values())

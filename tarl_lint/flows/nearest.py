@@ -33,7 +33,9 @@ class Nearest(Generic[T]):
         self._extended = extended
         self._worthwhile = worthwhile
         self._kept: list[T] = []
-        self._last: dict[Hashable, Set[int]] = {}  # kind → the last set of this kind
+        self._last: dict[
+            Hashable, Set[int]
+        ] = {}  # kind of result → the last set of nodes for which it was computed
 
     def of(self, nodes: Set[int], kind: Hashable, *more: T) -> T:
         """Return the result for some nodes; `more` are known results for subsets of them.

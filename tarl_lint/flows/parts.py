@@ -23,9 +23,9 @@ Pairs = dict[tuple[int, int], None]  # (`id` of a statement, `id` of a statement
 class Way:
     """Calls that lead from a condition to a value that it chooses; many conditions and values share them."""
 
-    passed: Mapping[int, Written]  # the calls as written
-    between: Pairs  # their order
-    ends: tuple[int, int] | None  # the first and the last call; None without calls
+    passed: Mapping[int, Written]  # `id` of a call → the call as written in the code
+    between: Pairs  # the order of the calls, as pairs of their `id`
+    ends: tuple[int, int] | None  # `id` of the first and of the last call; None if there are no calls
 
     def joining(self, first: int | None, last: int | None) -> Iterator[tuple[int, int]]:
         """Yield the pairs that order two statements around the calls."""

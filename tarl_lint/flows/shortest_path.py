@@ -25,7 +25,7 @@ class ShortestPaths:
     ) -> None:
         self._statement_of = statement_of
         self._following: dict[int, int] = {}
-        self._settled: dict[int, None] = {}  # in the order of their cost
+        self._settled: dict[int, None] = {}  # nodes whose cost is final, cheapest first
         # the search does not refer to this object: a reference cycle would keep both in memory
         self._rest = _search(ends, formers, statement_of, self._following, self._settled)
 

@@ -80,7 +80,7 @@ class Interpreter:
         self.guards: list[tuple[int, str]] = []
         # implementations of functions with `singledispatch` → names of the types for which they are registered
         self.dispatches: dict[Obj, frozenset[str]] = {}
-        self.class_made: Obj | None = None  # the class for which a metaclass runs
+        self.class_made: Obj | None = None  # the class that the running metaclass creates
         self.members = False  # whether a class is an enumeration whose members are sequences
         self.counting: ir.Stmt | None = None  # the statement in which numbers are followed one by one
         self.repeating = False  # whether the element of a comprehension is evaluated again
@@ -93,9 +93,10 @@ class Interpreter:
         # sources by path, position and topics; for a launched node, by context instead of topics
         self.sources: dict[Hashable, SourceRecord] = {}
         self.apart: dict[tuple[str, ir.Pos], int] = {}  # registration → number of its sources
-        self.sinks: dict[Hashable, SinkRecord] = {}  # by path, position and publisher or context
+        # sinks by path, position and publisher; for a launched node, by context instead of publisher
+        self.sinks: dict[Hashable, SinkRecord] = {}
         self.sent: dict[tuple[str, ir.Pos], int] = {}  # publish call → number of its sinks
-        self.called: set[tuple[str, int]] = set()  # called functions: module, line
+        self.called: set[tuple[str, int]] = set()  # module and line of each called function
         # for each instance made by methods: allocation sites and objects, from the first maker to the instance itself
         self.chains: dict[Obj, tuple[tuple[Hashable, Obj], ...]] = {}
         self.made: set[Hashable] = set()  # keys of instantiated classes

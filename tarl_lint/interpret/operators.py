@@ -240,7 +240,7 @@ def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] 
         return None
     try:
         results = frozenset(function(*constants) for constants in itertools.product(*known))
-    except Exception:  # the program itself would raise this error
+    except Exception:  # the analysed program would raise this error when it runs
         return None
     if len(results) > MAX_CONSTS and not all(isinstance(r, str) for r in results):
         return None

@@ -40,7 +40,9 @@ class Registrations:
             None  # name of a function or class → what its call runs
         )
         self.called: dict[str, frozenset[str]] = {}  # name → names that its code calls
-        self.known: dict[Hashable, bool] = {}  # loop, comprehension or name → the answer
+        self.known: dict[
+            Hashable, bool
+        ] = {}  # loop, comprehension or name → whether it registers or makes objects
         self.calling: dict[
             Hashable, bool
         ] = {}  # loop or comprehension → whether it calls a variable of the loop

@@ -20,7 +20,7 @@ Kind = Literal["machine", "chain", "fork", "wrapper"]
 Cont = Callable[[str], int]
 MAX_DEPTH: Final = 12  # maximum depth of nested groups
 MAX_PLACES: Final = 2000  # maximum number of places of all parts in a tree of groups
-ANY: Final = ""  # an outcome that is not known
+ANY: Final = ""  # stands for an outcome that is not known
 
 
 @dataclass(slots=True, eq=False)

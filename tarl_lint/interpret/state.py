@@ -62,7 +62,7 @@ class Work:
 
     # file that is not a program → the files that import it, and whether each is the `__init__.py` of a package
     importers: dict[str, dict[str, bool]] = field(default_factory=dict)
-    owners: dict[str, str] = field(default_factory=dict)  # cache of `charged_to`
+    owners: dict[str, str] = field(default_factory=dict)  # cache of `charged_to`: file → program
 
     def charged_to(self, path: str) -> str:
         """Return the program whose budget a file's roots use: the first one that imports it, perhaps indirectly.

@@ -120,8 +120,8 @@ class Comprehension:
     element: Expr
     pos: Pos
     slot: int
-    node: ast.expr  # the syntax tree of the element
-    tests: Sequence[ast.expr] = ()  # the syntax trees of its conditions
+    node: ast.expr  # the syntax tree of `element`
+    tests: Sequence[ast.expr] = ()  # the syntax trees of the conditions after `if`
     lazy: bool = (
         False  # whether it ends at an element that decides, as in `all(part.ready() for part in parts)`
     )
@@ -322,7 +322,7 @@ class Class(Stmt):
     bases: Sequence[Expr]
     body: Sequence[Stmt]
     decorators: Sequence[Expr] = ()
-    fields: tuple[str, ...] = ()  # names with an annotation in the body
+    fields: tuple[str, ...] = ()  # names that the class body annotates, such as `x: int`
     keywords: Sequence[tuple[str, Expr]] = ()  # except the metaclass
     metaclass: Expr | None = None
     control: object = None

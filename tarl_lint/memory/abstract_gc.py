@@ -15,7 +15,9 @@ from tarl_lint.memory.shared import BORN
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import Obj, Value
 
-TEMPORARY: Final = frozenset(["lib", "sequence", "mapping"])  # kinds of objects that can be temporary
+TEMPORARY: Final = frozenset(
+    ["lib", "sequence", "mapping"]
+)  # kinds of objects that may be dropped when a call ends
 
 
 def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj], reads: Reads) -> Delta:

@@ -19,7 +19,7 @@ class Contents:
 
     obj: Obj
     state: State
-    nodes: Nodes  # data of the fields
+    nodes: Nodes  # data of the fields that are known by name
     summary: Nodes  # data of all elements and unknown fields
     all: Nodes  # `nodes` and `summary`
     summarised: bool  # whether the object has a summary field of its own
@@ -51,7 +51,7 @@ class Inside:
 
     nodes: frozenset[int]
     reads: Reads
-    read: list[Contents]  # the contents of the visited objects
+    read: list[Contents]  # what each visited object contained when the result was computed
     empty: set[Obj]  # objects without data to which the visited objects point
     receivers: bool  # whether the result depends on the receivers of the running methods
     tick: int

@@ -160,7 +160,7 @@ class Frame(Obj):
         # stores of the function before an exception leaves it; None if no exception does
         self.thrown: dict[Key, Value] | None = None
         self.result = BOTTOM
-        self.recorded: object = None  # the last run, for replay
+        self.recorded: object = None  # the last run of this frame, which a call with equal inputs can replay
         self.shared = False  # whether calls from several places share this frame, with joined arguments
         self.passed: tuple[list[Value], dict[str, Value]] | None = (
             None  # joined arguments of all calls that share this frame

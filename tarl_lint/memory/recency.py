@@ -101,7 +101,7 @@ def _age(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
     older.describe(obj.info)
     copy_fields(ctx, obj, older)
     ctx.graph.asked += len(obj.holders)
-    without: dict[frozenset[Obj], frozenset[Obj]] = {}  # cache by set, since many values share one
+    without: dict[frozenset[Obj], frozenset[Obj]] = {}  # a cache, because many values share one set
     for key in holders:
         value = ctx.store.get(key)
         if value is not None:

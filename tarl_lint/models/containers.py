@@ -89,7 +89,7 @@ def mutate(
     elif name == "append" and (place := _next_place(ctx, base, plain, frame)) is not None:
         updates.write_item(ctx, base, const(place), through_statement(ctx, plain[0], frame, call))
     elif name == "append" and _appended(ctx, base, plain, frame, call):
-        pass  # stored at its index
+        pass  # the element is stored at its index
     elif name == "append" and _subscribers(plain):
         _append_subscriber(ctx, base, plain[0], frame, call)
     else:

@@ -96,7 +96,7 @@ def _depend(ctx: Interpreter, one: Dependence[Obj]) -> bool:
     """Add the edges of a dependence to the value-flow graph. Return whether any of them is new."""
     frame = next(iter(ctx.frames.values()))
     runs = part_of(ctx, one.part, frame).runs
-    if one.outcomes == frozenset():  # inside a fork, which must run itself
+    if one.outcomes == frozenset():  # the part is a member of a fork: it runs whenever the fork runs
         return _add(ctx, runs, [part_of(ctx, one.decider, frame).runs])
     if one.outcomes is None:
         answers = [n for part in _inside(ctx, one.decider) for n in _several(part.answers.items())]

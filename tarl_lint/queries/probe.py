@@ -65,8 +65,8 @@ class Prober:
         self.timing: dict[SiteId, Step] = {}  # statements that wait or set a rate and are in no flow
         # statements that fill an object with constants and are in no flow, and the sites that use the object
         self.configuring: dict[SiteId, tuple[Step, tuple[SiteId, ...]]] = {}
-        # Statements outside all flows that pass constants to objects of the program's own classes. For each, the sites
-        # that use these objects.
+        # statements outside all flows that pass constants to objects of the program's own classes, and the sites that
+        # use these objects
         self.making: dict[SiteId, tuple[Step, tuple[SiteId, ...]]] = {}
         self._calls: dict[SiteId, Step] = {}
         self._files = {step.span.path for f in flows for step in f.steps}

@@ -16,7 +16,7 @@ def report(result: Result, view: View) -> Iterator[Line]:
     if result.errors and result.names_errors:
         yield ()
     if flows := [f.flow for f in result.new if f.flow]:
-        from tarl_lint.report.overview import overview  # saves time if there are no findings
+        from tarl_lint.report.overview import overview  # imported late, since most reports have no flows
 
         yield from overview(flows, view)
     yield from _findings(result, view)

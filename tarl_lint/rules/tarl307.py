@@ -305,12 +305,12 @@ def _lacks(instance: Instance, name: str) -> bool:
     if interface is None or not interface.parameters or name.partition(".")[0] in _OF_ROS:
         return False
     if name in interface.public:
-        return True  # the program reads it in its namespace, not as its own
+        return True  # the program reads the parameter from its namespace, not as a private one
     spellings = {name, name.replace(".", "/"), name.replace("/", ".")}
     known = interface.exact if interface.exact is not None else frozenset[str]()
     words = interface.words | known
     if any(one.endswith(f"/{name}") for one in words):
-        return False  # the program reads it by its absolute name
+        return False  # the program reads the parameter by its absolute name
     # ROS 1 nodes may read a whole group of parameters; in ROS 2, `gain` is not the group of `gain.p`
     parts = name.split("/")
     if interface.exact is not None:
@@ -335,7 +335,7 @@ def _parsed(setting: Setting) -> Any:
     try:
         return content(setting)
     except (NoYamlError, UnreadableError):
-        return None  # another part of the report states the problem
+        return None  # another part of the report names the unreadable file
 
 
 def _misspelt(name: str, instances: Iterable[Instance]) -> bool:

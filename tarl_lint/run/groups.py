@@ -73,7 +73,8 @@ def examine(
 def _joined(reports: Sequence[Report]) -> Report:
     """Return the reports of all programs as one."""
     errors = sorted({e for r in reports for e in r.errors}, key=lambda e: (e.path, e.line, e.message))
-    findings = tuple(dict.fromkeys(f for r in reports for f in r.findings))  # programs may share a file
+    # two programs that share a file have the same findings in it
+    findings = tuple(dict.fromkeys(f for r in reports for f in r.findings))
     return Report(
         findings,
         tuple(errors),

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Work = TypeVar("Work")
 Answer = TypeVar("Answer")
-MOMENT = 1.0  # s that the thread of an ended pool gets
+MOMENT = 1.0  # maximum time to wait for the management thread of an ended pool (s)
 
 
 def in_processes(

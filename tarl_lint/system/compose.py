@@ -140,7 +140,9 @@ def _instance(
     unread = Instance(node, name, None, str(interface), silent=node.executable in _SILENT)
     known = Seen() if isinstance(found, Program) else _known(unread, launch, workspace)
     if any(one.hides and not one.package and one.file.suffix == ".py" for one in launch.problems):
-        known = replace(known, certain=False)  # the arguments of a node may be incomplete, too
+        known = replace(
+            known, certain=False
+        )  # problems in a launch file may also hide arguments of its nodes
     reason = f"a C++ program of {node.package}" if known.ends else unread.unread
     return replace(unread, known=known, unread=reason)
 
@@ -158,7 +160,7 @@ def _known(instance: Instance, launch: Launch, workspace: Workspace) -> Seen:
     if package is None:
         passed = passed_on(instance, values, ros2=launch.ros2)
         found = passed if passed.ends else stated(instance, values, ros2=launch.ros2)
-        inside = workspace.package(identity(node)[0])  # that of a nodelet's class
+        inside = workspace.package(identity(node)[0])  # for a nodelet, the package of its class
         known = kinds(node) if inside is None else used_types(inside, workspace)
         found = found if found.ends else typed(instance, values, ros2=launch.ros2)
         return replace(found, kinds=known, never=unlikely(node) if inside is None else frozenset())

@@ -35,7 +35,8 @@ _CALL: Final = re.compile(
     r"\b(?P<call>advertise(?:Camera)?|create_(?:camera_)?publisher|subscribe(?:Camera)?|create_(?:camera_)?subscription)"
     r"\s*(?:<\s*(?P<type>[\w:]+)[^;(]{0,200}?>)?\s*\((?:\s*[\w.>()-]+\s*,)?\s*\"(?P<name>[\w/~]+)\""
 )
-# objects of image_transport: `ImageTransport it(nh)`, `it = std::make_shared<image_transport::ImageTransport>(nh)`
+# finds the names of objects of image_transport: `ImageTransport it(nh)`,
+# `it = std::make_shared<image_transport::ImageTransport>(nh)`
 _IMAGES: Final = re.compile(
     r"\bImageTransport>?\s+(\w+)|\b(\w+)\s*(?:=|\.reset\s*\()[^;=]{0,80}\bImageTransport\b"
 )

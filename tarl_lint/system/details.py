@@ -43,7 +43,7 @@ def _parameters(instance: Instance, shared: Sequence[Setting]) -> Iterator[str]:
         yield f"parameters from {', '.join(files)}"
         return
     for setting in shared:
-        with suppress(NoYamlError, UnreadableError):  # another part of the report states the problem
+        with suppress(NoYamlError, UnreadableError):  # another part of the report names the unreadable file
             named = {one.name: one.value for one in stated((setting,), instance.name)}
             inside = {name: value for name, value in named.items() if name.startswith(above)}
             values.update(inside)

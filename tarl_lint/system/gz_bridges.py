@@ -71,7 +71,7 @@ def _of_argument(text: str, instance: Instance) -> list[Endpoint] | None:
     if "/srv/" in kind:
         return [_end("serves", name, kind, instance)]
     if not sign or not other or "@" in other:
-        return None  # the program refuses to start
+        return None  # the bridge refuses to start with such an argument
     return [_end(role, name, kind, instance) for role in _ROLES[sign]]
 
 

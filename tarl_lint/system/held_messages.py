@@ -25,7 +25,7 @@ _CLIENTS: Final[Mapping[str, tuple[int, str]]] = {
 }
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _Scope = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.Module
-_ANY: Final = "*"  # name of all attributes
+_ANY: Final = "*"  # stands for every attribute
 _ELEMENT: Final = "[]"  # end of the part of a path that stands for an element of a list
 
 
@@ -54,11 +54,12 @@ class HeldMessages:
         self._bound: dict[_Scope, dict[str, list[_Value]]] = {}
         self._known: dict[_Scope, dict[str, Held]] = {}  # types of arguments
         self._attributes: dict[tuple[ast.ClassDef, str], list[_Value]] = {}
-        self._foreign: set[str] = set()  # attributes that are set elsewhere than in `self`
+        self._foreign: set[str] = set()  # attributes that code sets on objects other than `self`
         self._scopes: dict[ast.AST, _Scope] = {}
         self._tested: dict[_Scope, set[str]] = {}  # variables whose class the code tests
         self._functions: dict[str, list[_Function]] = {}
-        self._found: dict[tuple[ast.AST, str], Held | None] = {}  # what variables and attributes hold
+        # (scope or class, name) → what the variable or attribute holds
+        self._found: dict[tuple[ast.AST, str], Held | None] = {}
         self._read(tree)
         by_name = received(tree, types)
         lambdas = received_by_lambdas(tree, types)

@@ -68,7 +68,7 @@ class OwnStrings:
         own = [self._own(one, outline, seen) for one in elements]
         named = any(isinstance(one, ast.Constant) and isinstance(one.value, str) for one in elements)
         strange = [one for one, fine in zip(elements, own, strict=True) if not fine]
-        # an empty list in a variable is filled elsewhere
+        # if a variable holds an empty list, other code fills the list
         return (bool(elements) or not seen) and (
             not strange or (named and not any(isinstance(one, ast.Name | ast.Starred) for one in strange))
         )

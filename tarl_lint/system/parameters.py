@@ -135,7 +135,7 @@ def _stated(call: ast.Call, outline: Outline, strings: OwnStrings) -> bool:
     several = last_name(call.func) == "declare_parameters"
     named = {one.arg: one.value for one in call.keywords if one.arg}
     if several:
-        # the first argument is a namespace
+        # `declare_parameters` takes a namespace first, then the parameters
         found = call.args[1] if len(call.args) > 1 else named.get("parameters")
         above = call.args[0] if call.args else named.get("namespace")
         return (

@@ -26,9 +26,9 @@ _PRESETS: Final = {
     "BEST_AVAILABLE": Qos(),
 }
 _PLACES: Final = {"create_publisher": 2, "create_lifecycle_publisher": 2, "create_subscription": 3}
-_FILTER: Final = "Subscriber"  # of message_filters, whose profile is a keyword
+_FILTER: Final = "Subscriber"  # class of message_filters; its profile is passed as a keyword
 _OF_NODE: Final = 3  # arguments of a filter in ROS 2: node, type and topic
-_DEPTH: Final = 10  # profile of a filter without any
+_DEPTH: Final = 10  # queue depth of a filter that is created without a profile
 _ROW: Final = 3  # minimum length of a row: topic, type and profile
 _RELIABILITY: Final = {"RELIABLE": True, "BEST_EFFORT": False}
 _DURABILITY: Final = {"TRANSIENT_LOCAL": True, "VOLATILE": False}

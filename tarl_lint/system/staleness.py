@@ -62,7 +62,9 @@ class Program:
         self._callbacks = callbacks
         self._handlers = {_last(name) for name in callbacks}
         self._timed: set[str] = set()  # functions that timers call
-        self._ticks: list[ast.expr] = []  # callbacks of timers that are no names
+        self._ticks: list[
+            ast.expr
+        ] = []  # callbacks of timers that are other expressions than names, such as lambdas
         self._named: dict[str, set[str]] = {}  # function → names in it, which may be properties and methods
         self._texts = {module.path: module.text for module in modules}
         self._trees = {module.path: module.tree for module in modules}
@@ -153,7 +155,7 @@ class Program:
             return True
         unknown = name in self._functions and name not in self._callers
         if unknown and name not in self._handlers | _SETUP | {"", "execute"}:
-            return True  # something unknown calls it
+            return True  # no caller is known, so any code may call the function
         pending, seen = [name], {name}
         while pending:
             one = pending.pop()

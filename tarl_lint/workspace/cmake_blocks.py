@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-Call = tuple[str, Sequence[str]]  # name in lower case, and words
+Call = tuple[str, Sequence[str]]  # the name of a command in lower case, and its arguments
 Variables = dict[str, list[str]]
 DEEPEST: Final = 8  # maximum nesting of macros and loops
-MOST: Final = 10_000  # maximum number of calls
+MOST: Final = 10_000  # maximum number of calls of commands that are evaluated
 _ENDS: Final = {"macro": "endmacro", "function": "endfunction", "foreach": "endforeach"}
 
 

@@ -11,7 +11,7 @@ from tarl_lint.message_fields import ALL_FIELDS
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.model import Workspace
 
-MOST: Final = 100_000  # largest definition in bytes
+MOST: Final = 100_000  # maximum size of a message definition (bytes)
 _FIELD: Final = re.compile(r"\s*([A-Za-z][\w/]*)(?:<=\d+)?(\[[^\]]*\])?\s+([A-Za-z]\w*)")
 _SECTIONS: Final = {".srv": ("Request", "Response"), ".action": ("Goal", "Result", "Feedback")}
 _SEPARATOR: Final = re.compile(r"^---[^\n]*$", re.MULTILINE)

@@ -48,7 +48,7 @@ def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
     markers: list[Path] = []
     packages = _by_name(_packages(root.resolve(), kept, markers))
     hidden: dict[str, Hidden] = {}
-    for marker in markers:  # the loop appends the markers below hidden folders
+    for marker in markers:  # `_packages` appends the markers below hidden folders to this list
         for package in _packages(marker.parent, kept, markers):
             if package.name not in packages:
                 hidden.setdefault(package.name, Hidden(package, marker))

@@ -55,7 +55,7 @@ class Threads:
         what, *target = root.key if isinstance(root.key, tuple) else (None,)
         if not isinstance(what, tuple) or len(what) < 3:
             return None
-        kind, where, pos, *_ = what  # the rest are topics
+        kind, where, pos, *_ = what  # the remaining entries of `what` are topics
         if kind == "thread":
             return root.key
         if kind not in CALLED_BY_ROS:

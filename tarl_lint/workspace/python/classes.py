@@ -170,7 +170,7 @@ def blank(kind: Class, args: list[Any], keywords: dict[str, Any]) -> Made:
     start = kind.find("__init__")
     own = start is not None and isinstance(start[0], Function)
     if own and container not in (str, int, float, BUILTINS["tuple"]):
-        args, keywords = [], {}  # the `__init__` of the container fills it
+        args, keywords = [], {}  # the class has an `__init__`, which fills the empty container
     elif not settled(args) and container in (str, int, float):
         raise OpaqueError("not a constant")
     return Made(kind, {}, container(*args, **keywords))

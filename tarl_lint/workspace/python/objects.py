@@ -30,7 +30,7 @@ class Function:
     run: Callable[[Function, list[Any], dict[str, Any], Class | None], Any]
     kind: str = ""  # `staticmethod`, `classmethod`, `property`, `cached_property` or `contextmanager`
     setter: Function | None = None  # of a property
-    name: str = ""  # the name that `functools.wraps` gives it
+    name: str = ""  # the name that `functools.wraps` gives the function
 
     def called(self) -> str:
         """Return its name."""

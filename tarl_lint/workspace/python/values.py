@@ -118,7 +118,7 @@ class Field:
     factory: Any = None
     init: bool = True
     shown: bool = True  # whether `repr` shows the field
-    keyword: bool = False  # whether only a keyword sets it
+    keyword: bool = False  # whether `__init__` takes the field only as a keyword
     compared: bool = True  # whether comparisons use the field
 
 
