@@ -20,7 +20,7 @@ def importable(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         sys.modules.pop(name, None)
 
 
-def test_a_sliding_maximum_is_that_of_each_window() -> None:
+def test_a_sliding_maximum_is_the_maximum_of_each_window() -> None:
     from arch_formulas import always, eventually
 
     values = np.random.default_rng(0).normal(size=40)

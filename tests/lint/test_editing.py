@@ -254,7 +254,7 @@ def edits(rng: random.Random, text: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_after_random_edits_the_results_equal_those_of_a_new_session(tmp_path, analysed, seed):
+def test_a_session_gives_after_random_edits_the_results_of_a_new_session(tmp_path, analysed, seed):
     rng = random.Random(seed)
     workspace = Workspace([tmp_path])
     workspace.lint({})

@@ -101,7 +101,7 @@ def test_rclpy_callbacks_overlap_only_with_a_suitable_executor_and_group(executo
     assert len(lines("TARL201", text)) == found
 
 
-def test_a_read_without_the_lock_in_a_custom_thread_is_reported_in_rclpy_too():
+def test_an_unlocked_read_in_a_custom_thread_is_also_reported_in_rclpy():
     text = RCLPY.format(executor="SingleThreadedExecutor", group="ReentrantCallbackGroup", given="self.group")
     text = text.replace(
         "self.create_timer(0.1, self.on_timer, callback_group=self.group)",

@@ -186,7 +186,7 @@ def test_a_value_that_messages_change_is_not_an_operand(tmp_path):
     assert not {code for code, _ in found} & {"turn", "value", "self.error"}
 
 
-def test_conditions_have_operands_too(tmp_path):
+def test_conditions_have_operands_as_other_statements_do(tmp_path):
     analysis = analysed(
         tmp_path,
         node="""

@@ -85,7 +85,7 @@ def test_a_path_with_fewer_statements_is_shorter_however_many_nodes_it_has():
     assert path({0: [1], 1: [2], 2: [9]}, statements) == (109, 102, 101, 100)
 
 
-def test_nodes_without_a_statement_cost_nothing_and_are_not_shown():
+def test_graph_nodes_without_a_statement_have_cost_zero_and_are_not_shown():
     assert path({0: [1, 2], 1: [9], 2: [3], 3: [9]}, {0: 100, 1: 101, 9: 109}) == (109, 100)
     assert path({0: [9]}, {0: 100}) == (100,)
     assert path({}, {0: 100}) == ()
@@ -144,7 +144,7 @@ def test_the_search_for_chains_is_bounded(monkeypatch):
     assert (len(found), more) == (1, False)
 
 
-def test_the_strength_of_a_chain_is_that_of_its_weakest_hop():
+def test_a_chain_is_as_strong_as_its_weakest_hop():
     def kind(*kinds: str) -> str:
         hops = [hop(f"/{n}", f"/{n + 1}", one) for n, one in enumerate(kinds)]
         (chain,), _ = chains(hops)

@@ -20,7 +20,7 @@ def lint(monkeypatch, capsys):
     return go
 
 
-def test_the_text_from_stdin_replaces_that_of_the_named_file(example, in_directory, lint):
+def test_the_text_from_stdin_replaces_the_text_of_the_named_file(example, in_directory, lint):
     in_directory({"src/node.py": "x = 1\n"})
     code, out, _ = lint(example.text, "-", "--stdin-filename", "src/node.py", "--format", "concise")
     assert code == 1

@@ -57,7 +57,7 @@ def test_tables_are_extended_to_the_cells_of_both_worlds() -> None:
     assert np.flatnonzero(np.isfinite(after[:, 0])).tolist() == [3]
 
 
-def test_the_rows_are_the_cells_of_the_region_or_else_the_other_cells() -> None:
+def test_the_table_has_the_cells_of_the_region_or_all_other_cells_if_there_is_no_region() -> None:
     assert _rows(Region(cells=((4,),), novel=((1,),)), ((2,),), CELLS).tolist() == [0, 2]
     assert _rows(Region(), ((2,), (7,)), CELLS).tolist() == [1, 3]
     assert _rows(Region(left=((4,),)), (), CELLS).tolist() == []
@@ -75,7 +75,7 @@ def test_lists_without_sites_are_left_out() -> None:
     assert [(one.offline, one.online) for one in found.slices] == [(2.0, 0.0), (2.0, 0.0)]
 
 
-def test_the_drawn_sizes_of_a_drift_are_those_of_the_episodes() -> None:
+def test_the_sizes_of_a_drift_in_the_figure_are_the_sizes_in_the_episodes() -> None:
     marked: Any = SimpleNamespace(drifts={"mud": Drift({"depth": Drift.range(1.0, 3.0), "kind": 2})})
     assert _sizes(marked, None, (1, 2)) == {}
     (found,) = _sizes(marked, "mud", (1, 2, 3)).values()
@@ -112,7 +112,7 @@ def test_a_log_and_bags_are_compared_once(monkeypatch: pytest.MonkeyPatch) -> No
     assert ([*found.seeds], found.looks, found.notes) == ([9, 5], 1, ("bag",))
 
 
-def test_the_learning_rule_is_that_of_the_recording() -> None:
+def test_a_comparison_uses_the_learning_rule_of_the_recording() -> None:
     def rule(recorded: str, asked: str) -> str:
         fixture: Any = SimpleNamespace(test="t", learner=recorded)
         given: Any = SimpleNamespace(learner=asked)

@@ -57,7 +57,7 @@ def test_junit_has_the_findings_as_properties_of_the_test(drifting: pytest.Pytes
 
 
 @pytest.mark.usefixtures("quick_acceptance")
-def test_the_patch_is_a_junit_property_too(drifting: pytest.Pytester) -> None:
+def test_the_patch_is_also_a_junit_property(drifting: pytest.Pytester) -> None:
     drifting.runpytest(*ONLINE, "--tarl-repair", "--tarl-drift=clogged", "--junitxml=found.xml")
     (found,) = properties(drifting.path / "found.xml").values()
     assert (drifting.path / found["tarl_patch"]).is_file()

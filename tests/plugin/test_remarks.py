@@ -132,7 +132,7 @@ def test_a_single_comparison_stays_as_it_is() -> None:
     assert one == comparison(0.01, 0.02)
 
 
-def test_the_detectable_loss_is_that_of_holms_first_step_but_at_least_the_tolerance() -> None:
+def test_the_detectable_loss_follows_from_holms_first_step_but_is_at_least_the_tolerance() -> None:
     one, _ = corrected([comparison(0.01, 0.02), comparison(0.5, 0.6)], 0.05)
     offline, online = (np.array(one.totals[world]) for world in ("offline", "online"))
     assert one.verdict.detectable_loss == detectable_loss(offline, online, 0.025)

@@ -35,7 +35,7 @@ class Sums:
 
 
 @given(st.lists(st.tuples(st.sets(st.integers(0, 9)), st.integers(0, 1)), max_size=2 * MAX_KEPT))
-def test_every_result_is_that_of_its_own_nodes(requests):
+def test_every_request_gets_the_result_of_the_requested_nodes(requests):
     nearest = Nearest(EMPTY, Sums().extended, worthwhile=1)
     for nodes, kind in requests:
         assert nearest.of(nodes, kind) == Total(nodes, sum(nodes))

@@ -580,7 +580,7 @@ def test_a_loop_that_publishes_for_each_entry_connects_entries_by_its_own_state(
     assert ends(node(wiring).replace("\n    def rows(self)", methods)) == EVERYTHING
 
 
-def test_a_row_that_may_be_missing_is_followed_too():
+def test_a_row_that_may_be_missing_is_also_followed():
     wiring = """
         table = {"a": self.on_a}
         if len(self.names) > 2:

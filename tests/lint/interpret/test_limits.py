@@ -68,7 +68,7 @@ def test_an_analysis_with_too_many_edges_is_cut_short(monkeypatch):
     assert list(machine(text).cut) == ["node.py"]
 
 
-def test_entry_points_run_until_nothing_is_new_or_the_round_limit_is_reached(monkeypatch):
+def test_entry_points_run_until_they_add_nothing_new_or_the_round_limit_is_reached(monkeypatch):
     steps = "\n".join(f"def on_{n}(msg):\n    global x_{n + 1}\n    x_{n + 1} = x_{n}" for n in range(6))
     names = "\n".join(f"x_{n} = 0.0" for n in range(8))
     registered = "\n".join(f'rospy.Subscriber("s{n}", Float64, on_{n})' for n in reversed(range(6)))

@@ -83,7 +83,7 @@ def test_other_objects_are_no_members(ctx, channel):
     ("base", "before", "number"),
     [("Enum", 4, 5), ("Enum", None, 1), ("IntFlag", 4, 8), ("Flag", None, 1), ("StrEnum", None, "low")],
 )
-def test_auto_is_the_value_after_the_last_one(ctx, base, before, number):
+def test_auto_gives_the_value_that_follows_the_last_value(ctx, base, before, number):
     cls = a_class(ctx, "Level", external=(f"enum.{base}",))
     if before is not None:
         ctx.store.put((cls, "FIRST"), const(before))

@@ -37,7 +37,7 @@ def test_methods_that_are_no_queries_return_no_instances(program, name):
     assert ctx.looked_up == set()
 
 
-def test_an_instance_made_after_the_query_is_found_as_well(program):
+def test_an_instance_made_after_the_query_is_also_found(program):
     ctx, base, view, made = program
     looked_up(ctx, "find", [pointer(base)])
     late = Obj("instance", "late")

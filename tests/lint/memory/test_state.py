@@ -162,7 +162,7 @@ def test_assigning_the_dict_of_an_object_increments_the_edition_of_the_state(sto
 # --- reads --------------------------------------------------------------------------------------------
 
 
-def test_reads_of_values_that_the_call_itself_stored_are_not_recorded(store, obj):
+def test_reads_of_values_that_the_same_call_stored_are_not_recorded(store, obj):
     mine, other = (obj, "mine"), (obj, "other")
     store.put(mine, ONE)
     store.get(mine)

@@ -118,7 +118,7 @@ def test_constants_and_classes_are_keys_of_mappings():
     assert Value(pts=frozenset([first, Obj("instance", 1)])).item_keys() is None
 
 
-def test_the_constants_of_a_value_can_be_a_subset_of_those_of_another_value():
+def test_the_constants_of_a_value_can_be_a_subset_of_the_constants_of_another_value():
     assert constants(1).consts_in(constants(1, 2))
     assert constants(1).consts_in(UNKNOWN)
     assert not constants(1, 3).consts_in(constants(1, 2))
@@ -227,7 +227,7 @@ def test_an_unqualified_base_defines_no_methods():
     assert inherited_from(pointer(instance(made_class("a", external=("Unknown",))))) == set()
 
 
-def test_the_function_of_a_bound_method_is_that_of_its_closure(ctx):
+def test_a_bound_method_has_the_function_of_its_closure(ctx):
     (program,) = ctx.programs.values()
     closure, bound = Obj("closure", "f"), Obj("bound", "f")
     closure.info = (program.function, None, program, None)

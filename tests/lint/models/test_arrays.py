@@ -74,7 +74,7 @@ def test_an_array_is_not_filled_by_a_call_without_data_or_by_a_call_that_only_re
     assert differing(in_callback(body, HEAD)) == {}
 
 
-def test_the_arrays_of_earlier_iterations_are_filled_too():
+def test_the_arrays_of_earlier_iterations_are_also_filled():
     body = """
         kept = []
         for index in range(10):

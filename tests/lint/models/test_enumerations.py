@@ -125,7 +125,7 @@ def test_members_with_tuples_name_topics_and_are_keys_of_their_own(style: str, c
     assert found == [(("heel",), ("HIP/out",), "explicit"), (("knee",), ("KNEE/out",), "explicit")]
 
 
-def test_the_data_of_a_member_that_is_chosen_by_data_may_be_that_of_any_member() -> None:
+def test_a_member_that_is_chosen_by_data_may_have_the_data_of_any_member() -> None:
     text = FLEET.format(body=STYLES["properties"].strip(), callback=CALLBACKS[0])
     text = text.replace(
         'self.samples[Channel["KNEE"]]', "self.samples[list(Channel)[int(event.last_duration)]]"

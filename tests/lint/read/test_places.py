@@ -132,7 +132,7 @@ def test_folders_listed_in_pth_files_come_last(environment):
         ("arm-1.2.dist-info", {"METADATA": "The Version: 1.2\n"}, ""),
     ],
 )
-def test_the_version_of_an_installed_package_is_that_of_its_distribution(environment, folder, files, found):
+def test_an_installed_package_has_the_version_of_its_distribution(environment, folder, files, found):
     place = environment / "lib/python3.11/site-packages" / folder
     place.mkdir()
     for name, text in files.items():

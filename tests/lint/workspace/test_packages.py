@@ -450,7 +450,7 @@ def test_arguments_of_nodes_are_read_as_ros_reads_them():
     assert ros2("--ros-args -r __name:=m -r __node:=o -p x:=1 -r") == Given((), (("~x", "1"),), (), "m")
 
 
-def test_the_first_remapping_of_each_name_counts_and_those_of_other_nodes_are_left_out():
+def test_the_first_remapping_of_each_name_counts_and_remappings_of_other_nodes_are_left_out():
     pairs = [
         ("a", "b"),
         ("/n/a", "c"),

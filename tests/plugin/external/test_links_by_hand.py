@@ -248,7 +248,7 @@ def test_closing_is_possible_after_the_node_has_ended(
     assert told == ["the episode is over"]
 
 
-def test_the_nodes_of_a_topic_are_those_of_the_simulator() -> None:
+def test_the_node_of_tarl_is_left_out_of_the_nodes_of_a_topic() -> None:
     assert link_ros1._others(["/sim", "/tarl_link", "/tarl_link2"]) == ["/sim", "/tarl_link2"]
     ends = [SimpleNamespace(node_name=name) for name in ("tarl_link", "sim")]
     assert module._others(ends) == ends[1:]

@@ -46,7 +46,7 @@ def content(found: Fixture, folder: Path) -> bytes:
     st.randoms(use_true_random=False),
 )
 @settings(max_examples=25, deadline=None)
-def test_recordings_of_many_robots_equal_one_of_all_missions(
+def test_merged_recordings_of_many_robots_equal_a_single_recording_of_all_missions(
     owned: list[tuple[int, int]], random: Random
 ) -> None:
     with TemporaryDirectory() as name:

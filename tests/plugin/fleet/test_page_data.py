@@ -51,7 +51,7 @@ def test_the_title_of_the_page_names_the_requested_robot() -> None:
     assert variables(answer(question=Question("data", robot="r1")))["title"] == "data, r1"
 
 
-def test_the_period_is_that_of_the_missions_or_unknown() -> None:
+def test_the_page_shows_the_period_of_the_missions_if_it_is_known() -> None:
     assert variables(answer())["period"] == "no time"
     assert variables(answer(period=(DAY, 40 * DAY)))["period"] == "1970-01-02 to 1970-02-10"
 

@@ -134,7 +134,7 @@ def test_the_header_of_a_function_records_its_message(source, message, inline):
 
 
 @pytest.mark.parametrize("inline", MODES)
-def test_lambdas_and_parameters_record_messages_too(inline):
+def test_messages_passed_to_lambdas_and_functions_are_also_recorded(inline):
     source = "f = lambda m: m + 1\ndef g(self, a, b): pass\nx = f(2.0)\ng(0, 1.0, 4.0)"
     outcome = run(source, {(1, 4): 1, (1, 14): 2, (2, 15): 3}, inline=inline)
     assert outcome.events == [(1, 2.0), (2, 3.0), (3, 4.0)]

@@ -265,7 +265,7 @@ def test_events_are_equal_only_to_themselves_and_record_nothing_in_another_proce
     assert isinstance(copied, Unheard)
 
 
-def test_shared_events_are_appended_to_those_of_the_running_thread() -> None:
+def test_shared_events_are_appended_to_the_events_of_the_running_thread() -> None:
     own: list[Any] = []
     shared = SharedEntries(lambda: own)
     shared.append(1)

@@ -51,7 +51,7 @@ def test_bounds_of_a_rate_are_quantiles_of_beta_distributions(
 
 @given(st.integers(1, 400), st.integers(0, 400), CONFIDENCES)
 @settings(deadline=None)
-def test_bounds_equal_those_of_scipy(episodes: int, passed: int, confidence: float) -> None:
+def test_bounds_equal_the_bounds_that_scipy_computes(episodes: int, passed: int, confidence: float) -> None:
     beta = pytest.importorskip("scipy.stats").beta
     passed = min(passed, episodes)
     low = float(beta.ppf(1 - confidence, passed, episodes - passed + 1)) if passed else 0.0

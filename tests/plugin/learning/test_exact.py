@@ -42,7 +42,9 @@ def test_the_interval_of_a_mean_is_the_student_t_interval(count: int) -> None:
 
 @pytest.mark.parametrize("degrees", [1, 1.5, 2, 5, 19.9, 20, 25, 100])
 @pytest.mark.parametrize("probability", [0.6, 0.95, 0.999])
-def test_quantiles_of_students_distribution_equal_those_of_scipy(degrees: float, probability: float) -> None:
+def test_quantiles_of_students_distribution_equal_the_quantiles_of_scipy(
+    degrees: float, probability: float
+) -> None:
     assert student_quantile(probability, degrees) == pytest.approx(
         stats.t.ppf(probability, degrees), rel=1e-3
     )

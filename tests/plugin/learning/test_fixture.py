@@ -54,7 +54,7 @@ def close(first: Sample, second: Sample) -> bool:
     )
 
 
-def test_a_loaded_recording_equals_the_saved_one(tmp_path: Path) -> None:
+def test_a_recording_is_equal_after_it_is_saved_and_loaded(tmp_path: Path) -> None:
     fixture, path = example(), tmp_path / "deep" / "a.npz"
     save(fixture, path)
     loaded = load(path)

@@ -19,7 +19,7 @@ PLACE = Sensor("place", topic="/place", field="x", low=0, high=10, bins=5)
 SPEED = Sensor("speed", topic="/speed", field="x", low=0, high=2, bins=2)
 
 
-def test_the_type_of_a_topic_is_that_of_the_command_line_or_of_the_recording() -> None:
+def test_a_topic_has_the_type_of_the_command_line_or_of_the_recording() -> None:
     topics = Topics(
         {"/r": "a/msg/A", "/place": "b/msg/B"}, reward="/r", mission="/m", own={"/place": "c/msg/C"}
     )

@@ -85,7 +85,7 @@ def test_a_log_of_a_drifted_world_is_degraded_and_a_nominal_one_is_not(
     assert result.ret == 1
 
 
-def test_missions_of_renamed_logs_are_compared_too(recorded: Path) -> None:
+def test_missions_of_renamed_logs_are_also_compared(recorded: Path) -> None:
     drive(order(recorded, log_size=1), [1.0, 0.1, 1.0])
     assert len(list(recorded.glob(".tarl/missions.log.*"))) == 3
     fixture = load(next(recorded.glob(".tarl/utility/*.npz")))

@@ -100,7 +100,7 @@ def test_an_event_is_complete_only_when_its_flow_value_has_arrived() -> None:
     assert (chunk.site.tolist(), chunk.flow.tolist()) == ([3], [1.5])
 
 
-def test_concurrent_threads_lose_nothing_during_draining() -> None:
+def test_no_event_of_a_concurrent_thread_is_lost_while_the_buffer_is_drained() -> None:
     recorder = Emptied()
     count, over = 20_000, threading.Event()
 

@@ -142,7 +142,7 @@ def test_a_killed_writer_is_reported_at_once_and_the_node_continues(
     assert capsys.readouterr().err == f"observe: {outlet.ENDED}\n"
 
 
-def test_a_writer_killed_before_the_end_is_reported_too(tmp_path: Path) -> None:
+def test_a_writer_that_is_killed_before_the_end_is_also_reported(tmp_path: Path) -> None:
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
     mission(observer, 10)
     observer._thread.join(0.05)

@@ -141,7 +141,7 @@ def test_a_name_counts_as_bound_if_it_is_local_or_assigned_at_import(
     assert is_bound(source, place(source, at), code) is bound
 
 
-def test_names_that_the_statement_itself_reads_count_as_bound() -> None:
+def test_names_that_the_statement_reads_count_as_bound_in_it() -> None:
     source = document("a.py", "def f():\n    print(a.b[0].c, key=d)\n    if e:\n        g\n")
     call, branch = source.tree.body[0].body  # type: ignore[attr-defined]
     for code in ("a", "a.b", "a.b[0]", "a.b[0].c", "d"):

@@ -169,7 +169,7 @@ def test_a_condition_needed_twice_in_a_header_gets_a_name() -> None:
     )
 
 
-def test_the_name_of_a_condition_differs_from_that_of_its_sensor() -> None:
+def test_a_condition_and_its_sensor_have_different_names() -> None:
     text = dedent(
         """\
         import rospy

@@ -414,7 +414,7 @@ class Narrow(Window):
 
 @settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.5, 3.5), st.floats(0.9, 0.97))
-def test_a_value_that_lost_few_missions_is_replaced_by_a_value_that_loses_none_of_them(
+def test_a_value_that_loses_few_missions_is_replaced_by_a_value_that_loses_none(
     low: float, share: float
 ) -> None:
     field: Any = Narrow(low, 1.25 * low)

@@ -229,7 +229,7 @@ def test_a_permanent_repair_is_shown_in_the_old_world(monkeypatch: pytest.Monkey
         ("fails too often", (0.0, 0.0), "fails too often"),
     ],
 )
-def test_a_reward_below_that_of_the_unrepaired_program_is_named(
+def test_a_repair_that_earns_less_than_the_unrepaired_program_is_reported_as_such(
     monkeypatch: pytest.MonkeyPatch, reason: Any, totals: tuple[float, ...], expected: str
 ) -> None:
     one, _, _ = examiner(["good"], monkeypatch)
@@ -418,7 +418,7 @@ def test_a_permanent_drift_needs_no_condition(monkeypatch: pytest.MonkeyPatch) -
     assert phases.guards == (ALWAYS,)
 
 
-def test_all_sites_are_listed_with_those_of_the_slices_first() -> None:
+def test_all_sites_are_listed_and_sites_of_the_slices_come_first() -> None:
     def step(name: str) -> Any:
         site = SiteId("node", "run", name, 0)
         return SimpleNamespace(

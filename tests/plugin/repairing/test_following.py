@@ -93,7 +93,7 @@ def test_a_power_that_says_little_or_needs_much_is_left_out(mutation: Mutation) 
         Candidate((Mutation(operand(5, "True", True), value=False),), FAST),
     ],
 )
-def test_several_constants_zeros_and_booleans_follow_nothing(candidate: Candidate) -> None:
+def test_several_constants_at_once_zeros_and_booleans_do_not_follow_a_sensor(candidate: Candidate) -> None:
     assert list(following(order((1,), (6,), SPEED), candidate)) == []
 
 

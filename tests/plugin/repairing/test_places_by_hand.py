@@ -323,7 +323,9 @@ def test_two_uses_with_different_values_are_not_moved_to_one_definition(tmp_path
     assert {mutation.place.line for mutation in found.mutations} == {4}
 
 
-def test_with_edits_at_definitions_only_every_named_constant_must_have_one(tmp_path: Path) -> None:
+def test_if_only_definitions_may_be_edited_every_named_constant_must_have_a_definition(
+    tmp_path: Path,
+) -> None:
     def literal(of: Placing) -> Any:
         return next(one for one in operands(of.order) if one.literal and one.value == 0.5)
 

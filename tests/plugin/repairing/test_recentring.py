@@ -47,7 +47,7 @@ def recentred(best: float, failing: bool = False) -> list[float]:
 
 
 @pytest.mark.parametrize("best", [1.94, 2.06, 2.2, 1.8])
-def test_the_value_moves_towards_the_best_one(best: float) -> None:
+def test_recentring_moves_the_value_towards_the_best_value(best: float) -> None:
     (by,) = recentred(best)
     assert abs(by / best - 1.0) < abs(2.0 / best - 1.0)
 

@@ -44,7 +44,9 @@ def test_a_negative_threshold_moves_on_its_own_side() -> None:
     ],
     ids=["no mission", "as designed", "no value", "opposite", "one mission only", "few values"],
 )
-def test_missions_that_say_nothing_move_no_threshold(pairs: list[tuple[np.ndarray, np.ndarray]]) -> None:
+def test_missions_that_do_not_separate_values_move_no_threshold(
+    pairs: list[tuple[np.ndarray, np.ndarray]],
+) -> None:
     assert separating(0.5, pairs) is None
 
 
@@ -130,5 +132,5 @@ def test_no_threshold_is_proposed_unless_only_the_designed_missions_cross_it(
     assert reaching(0.01, pairs) is None
 
 
-def test_values_of_the_other_sign_give_no_threshold() -> None:
+def test_values_of_the_opposite_sign_give_no_threshold() -> None:
     assert reaching(0.5, [(np.array([-1.0, 1.0]), np.array([-2.0, -1.0]))]) is None

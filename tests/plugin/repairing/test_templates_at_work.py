@@ -273,7 +273,7 @@ def test_a_template_is_found_whatever_expression_computes_the_value(
 
 
 @pytest.mark.parametrize("usual", [0.8, 0.9, 1.15, 1.3])
-def test_the_typical_value_of_a_sensor_is_adjusted_if_the_bins_give_a_wrong_one(
+def test_a_wrong_typical_value_that_the_bins_give_for_a_sensor_is_adjusted(
     usual: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     world = World("power", tmp_path)

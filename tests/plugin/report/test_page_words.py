@@ -27,7 +27,7 @@ Varied = Callable[..., Comparison]
         ({"online": (2.0,), "repaired": (8.0,)}, None),
     ],
 )
-def test_the_restored_share_is_that_of_the_lost_reward(
+def test_the_restored_share_is_relative_to_the_lost_reward(
     varied: Varied, totals: dict[str, tuple[float, ...]], share: float | None
 ) -> None:
     assert html._share(varied(totals=totals)) == share

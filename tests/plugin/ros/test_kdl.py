@@ -47,7 +47,7 @@ def joints(*values: float) -> kdl.JntArray:
     return array
 
 
-def test_geometry_equals_that_of_pykdl() -> None:
+def test_frames_rotations_and_twists_give_the_numbers_of_pykdl() -> None:
     assert TURN.GetQuaternion() == near(0.243269224, 0.02930011, 0.855358715, 0.456424207)
     assert TURN.GetEulerZYZ() == near(-0.370303524, 0.495095845, 2.531557615)
     assert TURN.GetRPY() == near(0.3, -0.4, 2.1)

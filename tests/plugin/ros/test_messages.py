@@ -128,7 +128,7 @@ def test_ros2_constructor_takes_keywords_only_and_checks_types() -> None:
         message_type("std_msgs/msg/UInt8")(data=256)
 
 
-def test_ros2_defaults_constants_and_field_types_are_those_of_the_definitions() -> None:
+def test_ros2_messages_have_the_defaults_constants_and_field_types_of_their_definitions() -> None:
     assert message_type("geometry_msgs/msg/Quaternion")().w == 1.0
     assert message_type("geometry_msgs/Quaternion")().w == 0.0
     assert message_type("sensor_msgs/msg/BatteryState").POWER_SUPPLY_STATUS_FULL == 4

@@ -34,7 +34,7 @@ def semantic(text: str, urdf: str = URDF) -> RobotModel:
 # the model
 
 
-def test_the_pose_of_a_link_is_that_of_the_joints_before_it() -> None:
+def test_the_pose_of_a_link_follows_from_the_joints_before_it() -> None:
     state = {"shoulder": 0.4, "elbow": 0.7}
     hand = ARM.pose("hand", state)
     assert [*hand.p] == pytest.approx([cos(0.4) + cos(1.1), sin(0.4) + sin(1.1), 0.0])

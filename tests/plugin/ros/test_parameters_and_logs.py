@@ -103,7 +103,7 @@ def _set(start: Start, ranged: str, first: str, value: Any) -> str:
         ([], ParameterType.BYTE_ARRAY),
     ],
 )
-def test_the_type_of_a_parameter_is_that_of_its_value(value: Any, kind: ParameterType) -> None:
+def test_a_parameter_has_the_type_of_its_value(value: Any, kind: ParameterType) -> None:
     parameter = Parameter("x", value=value)
     assert (parameter.type_, parameter.type, parameter.value) == (kind, kind, value)
     assert Parameter("x", kind, value).type_ == kind

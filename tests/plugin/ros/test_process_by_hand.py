@@ -98,7 +98,7 @@ def test_a_killed_process_calls_no_hooks(network: Network) -> None:
     assert (trail, process.ended, process.ending, process.tasks) == ([], True, True, [])
 
 
-def test_a_task_that_begins_while_a_process_is_killed_is_killed_as_well(network: Network) -> None:
+def test_a_task_that_begins_while_its_process_is_killed_is_also_killed(network: Network) -> None:
     def restarting() -> None:
         try:
             network.scheduler.wait()

@@ -106,7 +106,7 @@ def test_qos_profiles_connect_according_to_the_table_of_ros_2(
     assert bool(reason) is not connects
 
 
-def test_the_defaults_of_a_profile_are_those_of_rclpy() -> None:
+def test_a_profile_has_the_defaults_of_rclpy() -> None:
     profile = QoSProfile(depth=7)
     assert (profile.history, profile.depth) == (HistoryPolicy.KEEP_LAST, 7)
     assert (profile.reliability, profile.durability) == (RELIABLE, VOLATILE)
@@ -296,7 +296,7 @@ def test_muted_messages_of_the_world_reach_no_node_and_are_not_latched(start: St
     assert not ros.bus.topic("x").kept
 
 
-def test_a_queued_message_does_not_change_if_the_publisher_changes_its_own(start: Start) -> None:
+def test_a_queued_message_does_not_change_if_the_publisher_changes_its_message_object(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String

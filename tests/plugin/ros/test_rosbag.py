@@ -28,7 +28,7 @@ def store() -> Any:
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_serialised_messages_equal_those_of_ros(name: str, store: Any) -> None:
+def test_messages_are_serialised_to_the_same_bytes_as_in_ros(name: str, store: Any) -> None:
     message = filled(message_type(name), 3)
     data = serialize(message)
     other = name.replace("/", "/msg/")

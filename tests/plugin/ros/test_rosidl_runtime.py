@@ -117,7 +117,7 @@ def test_yaml_has_blocks_or_one_line() -> None:
     assert message_to_yaml(stamp, flow_style=True) == "{sec: 3, nanosec: 0}\n"
 
 
-def test_types_of_fields_are_those_of_the_class() -> None:
+def test_the_types_of_fields_come_from_the_message_class() -> None:
     assert get_message_slot_types(String()) == OrderedDict(data="string")
 
 

@@ -102,7 +102,7 @@ def test_poses_follow_the_tree_up_and_down() -> None:
     assert tree.look_up("base", "laser", 5) == (Rigid((0.5, 0.0, 0.0)), 5)
 
 
-def test_the_latest_common_instant_is_that_of_the_oldest_moving_frame() -> None:
+def test_the_latest_common_time_is_the_time_of_the_moving_frame_with_the_oldest_transform() -> None:
     tree = TransformTree()
     for seconds in (1.0, 2.0, 3.0):
         put(tree, "map", "odom", seconds, seconds)

@@ -44,7 +44,7 @@ def test_angles_give_the_rotation_of_scipy(axes: str) -> None:
             assert tf.euler_from_matrix(turn.as_matrix(), axes) == pytest.approx(turn.as_euler(order))
 
 
-def test_matrices_and_quaternions_are_those_of_scipy() -> None:
+def test_matrices_and_quaternions_equal_the_results_of_scipy() -> None:
     for turn in TURNS:
         matrix = tf.quaternion_matrix(turn.as_quat())
         assert matrix[:3, :3] == pytest.approx(turn.as_matrix())
@@ -71,7 +71,7 @@ def test_the_quaternion_of_a_rotation_below_120_degrees_has_a_positive_w() -> No
         assert 2 * math.atan2(found[2], found[3]) == pytest.approx(angle)
 
 
-def test_products_and_inverses_are_those_of_scipy() -> None:
+def test_products_and_inverses_of_rotations_equal_the_results_of_scipy() -> None:
     for first, second in pairwise(TURNS):
         product = tf.quaternion_multiply(first.as_quat(), second.as_quat())
         assert same_rotation(product, (first * second).as_quat())
@@ -83,7 +83,7 @@ def test_products_and_inverses_are_those_of_scipy() -> None:
 
 
 @pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.9, 1.0])
-def test_interpolation_is_that_of_scipy(share: float) -> None:
+def test_interpolation_gives_the_numbers_of_scipy(share: float) -> None:
     for number in range(10):
         between = Slerp([0, 1], TURNS[[number, number + 1]])([share])[0]
         start, end = TURNS[number].as_quat(), TURNS[number + 1].as_quat()

@@ -91,7 +91,7 @@ def test_a_name_that_a_node_can_use_is_accepted(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", RULES)
-def test_the_rules_of_ros_2_are_those_of_rcl(name: str) -> None:
+def test_names_follow_in_ros_2_the_rules_of_rcl(name: str) -> None:
     for check, expected in zip(CHECKS, RULES[name], strict=True):
         problem = check(name)
         assert (problem is None) == (not expected), (check, problem)
@@ -109,7 +109,9 @@ def test_the_index_in_a_problem_points_at_the_wrong_character() -> None:
     ("check", "longest"),
     [(ros_names.full_topic_problem, 247), (ros_names.namespace_problem, 245), (ros_names.node_problem, 255)],
 )
-def test_the_longest_names_are_those_of_ros_2(check: Callable[[str], Problem | None], longest: int) -> None:
+def test_the_maximum_length_of_a_name_is_as_in_ros_2(
+    check: Callable[[str], Problem | None], longest: int
+) -> None:
     name = "/" + "a" * (longest - 1) if check is not ros_names.node_problem else "a" * longest
     assert check(name) is None
     assert "should not exceed" in (check(name + "a") or ("", 0))[0]
@@ -212,7 +214,7 @@ def test_a_remapping_of_a_test_is_checked() -> None:
         Ros(remappings={"a": "b c"})
 
 
-def test_legal_names_are_those_of_an_installed_rosgraph(start: Start) -> None:
+def test_the_same_names_are_legal_as_in_an_installed_rosgraph(start: Start) -> None:
     """Compare with the module of an installed ROS 1, if there is one."""
     python = shutil.which("python3", path="/usr/bin")
     names = ["", "a", "/a", "~a", "~/a", "1a", "/1", "_a", "/_a", "a b", "a-b", "a//b", "a/", "a/~b", "a:b"]

@@ -62,7 +62,7 @@ def test_halfway_values_are_tried_until_two_are_close(
     assert [value for _, value in search.of("reaches")] == pytest.approx(values, abs=2e-3)
 
 
-def test_a_smaller_value_is_bisected_as_well() -> None:
+def test_the_search_also_bisects_towards_a_smaller_value() -> None:
     search = scripted(0.0, 0.25, {})
     found = bisected(search, FRONT, 0.02, ALWAYS, 0)
     first, second = (value for _, value in search.of("reaches")[:2])

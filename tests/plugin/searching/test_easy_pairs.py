@@ -22,7 +22,7 @@ def goal(*totals: float, ranged: bool = False) -> Goal:
     return Goal(pairs, near=9.0, enough=9.5, online=0.0, ranged=ranged)
 
 
-def test_easy_pairs_are_those_that_lost_least_but_more_than_almost_nothing() -> None:
+def test_easy_pairs_are_the_pairs_with_the_smallest_losses_that_are_not_negligible() -> None:
     assert list(easy(goal(8.5, 0.0, -1.0, -2.0, -3.0))) == [1, 2, 3]
     assert list(easy(goal(0.0, 2.0))) == [1, 0]
     assert list(easy(goal())) == []

@@ -141,7 +141,7 @@ def test_candidates_act_alike_if_all_their_common_seeds_end_alike() -> None:
     assert trials.same_as(one, Candidate((Mutation(GRAVITY, 2.0),), ALWAYS)) == 0
 
 
-def test_the_constant_found_is_not_an_alternative_to_itself_on_another_scale() -> None:
+def test_the_repaired_constant_on_another_scale_is_not_an_alternative_to_itself() -> None:
     found, other = Unit((PADS,)), Unit((CRUISE,))
     units = [found, Unit((PADS,), SHARE), other]
     assert [unit for unit, _ in gentler(found, units, Gains(0.1), ALWAYS, 1.0)] == [other]

@@ -145,7 +145,7 @@ def test_all_looks_together_accept_with_at_most_the_risk() -> None:
     assert second == max(k for k in range(NEVER, 9) if risks[best, k][1] <= risk)
 
 
-def test_main_effects_are_those_of_ridge_regression() -> None:
+def test_main_effects_equal_the_results_of_ridge_regression() -> None:
     # two runs of one column each: (1 + 1) effect = gain
     assert main_effects(np.eye(2), np.array([4.0, -2.0])).tolist() == [2.0, -1.0]
     # one column in two runs: (2 + 1) effect = sum of the gains

@@ -119,7 +119,7 @@ def test_a_factor_is_tried_before_an_offset_that_also_succeeds() -> None:
     assert next(found).mutations[0].operand == NAMED
 
 
-def test_named_constants_get_near_and_moderate_steps_before_literals_as_long_as_nothing_gains() -> None:
+def test_until_a_change_gains_named_constants_get_near_and_moderate_steps_before_literals() -> None:
     search = restoring({INNER: 2.2, NAMED: 0.65}, window=0.1, harm=0.3)
     assert next(search.candidates()).mutations[0].operand == NAMED
     assert not any("→" in label for label in search.attempts.trials.labels)

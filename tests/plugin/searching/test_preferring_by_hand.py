@@ -214,7 +214,7 @@ def test_a_constant_whose_code_cannot_read_the_sensor_is_tried_without_a_conditi
     assert search.of("between") == []
 
 
-def test_nothing_is_tried_before_a_change_that_was_not_confirmed() -> None:
+def test_before_a_change_that_was_not_confirmed_no_other_constants_are_tried() -> None:
     search = Scripted([ZERO, LITERAL, A, B])
     assert before(search, ZERO, 2.2, holds=False) == []
     assert before(search, ZERO, 2.2, holds=False, near=False) == []

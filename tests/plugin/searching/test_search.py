@@ -320,7 +320,7 @@ def test_the_effective_value_of_a_change_is_the_value_of_the_expression_that_use
     assert effective_value(Mutation(operand_, value)) == effective
 
 
-def test_the_effective_value_of_a_structure_is_its_parameter_or_one() -> None:
+def test_the_effective_value_of_a_structure_is_its_parameter_or_the_number_1() -> None:
     template = Template("limit", "limits a value", "any", 1, "min($x, $most)")
     scaled = Form(template, "most", (("least", 1.0), ("most", 4.0)))
     assert effective_value(Mutation(GAIN, 0.5, form=scaled)) == 2.0

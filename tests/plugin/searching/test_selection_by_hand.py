@@ -351,7 +351,7 @@ def test_the_number_of_runs_of_a_screening_grows_with_the_root_of_the_number_of_
     assert {len(words.split()) for words in first(seen)} == {4}
 
 
-def test_a_screening_returns_the_unit_that_gains_first_and_the_others_in_their_order() -> None:
+def test_a_screening_returns_the_gaining_unit_first_and_then_the_others_in_their_order() -> None:
     units = many(10)
     search, _ = selection(lambda by, seed: 5.0 if by.get("N107") == 0.4 else 0.0, units)
     order = yield_from(screened(search, ALWAYS, np.random.default_rng(1)))
@@ -615,7 +615,7 @@ def test_outcomes_of_another_phase_and_of_an_equal_candidate_are_known() -> None
     assert other.spent == 1
 
 
-def test_the_other_factors_are_left_out_if_no_unit_changes_anything_with_its_better_factor() -> None:
+def test_the_second_factor_of_each_unit_is_left_out_if_no_unit_has_an_effect_with_its_better_factor() -> None:
     gains = {A: {2.2: 5.0}, B: {2.2: 1.0}, C: {0.4: 1.0}}
     search, seen = selection(lambda by, seed: 5.0, gains=gains)
     assert list(search.candidates(joint((A, 2.2)))) == []

@@ -266,7 +266,7 @@ def test_an_unknown_drift_has_no_losses() -> None:
         made.measured(UP)
 
 
-def test_without_a_tolerance_any_loss_counts_twice_the_tolerated_one() -> None:
+def test_without_a_tolerance_every_loss_counts_as_twice_the_tolerated_loss() -> None:
     made, _ = evaluator(constant(9.5))
     made.guarantee = Guarantee(0.9, 0.0, (10.0,) * 20, 1.0)
     made.glance(UP)

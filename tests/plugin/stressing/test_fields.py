@@ -60,7 +60,7 @@ def test_a_fit_with_kept_hyperparameters_equals_one_from_scratch_with_the_same()
     assert kept.field.evidence == pytest.approx(cold.evidence, abs=0.1)
 
 
-def test_logits_that_are_not_known_start_at_the_usual_one() -> None:
+def test_unknown_logits_start_at_the_usual_logit() -> None:
     two = counts(2)
     (first, _) = two.vectors.tolist()
     assert two.logits({tuple(first): 1.5}).tolist() == [1.5, USUAL]

@@ -96,7 +96,7 @@ def test_failures_that_contain_a_nearer_failure_and_hardly_differ_from_it_are_no
     assert _apart([], evaluator) == []
 
 
-def test_a_test_of_one_part_has_the_whole_risk_and_ignores_the_other_part() -> None:
+def test_a_test_of_one_part_of_the_reward_has_the_whole_risk_and_ignores_the_other_part() -> None:
     fine, failed, poor = Outcome(True, 1.0), Outcome(False, 1.0), Outcome(True, -9.0)
     nominal = [fine] * 16
     failing, losing = [failed] * 8 + [fine] * 8, [poor] * 16

@@ -95,7 +95,7 @@ def test_a_very_noisy_drift_counts_at_most_four_times_the_median() -> None:
     assert typical_variance([*calm, np.array([-1.5, 2.5])]) == pytest.approx((0.5 + 0.5 + 2.0) / 3)
 
 
-def test_the_nominal_variance_is_at_most_half_the_typical_one() -> None:
+def test_the_nominal_variance_is_at_most_half_the_typical_variance() -> None:
     given = replace(GIVEN, totals=(9.0, 10.0, 11.0), tolerance=2.0)
     assert nominal_variance(given, 10.0) == pytest.approx(1.0 / 4.0)
     assert nominal_variance(given, 0.2) == pytest.approx(0.1)

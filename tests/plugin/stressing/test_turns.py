@@ -73,7 +73,7 @@ def test_drifts_with_different_seeds_make_the_model_more_certain() -> None:
     assert deviation([[0, 1], [2, 3]]) < 0.95 * deviation([[0, 1], [0, 1]])
 
 
-def test_vectors_around_another_one_are_shorter_and_similar() -> None:
+def test_vectors_drawn_around_a_given_vector_are_shorter_and_similar() -> None:
     coordinates = Coordinates(SQUARE, SQUARE.nominal)
     best = np.array([0.3, 0.9])
     found = np.array(list(islice(around(coordinates, best, np.random.default_rng(0)), 100)))
