@@ -184,7 +184,7 @@ def _side(
 
 
 def _learner(fixture: Fixture, options: Options) -> str:
-    """Return the recording's learning rule. Raise FixtureError if it is unknown or not the chosen rule."""
+    """Return the recording's learning rule. Raise FixtureError if the rule is unknown or not the chosen one."""
     if fixture.learner not in LEARNERS:
         raise FixtureError(
             f"The recording of {fixture.test} holds a utility learned by {fixture.learner!r}, which this version of "

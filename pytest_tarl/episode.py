@@ -136,7 +136,7 @@ class Tarl:
         entry: str | None = None,
         launch: str | Literal[False] | None = None,
     ) -> None:
-        """Start a node: a file relative to the test's folder, run as a program. Raise NodeError if it fails.
+        """Start a node: a file relative to the test's folder, run as a program. Raise NodeError if the node fails.
 
         `entry` names the function to call if the node is an entry point in `setup.py`: `entry="main"` for
         `driver = robot.driver:main`. `argv` is the node's command line, including remappings. `parameters` apply to all

@@ -106,7 +106,7 @@ def read_log(
     judge: Judge | None,
     requirements: Requirements = NOTHING_REQUIRED,
 ) -> LoggedMissions:
-    """Return the finished missions of a log as episodes. Raise LogError if they cannot be compared."""
+    """Return the finished missions of a log as episodes. Raise LogError if the missions cannot be compared."""
     everything = missions(path, fixture)
     whole = [one for one in everything if one.ended and any(chunk["step_cell"] for chunk in one.chunks)]
     if len(whole) < FEWEST:

@@ -106,7 +106,7 @@ class Options:
 
 
 def options(given: Mapping[str, Any]) -> Options:
-    """Check the flags of a run. Raise SettingsError for an invalid one."""
+    """Check the flags of a run. Raise SettingsError for an invalid flag."""
     _check_modes(given)
     searches = tuple(dict.fromkeys(given["search"] or ("sweep",)))
     for name in searches:

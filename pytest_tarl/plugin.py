@@ -185,7 +185,7 @@ def _options(config: pytest.Config) -> Options:
 
 
 def _look_for_plugged(config: pytest.Config, options: Options) -> None:
-    """Import a user's searches before any episode runs. Raise SettingsError if one cannot be found."""
+    """Import a user's searches before any episode runs. Raise SettingsError if a search cannot be found."""
     named = [name for name in options.searches if ":" in name and options.mode == "repair"]
     if named:
         from pytest_tarl.searching.ask_tell import factory

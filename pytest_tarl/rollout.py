@@ -162,7 +162,7 @@ class Ahead:
             self._begin()
 
     def __call__(self, key: Hashable, plan: EpisodePlan) -> EpisodeRun:
-        """Run an episode, or wait for it if it has started. Raise TarlError if it cannot run."""
+        """Run an episode, or wait for it if it has started. Raise TarlError if the episode cannot run."""
         pending = self._begun.pop(key, None) or self.rollout.begin(plan)
         self._lately.discard(key)
         self._begin()

@@ -112,7 +112,7 @@ def world_value(extent: Span | Choice, number: float) -> Any:
 
 
 def span(what: str, low: Any, high: Any, nominal: Any, profile: Profile | None = None) -> Span:
-    """Return a checked range; `what` names it in messages. Raise SettingsError for an invalid one."""
+    """Return a checked range; `what` names it in messages. Raise SettingsError if the range is invalid."""
     least, most = finite_number(low), finite_number(high)
     if least is None or most is None or not least < most:
         raise SettingsError(f"{what}: give two finite numbers, the smaller one first.")
@@ -131,7 +131,7 @@ def span(what: str, low: Any, high: Any, nominal: Any, profile: Profile | None =
 
 
 def choice(options: tuple[Any, ...], usual: Any) -> Choice:
-    """Return checked options; the first one equal to `usual` is nominal. Raise SettingsError for invalid ones."""
+    """Return checked options; the first one equal to `usual` is nominal. Raise SettingsError for invalid options."""
     if len(options) < 2:
         raise SettingsError(f"Drift.choice needs at least two options, got {len(options)}.")
     found = [index for index, option in enumerate(options) if option is usual or _equal(option, usual)]
@@ -149,7 +149,7 @@ def _equal(option: Any, usual: Any) -> bool:
 
 
 def space(parts: Mapping[str, Any]) -> Space:
-    """Return a space of checked ranges, choices and faults. Raise SettingsError for any other direction."""
+    """Return a space of checked ranges, choices and faults. Raise SettingsError for directions of other kinds."""
     if not parts:
         raise SettingsError(f"Drift.space() has no direction: name at least one, each {DIRECTIONS}.")
     directions: dict[str, Span | Choice] = {}

@@ -84,7 +84,7 @@ class GymnasiumWorld:
         return self.reward
 
     def _action(self, asked: Any, topic: str) -> Any:
-        """Convert an action to the environment's action space. Raise SettingsError if it does not fit."""
+        """Convert an action to the environment's action space. Raise SettingsError if the action does not fit."""
         import numpy as np
 
         space = self._environment.action_space
@@ -115,7 +115,7 @@ def _made(name: str) -> Any:
 
 
 def _time_step(environment: Any) -> float:
-    """Return the environment's time step `dt` or `tau`, in s. Raise SettingsError if it has neither."""
+    """Return the environment's time step `dt` or `tau`, in s. Raise SettingsError if `dt` and `tau` are both absent."""
     inner = environment.unwrapped
     for name in ("dt", "tau"):
         value = getattr(inner, name, None)

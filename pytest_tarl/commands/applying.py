@@ -37,7 +37,7 @@ def apply(paths: Sequence[Path], directory: Path | None, *, force: bool, partial
 
 
 def revert(paths: Sequence[Path], directory: Path | None) -> list[str]:
-    """Undo patches and return the lines to print. Raise RefusedError if one is not applied or its lines were edited."""
+    """Undo patches and return the lines to print. Raise RefusedError if a patch is not applied or was edited."""
     patches = [read(path) for path in paths]
     targets = found_targets(patches, directory)
     # skip the files that an interrupted `tarl apply` did not reach

@@ -50,7 +50,7 @@ class _Opened:
 
 
 def replace_all(changes: Sequence[Change]) -> None:
-    """Make all changes or none; keep modes and owners. Raise MovedError, or OSError if one cannot be written."""
+    """Make all changes or none; keep modes and owners. Raise MovedError, or OSError if a file cannot be written."""
     with ExitStack() as stack:
         opened = [stack.enter_context(_held(change)) for change in changes]
         suffix = secrets.token_hex(4)

@@ -66,7 +66,7 @@ class Simulator:
         return self._latest.get(topic)
 
     def begin(self) -> None:
-        """Start the simulator or reset the running one. Raise SimulatorError if it does not become ready."""
+        """Start the simulator or reset the running one. Raise SimulatorError if the simulator does not become ready."""
         if self.setup.reset is None or KEPT.running != self.setup or not self._reset(self.setup.reset):
             self._start()
         self._wait(self._ready, self.setup.timeout, self._unready)
@@ -76,7 +76,7 @@ class Simulator:
         KEPT.running = self.setup
 
     def advance(self, dt: float) -> None:
-        """Run simulator and nodes for `dt` seconds of simulator time. Raise SimulatorLostError if it stops."""
+        """Run simulator and nodes for `dt` s of simulator time. Raise SimulatorLostError if the simulator stops."""
         self._usable = False
         self._connect()
         self._target += nanoseconds(dt)
@@ -181,7 +181,7 @@ class Simulator:
         return lambda message: self._client.do("send", topic=topic, data=to_plain(self._theirs(message)))
 
     def _class(self, package: str, name: str) -> Any:
-        """Return a message class of the simulator's ROS. Raise UnsupportedApiError if it is unknown."""
+        """Return a message class of the simulator's ROS. Raise UnsupportedApiError if the type is unknown."""
         found = find_class("ros1" if self.setup.ros == "ros1" else "ros2", package, name)
         if found is None:
             raise unknown_type(package, name)

@@ -58,7 +58,7 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
 
 
 def replayed(path: Path, mission: int, fixture: Fixture, replay: Replay) -> tuple[Sample, tuple[str, ...]]:
-    """Return the statistics of a bag's mission, and notes on its replay. Raise LogError if it has no rewards."""
+    """Return the statistics of a bag's mission, and notes on its replay. Raise LogError if the bag has no rewards."""
     run = replay(path, mission)
     if not run.trace.steps:
         raise LogError(

@@ -29,7 +29,7 @@ class Part:
 
 
 def parts(where: Store) -> list[Part]:
-    """Return the files of a data set. Raise FleetError if one is damaged, incomplete or of another schema."""
+    """Return the files of a data set. Raise FleetError if a file is damaged, incomplete or of another schema."""
     found = []
     cells = set(where.files("cells"))
     for path in where.files("missions"):
@@ -78,7 +78,7 @@ def _opened(where: Store, path: str) -> Any:
 
 
 def columns(where: Store, path: str, names: Sequence[str]) -> Any:
-    """Return columns of a file as an Arrow table. Raise FleetError if it cannot be read."""
+    """Return columns of a file as an Arrow table. Raise FleetError if the file cannot be read."""
     with _readable(where, path), where.opened(path) as file:
         return pq.ParquetFile(file).read(columns=list(names), use_threads=False)
 

@@ -37,7 +37,7 @@ class Store:
         return sorted(one[start:] for one in found if one.endswith(".parquet"))
 
     def write(self, path: str, content: bytes) -> None:
-        """Write a file atomically: readers see all of it or nothing. Raise FleetError if it cannot be written."""
+        """Write a file atomically: readers see all of it or nothing. Raise FleetError if the file cannot be written."""
         try:
             if self.protocol == "file":
                 write_atomically(Path(self.root) / path, content)
@@ -49,7 +49,7 @@ class Store:
             raise FleetError(f"{self.shown(path)} cannot be written ({problem}): {advice}") from problem
 
     def read(self, path: str) -> bytes:
-        """Return the content of a file. Raise FleetError if it cannot be read."""
+        """Return the content of a file. Raise FleetError if the file cannot be read."""
         try:
             content: bytes = self.fs.cat_file(f"{self.root}/{path}")
         except Exception as problem:

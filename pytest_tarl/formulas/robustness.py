@@ -49,7 +49,7 @@ class Course:
 
 
 def course(formula: Formula, signals: Mapping[str, Samples]) -> Course:
-    """Compute the atoms. Raise SettingsError if one has no value, for instance after a division by zero."""
+    """Compute the atoms. Raise SettingsError if an atom has no value, for instance after a division by zero."""
     visitor = Atoms(signals)
     try:
         return Course(formula, {id(atom): visitor.visit(atom) for atom in atoms(formula.tree)})

@@ -111,7 +111,7 @@ class Timeline:
 
 
 def signal_value(name: str, value: Any) -> float:
-    """Return a value as a float, with booleans as 1 and -1. Raise SettingsError if it is not a number."""
+    """Return a value as a float, with booleans as 1 and -1. Raise SettingsError if the value is not a number."""
     if isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b":
         return 1.0 if value else -1.0
     number = as_number(value)

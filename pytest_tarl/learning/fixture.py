@@ -263,7 +263,7 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
 
 
 def _guarantee(told: Mapping[str, Any]) -> Guarantee:
-    """Return the bounds in a header. Raise DamagedError if they are not numbers."""
+    """Return the bounds in a header. Raise DamagedError if the bounds are not numbers."""
     declared = None if told.get("declared") is None else tuple(told["declared"])
     bounds = {"success": Bound(**told["success"]), "mean": Bound(**told["mean"])}
     found = Guarantee(**{**told, **bounds, "declared": declared})

@@ -52,7 +52,7 @@ def packed_chain(chain: Chain) -> Arrays:
 
 
 def unpacked_chain(arrays: Mapping[str, NDArray[Any]]) -> Chain:
-    """Return the chain from its packed arrays. Raise KeyError if one is missing."""
+    """Return the chain from its packed arrays. Raise KeyError if an array is missing."""
     episode, cell, next_cell, count = arrays["chain"].astype(np.int64)
     foretold = np.zeros(count.size, np.int64)
     sums = [_unpacked(one, foretold, FINE)[0] for one in _columns("chain", arrays)]
@@ -82,7 +82,7 @@ def packed_list(name: str, recorded: ListSample) -> Arrays:
 
 
 def unpacked_list(name: str, arrays: Mapping[str, NDArray[Any]], width: int) -> ListSample:
-    """Return a taint list from its packed arrays. Raise KeyError if one is missing."""
+    """Return a taint list from its packed arrays. Raise KeyError if an array is missing."""
     edges = Edges(*arrays[name].astype(np.int64))
     episode, state, count = _visited(edges)
     visits = Visits(episode, state, count, *(np.zeros(count.size) for _ in range(4)))
@@ -108,7 +108,7 @@ def packed_table(name: str, table: Floats) -> Arrays:
 
 
 def unpacked_table(name: str, arrays: Mapping[str, NDArray[Any]]) -> Floats:
-    """Return the table from its packed arrays, shape (cells, sites). Raise KeyError if one is missing."""
+    """Return the table from its packed arrays, shape (cells, sites). Raise KeyError if an array is missing."""
     seen = arrays[f"{name}.seen"]
     (column,) = _columns(name, arrays)
     values, _ = _unpacked(column, np.zeros(seen.size, np.int64), FINE)

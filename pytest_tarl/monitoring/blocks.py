@@ -60,7 +60,7 @@ class Block:
             yield time, cells, cell, reward, passed, self._spots[self._number - 1]
 
     def record(self) -> Record:
-        """Return the next record. Raise ValueError if it is invalid."""
+        """Return the next record. Raise ValueError if the record is invalid."""
         text = self._texts[self._number]
         found: Record = _DECODED(text.decode())[0]
         self._number += 1

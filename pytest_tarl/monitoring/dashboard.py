@@ -17,7 +17,7 @@ FORMAT_VERSION = 1  # 1: first version
 
 
 def write(document: dict[str, Any], path: Path) -> None:
-    """Write a document atomically. Raise MonitorError if it cannot be written."""
+    """Write a document atomically. Raise MonitorError if the file cannot be written."""
     try:
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
         write_atomically(path, f"{text}\n".encode())

@@ -58,7 +58,7 @@ class Watch:
             self.save()
 
     def save(self) -> None:
-        """Write the state. Raise MonitorError if it cannot be written."""
+        """Write the state. Raise MonitorError if the file cannot be written."""
         state.save(self.path, self.monitor, self.known, self.digest)
 
     def status(self) -> Status:

@@ -31,7 +31,7 @@ Record = dict[str, Any]
 
 
 class LogFile:
-    """A log opened for appending, by one process at a time. Raise LogError if it cannot be opened."""
+    """A log opened for appending, by one process at a time. Raise LogError if the log cannot be opened."""
 
     def __init__(self, path: Path) -> None:
         self.path = path

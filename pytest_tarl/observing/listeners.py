@@ -32,7 +32,7 @@ class Topics:
     own: Mapping[str, str] = field(default_factory=dict)  # types given on the command line
 
     def type_of(self, topic: str) -> str:
-        """Return the message type of a topic. Raise LogError if it is unknown."""
+        """Return the message type of a topic. Raise LogError if the type is unknown."""
         usual = {self.reward: NUMBER, self.mission: WORD}
         found = self.own.get(topic) or self.types.get(topic) or usual.get(topic)
         if not found:

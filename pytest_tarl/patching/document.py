@@ -185,7 +185,7 @@ class Document:
 
 @cache
 def document(path: str, text: str) -> Document:
-    """Parse a text once. Raise RepairError if it is not Python."""
+    """Parse a text once. Raise RepairError if the text is not Python."""
     try:
         return Document(path, text, parse(text))
     except SyntaxError as error:

@@ -60,7 +60,7 @@ def described(form: Form, x: str, y: str, values: Mapping[str, float], sensor: s
 def form_edits(
     source: Document, node: ast.expr, form: Form, values: Mapping[str, float], condition: str, sensor: str
 ) -> list[Edit]:
-    """Return the edits that write a form at an expression. Raise RepairError if it cannot be written there."""
+    """Return the edits that write a form at an expression. Raise RepairError if the form does not fit there."""
     made = form.template
     statement = source.statement(node)
     fill = _numbers(made, values) | {"sensor": sensor}

@@ -110,7 +110,7 @@ class RealRos(Ros):
             self.parameters.setdefault(name, value)
 
     def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
-        """Run a node's main program until it first waits. Raise NodeError if it raises an exception."""
+        """Run a node's main program until it first waits. Raise NodeError if the program raises an exception."""
         given = self._launched
         if given.node:
             argv = (*argv, *_arguments(given.private, ros2="--ros-args" in argv))

@@ -36,7 +36,7 @@ def make_ros(kind: str, nodes: Iterable[Path]) -> Ros:
 
 
 def check_kind(kind: str) -> str:
-    """Return the value of --tarl-ros. Raise SettingsError if it is unknown."""
+    """Return the value of --tarl-ros. Raise SettingsError if the value is unknown."""
     if kind not in KINDS:
         raise SettingsError(
             f"--tarl-ros does not know {kind!r}; it takes {', '.join(KINDS[:-1])} or {KINDS[-1]}."

@@ -34,7 +34,7 @@ class SharedParticipant:
         self.network.contexts.append(self)
 
     def init(self, args: Any = None, **_: Any) -> None:
-        """Initialise the context. Raise RuntimeError if it was initialised before."""
+        """Initialise the context. Raise RuntimeError if the context was initialised before."""
         if self.handle is not None:
             raise RuntimeError("Context.init() must only be called once")
         if args is not None:
@@ -65,7 +65,7 @@ class SharedParticipant:
             self._cleanup()
 
     def on_shutdown(self, callback: Any) -> None:
-        """Register a callback for the shutdown. Raise TypeError if it is not callable."""
+        """Register a callback for the shutdown. Raise TypeError if the callback is not callable."""
         if not callable(callback):
             raise TypeError("callback should be a callable, got {}", type(callback))
         if self.handle is not None and not self.ok():

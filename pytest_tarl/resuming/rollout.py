@@ -41,7 +41,7 @@ class KeptRollout:
         return self._rollout.workers
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Return the episode, kept or run. Raise TarlError if it cannot run as planned."""
+        """Return the episode, kept or run. Raise TarlError if the episode cannot run as planned."""
         return self.begin(plan).result()
 
     def begin(self, plan: EpisodePlan) -> Pending:

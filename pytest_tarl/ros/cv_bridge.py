@@ -81,7 +81,7 @@ class CvBridge:
     def compressed_imgmsg_to_cv2(self, cmprs_img_msg: Any, desired_encoding: str = "passthrough") -> Any:
         """Return a compressed message as an array of shape (height, width[, channels]); needs OpenCV.
 
-        Raise CvBridgeError if it cannot be decoded.
+        Raise CvBridgeError if the message cannot be decoded.
         """
         import numpy as np
 
@@ -100,7 +100,7 @@ class CvBridge:
         return message
 
     def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
-        """Return the numpy type and the number of channels of an encoding. Raise CvBridgeError if it is unknown."""
+        """Return numpy type and number of channels of an encoding. Raise CvBridgeError if the encoding is unknown."""
         if encoding in _NAMED:
             depth, channels = _NAMED[encoding]
             return _DEPTHS[depth], channels
@@ -116,7 +116,7 @@ class CvBridge:
 
 
 def getCvType(encoding: str) -> int:  # noqa: N802 (the library's name)
-    """Return OpenCV's type number for an encoding. Raise CvBridgeError if it is unknown."""
+    """Return OpenCV's type number for an encoding. Raise CvBridgeError if the encoding is unknown."""
     return CvBridge().encoding_to_cvtype2(encoding)
 
 

@@ -128,7 +128,7 @@ class Ros(Network):
         workspace.search(folder, test)
 
     def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
-        """Run a node's main program until it first waits. Raise NodeError if it raises an exception."""
+        """Run a node's main program until it first waits. Raise NodeError if the program raises an exception."""
         process = Process(self, name, (name, *argv))
         process.launched, self._launched = self._launched, NOTHING
         for key, value in process.launched.shared.items():

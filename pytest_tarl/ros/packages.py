@@ -84,7 +84,7 @@ def get_packages_with_prefixes() -> dict[str, str]:
 
 
 def get_pkg_dir(package: str, required: bool = True) -> str | None:
-    """Return a package's folder, as roslib does. Raise InvalidROSPkgException if it is unknown."""
+    """Return a package's folder, as roslib does. Raise InvalidROSPkgException if the package is unknown."""
     found = _folder(package)
     if found is None and required:
         raise InvalidROSPkgException(_absent(package))
@@ -146,7 +146,7 @@ class RosPack:
     """rospkg's view of the packages."""
 
     def get_path(self, name: str) -> str:
-        """Return a package's folder. Raise ResourceNotFound if it is unknown."""
+        """Return a package's folder. Raise ResourceNotFound if the package is unknown."""
         found = _folder(name)
         if found is None:
             raise ResourceNotFound(_absent(name))

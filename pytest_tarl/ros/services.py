@@ -183,7 +183,7 @@ class WorldService:
             answer(Refusal(f"error processing request: {error}"))
 
     def _checked(self, response: Any) -> Any:
-        """Return the response. Raise RecordingError if it has a wrong type; in ROS 1, None refuses the request."""
+        """Return the response. Raise RecordingError if its type is wrong; in ROS 1, None refuses the request."""
         if response is not None or not hasattr(self.service_class, "_response_class"):
             require_part(
                 response,

@@ -89,7 +89,7 @@ class Lock:
         return True
 
     def release(self) -> None:
-        """Release the lock; wake the task that has waited longest. Raise RuntimeError if it is not held."""
+        """Release the lock; wake the task that has waited longest. Raise RuntimeError if the lock is not held."""
         if not self._held:
             raise RuntimeError("release unlocked lock")
         self._held = False

@@ -42,7 +42,7 @@ class IniFile:
         return found
 
     def read_string(self, text: Any, *_: Any) -> None:
-        """Read a string. Raise OpaqueError if it is malformed or if values refer to others."""
+        """Read a string. Raise OpaqueError if the string is malformed or if values refer to others."""
         try:
             self._parsed.read_string(text)
         except configparser.Error as error:

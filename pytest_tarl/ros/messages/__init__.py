@@ -73,7 +73,7 @@ def find_class(kind: Kind, package: str, name: str, part: Part = "msg") -> type[
 
 
 def class_of(kind: Kind, name: str) -> type[Any]:
-    """Return the message class of a type name, `package/Name`. Raise UnsupportedApiError if it is unknown."""
+    """Return the message class of a type name, `package/Name`. Raise UnsupportedApiError for an unknown type."""
     package, _, short = name.partition("/")
     found = find_class(kind, package, short)
     if found is None:

@@ -31,7 +31,7 @@ class Context:
         process.at_end(self._stop)
 
     def init(self, args: list[str] | None = None, **_: Any) -> None:
-        """Initialise ROS. Raise RuntimeError if it is up already."""
+        """Initialise ROS. Raise RuntimeError if ROS is up already."""
         if self.initialised:
             raise RuntimeError("Context.init() must only be called once")
         if args is not None:

@@ -31,7 +31,7 @@ def ok(*, context: Any = None) -> bool:
 
 
 def shutdown(*, context: Any = None, uninstall_handlers: bool | None = None) -> None:
-    """Shut ROS down. Raise RuntimeError if it is not up."""
+    """Shut ROS down. Raise RuntimeError if ROS is not up."""
     this_context("shutdown").shutdown()
 
 

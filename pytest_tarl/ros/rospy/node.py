@@ -159,7 +159,7 @@ def signal_shutdown(reason: str) -> None:
 
 
 def on_shutdown(h: ShutdownHook) -> None:
-    """Register a function to be called at shutdown. Raise TypeError if it is not callable."""
+    """Register a function to be called at shutdown. Raise TypeError if the argument is not callable."""
     if not callable(h):
         raise TypeError(f"shutdown hook [{h}] must be a function or callable object: {type(h)}")
     this_node("on_shutdown").hooks.append(h)

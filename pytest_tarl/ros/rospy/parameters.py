@@ -53,7 +53,7 @@ def has_param(param_name: str) -> bool:
 
 
 def delete_param(param_name: str) -> None:
-    """Remove a parameter. Raise KeyError if it is not set."""
+    """Remove a parameter. Raise KeyError if the parameter is not set."""
     node, server = _server("delete_param")
     if not server.delete(node.resolve(param_name)):
         raise KeyError(param_name)

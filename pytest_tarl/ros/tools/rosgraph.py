@@ -80,7 +80,7 @@ class Master:
         return graph.parameters().get(self._full(key), _NOTHING) is not _NOTHING
 
     def getParam(self, key: str) -> Any:
-        """Return a parameter. Raise MasterError if it is not set."""
+        """Return a parameter. Raise MasterError if the parameter is not set."""
         value = graph.parameters().get(self._full(key), _NOTHING)
         if value is _NOTHING:
             raise MasterError(f"Parameter [{self._full(key)}] is not set")
@@ -91,7 +91,7 @@ class Master:
         graph.parameters().set(self._full(key), value)
 
     def deleteParam(self, key: str) -> None:
-        """Remove a parameter. Raise MasterError if it is not set."""
+        """Remove a parameter. Raise MasterError if the parameter is not set."""
         if not graph.parameters().delete(self._full(key)):
             raise MasterError(f"parameter [{self._full(key)}] is not set")
 

@@ -35,7 +35,7 @@ def get_service_type(service_name: str) -> str | None:
 
 
 def get_service_class_by_name(service_name: str) -> Any:
-    """Return the class of a service. Raise ROSServiceException if it is unknown."""
+    """Return the class of a service. Raise ROSServiceException if the service is unknown."""
     found = graph.services().get(graph.resolved(service_name))
     if found is None:
         raise ROSServiceException(f"Service [{service_name}] is not available.")

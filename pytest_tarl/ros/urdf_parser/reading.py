@@ -152,7 +152,7 @@ def _needed(element: Element, tag: str) -> Element:
 
 
 def attribute(element: Element, name: str) -> str:
-    """Return an attribute. Raise ParseError if it is missing."""
+    """Return an attribute. Raise ParseError if the attribute is missing."""
     value = element.get(name)
     if value is None:
         raise _wrong(element, f"Required attribute not set in XML: {name}")

@@ -65,7 +65,7 @@ class LifecycleNodeMixin(ManagedEntity):
         raise RCLError("Shutdown transtion not possible")  # rclpy's own spelling
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Add an entity that takes part in all transitions. Raise TypeError if it is not a ManagedEntity."""
+        """Add an entity that takes part in all transitions. Raise TypeError if the entity is no ManagedEntity."""
         if not isinstance(entity, ManagedEntity):
             raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
         self._managed_entities.append(entity)
