@@ -36,7 +36,7 @@ class Target:
 
 
 def targets(patches: Sequence[Patch], directory: Path | None) -> list[Target]:
-    """Find the files of all patches. Raise RepairError if a file is missing, RefusedError for files outside the project."""
+    """Find the files of all patches in the project. Raise RepairError for missing files, RefusedError for files outside it."""
     parts: dict[Path, list[tuple[Patch, FilePatch]]] = {}
     projects: dict[Path, Path] = {}
     for patch in patches:

@@ -140,7 +140,9 @@ def test_many_comparisons_get_as_many_permutations_as_holm_needs(drifting: pytes
     ("other", "said"),
     [("--tarl-repair", "--tarl-repair need separate runs"), ("-n2", "with -n no process sees them all")],
 )
-def test_a_run_that_cannot_be_corrected_says_so(drifting: pytest.Pytester, other: str, said: str) -> None:
+def test_a_run_that_cannot_be_corrected_is_refused_with_the_reason(
+    drifting: pytest.Pytester, other: str, said: str
+) -> None:
     told = drifting.runpytest("--tarl-online", "--tarl-holm", other)
     told.stderr.fnmatch_lines([f"*--tarl-holm*{said}*"])
     assert told.ret == pytest.ExitCode.USAGE_ERROR

@@ -29,7 +29,7 @@ def node(folder: Path, text: str) -> Path:
         ("import (", ()),
     ],
 )
-def test_the_client_library_is_the_one_that_the_nodes_import(
+def test_the_client_library_is_the_library_that_the_nodes_import(
     tmp_path: Path, text: str, found: tuple[str, ...]
 ) -> None:
     assert choice.libraries([node(tmp_path, text)]) == found

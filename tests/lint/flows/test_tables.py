@@ -591,7 +591,7 @@ def test_a_row_that_may_be_missing_is_also_followed():
     assert ends(node(wiring)) == APART
 
 
-def test_a_loop_over_marks_subscribes_to_nothing_else():
+def test_a_loop_over_marked_methods_subscribes_only_to_the_topics_of_the_marks():
     wiring = """
         for name in dir(self):
             method = getattr(self, name)

@@ -130,7 +130,7 @@ class A(Node):
         ("10, 5", ["a"], None),
     ],
 )  # fmt: skip
-def test_the_profile_of_a_wrapper_is_the_one_beside_the_topic(profile, topics, found):
+def test_the_profile_of_a_wrapper_is_the_argument_beside_the_topic(profile, topics, found):
     tree = ast.parse(TABLE.format(profile))
     call = next(
         one for one in ast.walk(tree) if isinstance(one, ast.Call) and "create" in ast.unparse(one.func)

@@ -104,7 +104,7 @@ def test_conditions_and_unknown_files_of_a_script_are_stated(package):
     ]
 
 
-def test_a_script_that_starts_nothing_says_so(package):
+def test_a_script_that_starts_nothing_is_reported_as_such(package):
     assert reasons(
         script(package, "import roslaunch\ndef later():\n    roslaunch.core.Node('a', 'b')\n")
     ) == ["it starts no launch file or node that can be followed"]

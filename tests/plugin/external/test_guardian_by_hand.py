@@ -189,7 +189,7 @@ def test_commands_go_to_the_link_and_are_ignored_without_a_simulator(made: Made)
     assert made.told() == [{"kind": "stopped"}] * 3
 
 
-def test_a_new_simulator_ends_the_one_before_it(made: Made) -> None:
+def test_a_new_simulator_ends_the_previous_simulator(made: Made) -> None:
     made.handle(start(), start(command=["other"]))
     one = ["domain", "group", "link", "link.subscribe", "group.end", "link.close", "domain.release"]
     assert made.names() == one * 2

@@ -208,7 +208,9 @@ def stepping(guardian: Guardian, *, silent: bool = False, stale: bool = False) -
     guardian.react = react
 
 
-def test_the_nodes_run_before_each_step_and_get_its_messages_after_it(guardian: Guardian, ros: Ros) -> None:
+def test_nodes_run_before_each_step_of_the_simulator_and_get_its_messages_after_the_step(
+    guardian: Guardian, ros: Ros
+) -> None:
     heard: list[tuple[str, float, float]] = []
     ros.bus.observe(lambda topic, one: heard.append((topic, ros.now, one.data)))
     stepping(guardian)

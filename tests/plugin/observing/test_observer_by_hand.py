@@ -164,7 +164,9 @@ def test_the_first_error_of_a_value_is_kept_and_does_not_reach_the_node(
     assert one.problem == f"{first}; no space"
 
 
-def test_a_new_mission_ends_the_one_before_it_and_forgets_its_steps(observe: Observe, clock: Clock) -> None:
+def test_a_new_mission_ends_the_previous_mission_and_forgets_its_steps(
+    observe: Observe, clock: Clock
+) -> None:
     one, sent = observe(PLACE)
     one.step(5.0)  # before the first mission
     one.begin()

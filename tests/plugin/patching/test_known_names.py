@@ -163,7 +163,7 @@ def test_names_that_the_statement_reads_count_as_bound_in_it() -> None:
         ("gain", "HERE", set(), False),
     ],
 )
-def test_the_first_value_of_a_name_is_the_one_that_the_module_assigns(
+def test_the_first_value_of_a_name_is_the_value_that_the_module_assigns(
     source: Document, code: str, at: str, values: set[object], fresh: bool
 ) -> None:
     if code == "gain":  # a name of the class is no global one; its own binding is inside the class

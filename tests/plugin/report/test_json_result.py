@@ -123,7 +123,7 @@ def test_numbers_that_are_not_finite_become_null(varied, bad, tmp_path):
     jsonschema.validate(found, schema())
 
 
-def test_a_constant_that_follows_a_sensor_says_so(varied, tmp_path):
+def test_the_description_of_a_constant_that_follows_a_sensor_names_the_sensor(varied, tmp_path):
     one = varied().culprits[0]
     law = OperandEffect("KP", 4.0, -1.7, 2.5, what="KP follows light")
     edit = Edit("a.py", 3, "KP", -1.7, what="scale KP by light")

@@ -115,7 +115,7 @@ def test_a_pose_is_reached_by_inverse_kinematics(start: Start) -> None:
     ]  # fmt: skip
 
 
-def test_a_cartesian_path_is_straight_and_ends_where_it_cannot_go_on(start: Start) -> None:
+def test_a_cartesian_path_is_straight_and_ends_before_the_first_unreachable_point(start: Start) -> None:
     source = """
     group.go([0.8, -1.6])
     begin = group.get_current_pose().pose

@@ -352,7 +352,9 @@ parser.add_argument("file")
 """
 
 
-def test_a_missing_command_line_names_the_launch_file_that_has_one(start: Start, tmp_path: Path) -> None:
+def test_if_a_node_lacks_arguments_the_error_names_the_launch_file_that_passes_them(
+    start: Start, tmp_path: Path
+) -> None:
     text = '<arg name="ip"/><node pkg="saver" type="node.py" name="walker" args="--pip=$(arg ip) f.txt _a:=1 in:=out"/>'
     found = in_package(tmp_path, nao=text)
     assert found.argv == ()

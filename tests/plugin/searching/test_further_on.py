@@ -78,7 +78,7 @@ def test_the_number_of_constants_that_are_tried_is_limited() -> None:
 
 
 @pytest.mark.parametrize("helps", [True, False])
-def test_the_sweep_holds_such_a_change_if_nothing_gains(helps: bool) -> None:
+def test_the_sweep_combines_a_change_that_leads_missions_further_on_if_no_change_gains(helps: bool) -> None:
     world = Climber()
     trials = Trials(world.run, 60)
     asked = world.entered if helps else lambda _: ()

@@ -252,7 +252,7 @@ def test_a_candidate_that_the_sweep_confirms_on_further_seeds_is_yielded_once() 
     assert seen[:4] == [("3.0=6.6", 0), ("3.0=6.6", 1), ("3.0=6.6", 2), ("3.0=6.6", 3)]
 
 
-def test_a_change_that_was_yielded_counts_as_refused_when_the_search_goes_on() -> None:
+def test_a_yielded_change_counts_as_refused_when_the_search_continues() -> None:
     search, _ = sweeping(lambda changes: 10.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL])
     (unit,) = units([LITERAL])
     found = search.attempts.attempt(unit, ALWAYS, 2.2, 0)

@@ -65,7 +65,9 @@ def test_each_change_has_the_expected_readability_rank(mutation: Mutation, expec
         ("inverted", True, False),
     ],
 )
-def test_a_constant_of_one_is_a_sign_if_its_name_says_so(code: str, value: float, sign: bool) -> None:
+def test_a_constant_of_value_one_is_a_sign_if_its_name_suggests_a_sign(
+    code: str, value: float, sign: bool
+) -> None:
     assert is_sign(replace(SIGN, code=code, value=value)) == sign
 
 

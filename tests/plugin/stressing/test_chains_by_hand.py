@@ -279,7 +279,7 @@ def test_no_small_steps_lead_from_a_drift_that_the_model_does_not_cover() -> Non
     assert closer(nearest, DRIFTS[0]) == []
 
 
-def test_a_drift_is_likely_to_be_confirmed_from_a_probability_of_one_half_on() -> None:
+def test_a_drift_is_likely_to_be_confirmed_if_the_probability_is_at_least_one_half() -> None:
     nearest = model_of((), ())
     for chance, answer in ((POSSIBLE, True), (POSSIBLE - 0.01, False)):
         failing = SimpleNamespace(failing=lambda vectors, chance=chance: np.full(len(vectors), chance))

@@ -125,7 +125,7 @@ def test_a_model_predicts_the_measured_losses_at_tried_drifts_and_smaller_losses
     assert found.deeper(2.0).excess(np.array([[-0.6, 0.0]])) == pytest.approx([0.0], abs=0.03)
 
 
-def test_the_shortest_failing_vector_is_the_one_whose_loss_is_just_detectable() -> None:
+def test_the_loss_at_the_shortest_failing_vector_is_just_detectable() -> None:
     found = model([(0.2, 0.4), (0.4, 0.8), (0.8, 1.6)])
     vector = found.shortest(0.0, 2.0, np.random.default_rng(0))
     assert vector is not None
