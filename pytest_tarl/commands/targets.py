@@ -36,7 +36,7 @@ class Target:
 
 
 def targets(patches: Sequence[Patch], directory: Path | None) -> list[Target]:
-    """Find the files of all patches in the project. Raise RepairError for missing files, RefusedError for files outside it."""
+    """Find the files of all patches. Raise RepairError for a missing file, RefusedError outside the project."""
     parts: dict[Path, list[tuple[Patch, FilePatch]]] = {}
     projects: dict[Path, Path] = {}
     for patch in patches:

@@ -101,7 +101,7 @@ def _former(ctx: Interpreter, key: Key, made: Made) -> Value | None:
     owner, name = key
     if owner.kind in ("frame", "module", "class", "closure"):
         return None
-    if owner.kind != "message" and ctx.store.get((owner.whole, BORN)) is None:
+    if owner.kind != "message" and not ctx.store.made(owner.outermost or owner, made):
         return None  # on this path, the object does not exist
     return heap.content(ctx, owner) if name == "*" else ctx.ops.default(ctx, owner, name)
 
