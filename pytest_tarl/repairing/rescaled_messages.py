@@ -11,31 +11,27 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
-from math import exp, log, pi
+from math import exp, log
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.instrumentation.sites import plan
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.templates import Template, templates
+from pytest_tarl.repairing.message_units import ratios
 from pytest_tarl.repairing.mission_pairs import Recorded, series
 from pytest_tarl.repairing.readings import AGREE, GAIN, first_value, spread
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.template_forms import forms
 from pytest_tarl.repairing.template_places import Spot
 from pytest_tarl.symptoms.series import Pair
-from tarl_lint.model import SiteId, Step
+from tarl_lint.model import Flow, SiteId, Step
 
 MOST = 2  # maximum number of messages that are corrected
-# ratios of units in use: degrees, turns and rpm per rad (and per second), parts of a metre, km/h and knots per m/s,
-# feet and inches per metre, seconds per minute and hour, N per kilogram-force and pound-force, kPa and bar per psi,
-# pounds per kilogram
-RATIOS = (
-    180 / pi, 2 * pi, 30 / pi, 10.0, 100.0, 1e3, 1e6, 3.6, 1.9438, 3.2808, 39.37, 60.0, 3600.0, 9.80665, 4.4482,
-    6.8948, 14.504, 2.2046,
-)  # fmt: skip
 EXACT = 0.01  # maximum |log| between a factor of first values and a ratio of units that replaces it
-CLOSE = 0.25  # the same for a factor of usual sizes, which also differ because the missions do
+# the same for a factor of usual sizes, which also differ because the missions do; so narrow that one random factor in
+# five to ten is this close to a ratio of its quantity, and seldom that of every mission
+CLOSE = 0.07
 # minimum |log| of a factor of first values, and of usual sizes: what a node does changes sizes by less than five times
 LEAST, LARGE = 0.05, log(5.0)
 _LEFT_OUT = frozenset({"header", "stamp", "seq", "covariance"})
@@ -52,18 +48,27 @@ def rescaled(order: Order, recorded: Sequence[Recorded]) -> list[tuple[Mutation,
     for number, place in enumerate(plan(order.analysis).places):
         if place.role != "receive" or place.id not in steps:
             continue
-        factor = _factor([Pair(series(one, number), series(other, number)) for one, other in recorded])
+        step = steps[place.id]
+        read = _read(order, step)
+        if read is None:
+            continue
+        source, nodes = read
+        pairs = [Pair(series(one, number), series(other, number)) for one, other in recorded]
+        factor = _factor(pairs, ratios(_described(order, step, source, nodes)))
         if factor is None:
             continue
-        mutations = tuple(_mutations(order, gain, steps[place.id], factor))
+        mutations = tuple(_mutations(order, gain, step, source, nodes, factor))
         if mutations:
             found.append((abs(log(factor)), mutations))
     found.sort(key=lambda one: -one[0])
     return [mutations for _, mutations in found[:MOST]]
 
 
-def _factor(pairs: Sequence[Pair]) -> float | None:
-    """Return the factor that makes a message as large as in the designed world, or None if there is none."""
+def _factor(pairs: Sequence[Pair], units: Sequence[float]) -> float | None:
+    """Return the factor that makes a message as large as in the designed world, or None if there is none.
+
+    `units` are the ratios of the units that the message may have.
+    """
     firsts = [(first_value(pair.designed), first_value(pair.drifted)) for pair in pairs]
     known = [(one, other) for one, other in firsts if one and other]
     if len(known) == len(pairs) > 1:
@@ -71,7 +76,7 @@ def _factor(pairs: Sequence[Pair]) -> float | None:
         by_offset = spread([designed - drifted for designed, drifted in known])
         size = log(sum(factors) / len(factors))
         if spread(factors) <= min(AGREE, by_offset) and abs(size) >= LEAST:
-            return _snapped(size, EXACT) or exp(size)
+            return _snapped(size, EXACT, units) or exp(size)
     sizes = [
         tuple(float(abs(one.values).mean()) for one in (pair.designed, pair.drifted))
         for pair in (pair.together() for pair in pairs)
@@ -79,25 +84,52 @@ def _factor(pairs: Sequence[Pair]) -> float | None:
     ]
     if len(sizes) < max(len(pairs), 2) or not all(map(all, sizes)):
         return None
-    ratios = [_snapped(log(designed / drifted), CLOSE) for designed, drifted in sizes]
-    same = ratios[0] if len(set(ratios)) == 1 else None
+    found = {_snapped(log(designed / drifted), CLOSE, units) for designed, drifted in sizes}
+    same = found.pop() if len(found) == 1 else None
     return same if same is not None and abs(log(same)) >= LARGE else None
 
 
-def _snapped(size: float, close: float) -> float | None:
+def _snapped(size: float, close: float, units: Sequence[float]) -> float | None:
     """Return the ratio of units whose logarithm is nearest to `size`, or None if none is close."""
-    ratios = [ratio for each in RATIOS for ratio in (each, 1.0 / each)]
-    nearest = min(ratios, key=lambda one: abs(log(one) - size))
+    nearest = min(units, key=lambda one: abs(log(one) - size))
     return nearest if abs(log(nearest) - size) <= close else None
 
 
-def _mutations(order: Order, gain: Template, step: Step, factor: float) -> Iterator[Mutation]:
-    """Yield a factor at each expression that reads a number of the message that a callback receives."""
+def _read(order: Order, step: Step) -> tuple[Document, list[ast.expr]] | None:
+    """Return the expressions that read a number of the message that a callback receives, and their file."""
     try:
         source = document(step.span.path, order.analysis.sources[step.span.path])
     except (RepairError, KeyError):
-        return
-    for node in reads(source, step.span.line):
+        return None
+    return source, reads(source, step.span.line)
+
+
+def _described(order: Order, step: Step, source: Document, nodes: Sequence[ast.expr]) -> Iterator[str]:
+    """Yield what suggests the quantity of a message: topic, type, sensors, and the expressions around reads."""
+    arriving = [one.source for one in order.analysis.flows if _first_received(one) == step]
+    topics = {topic for one in arriving for topic in one.topics}
+    yield from sorted(topics | {one.type for one in arriving})
+    for sensor in order.comparison.sensors:
+        if sensor.topic is not None and sensor.topic.strip("/") in {one.strip("/") for one in topics}:
+            yield f"{sensor.name} {sensor.unit}"
+    for node in nodes:
+        whole: ast.expr | ast.keyword = node
+        while isinstance(around := source.parents.get(whole), ast.expr | ast.keyword):
+            whole = around
+        yield ast.unparse(whole)
+        if isinstance(around, ast.Assign | ast.AnnAssign):
+            yield from map(ast.unparse, around.targets if isinstance(around, ast.Assign) else [around.target])
+
+
+def _first_received(flow: Flow) -> Step | None:
+    return next((one for one in flow.steps if one.role == "receive"), None)
+
+
+def _mutations(
+    order: Order, gain: Template, step: Step, source: Document, nodes: Sequence[ast.expr], factor: float
+) -> Iterator[Mutation]:
+    """Yield a factor at each expression that reads a number of a message."""
+    for node in nodes:
         site = _site(order, source, node) or step.site
         spot = Spot(site, source, node, "input", typical=1.0, larger=1.0, away=0, hears=True)
         for (operand, form), *_ in forms(order, gain, [spot]):

@@ -15,6 +15,7 @@ from pytest_tarl.instrumentation.sites import plan
 from pytest_tarl.patching.document import document
 from pytest_tarl.patching.mutate import form_values
 from pytest_tarl.repairing.rescaled_messages import reads, rescaled
+from pytest_tarl.sensors import Sensor
 from tarl_lint.api import analyse
 
 BOAT = """\
@@ -50,12 +51,14 @@ WIND, GOAL = "def on_wind", "def on_goal"
 Missions = dict[str, tuple[float, float]]
 
 
-def corrected(folder: Path, *missions: Missions, step: int = 0) -> list[list[tuple[int, str, float]]]:
+def corrected(
+    folder: Path, *missions: Missions, step: int = 0, code: str = BOAT, sensors: Sequence[Sensor] = ()
+) -> list[list[tuple[int, str, float]]]:
     """Return the line, the code and the factor of each read that a correction changes, for sizes in both worlds.
 
     The messages arrive in five steps from `step` on, all with the same size.
     """
-    (folder / "boat.py").write_text(BOAT)
+    (folder / "boat.py").write_text(code)
     analysis = analyse([folder / "boat.py"], root=folder)
 
     def trace(values: Missions, world: int) -> Any:
@@ -63,15 +66,15 @@ def corrected(folder: Path, *missions: Missions, step: int = 0) -> list[list[tup
             (number, at, pair[world])
             for at in range(step, step + 5)
             for number, place in enumerate(plan(analysis).places)
-            for code, pair in values.items()
-            if f":{code}" in place.id
+            for place_code, pair in values.items()
+            if f":{place_code}" in place.id
         ]
         site, steps, flow = map(np.array, zip(*events, strict=True))
         return SimpleNamespace(site=site, event_step=steps, flow=flow, reward=np.zeros(step + 5))
 
-    order: Any = SimpleNamespace(analysis=analysis, root=folder, comparison=SimpleNamespace(sensors=()))
+    order: Any = SimpleNamespace(analysis=analysis, root=folder, comparison=SimpleNamespace(sensors=sensors))
     recorded: Any = [(trace(values, 0), trace(values, 1)) for values in missions]
-    source = document("boat.py", BOAT)
+    source = document("boat.py", code)
     return [
         [
             (one.operand.span.line, source.source(source.find(one.operand.span)), form_values(one)["gain"])
@@ -97,7 +100,7 @@ def test_a_factor_that_is_no_unit_is_taken_as_it_is(tmp_path: Path) -> None:
 
 
 def test_usual_sizes_show_a_unit_if_messages_arrive_late(tmp_path: Path) -> None:
-    late = corrected(tmp_path, {WIND: (1.0, 52.0)}, {WIND: (1.0, 55.0)}, step=4)
+    late = corrected(tmp_path, {WIND: (1.0, 54.0)}, {WIND: (1.0, 60.0)}, step=4)
     assert late == [[(17, "msg.data", 0.01745)] * 2]
 
 
@@ -118,6 +121,35 @@ def test_sizes_that_no_unit_explains_are_left_alone(
     missions: Sequence[Missions], step: int, tmp_path: Path
 ) -> None:
     assert corrected(tmp_path, *missions, step=step) == []
+
+
+@pytest.mark.parametrize(
+    ("topic", "variable", "factor", "found"),
+    [
+        ("/ball", "seen", 14.504, None),
+        ("/ball", "seen", 180 / pi, None),
+        ("/tank/pressure", "seen", 14.504, 0.06895),  # the topic says what is measured
+        ("/ball", "ball_bearing", 180 / pi, 0.01745),  # the variable does
+        ("/ball", "ball_bearing", 14.504, None),
+        ("/ball", "seen", 1e3, 0.001),
+    ],
+)
+def test_usual_sizes_show_only_units_of_the_quantity(
+    topic: str, variable: str, factor: float, found: float | None, tmp_path: Path
+) -> None:
+    code = BOAT.replace("/wind", topic).replace("math.sin(msg.data + 0.1) + math.cos(msg.data)", "msg.data")
+    code = code.replace("self.wind", f"self.{variable}")
+    shown = corrected(tmp_path, {WIND: (1.0, factor)}, {WIND: (2.0, 2.0 * factor)}, step=4, code=code)
+    assert [by for one in shown for _, _, by in one] == ([] if found is None else [found])
+
+
+def test_the_unit_of_a_declared_sensor_tells_the_quantity(tmp_path: Path) -> None:
+    code = BOAT.replace("math.sin(msg.data + 0.1) + math.cos(msg.data)", "msg.data")
+    missions: tuple[Missions, ...] = ({WIND: (1.0, 14.5)}, {WIND: (1.0, 14.5)})
+    for topic, found in (("wind", [0.06895]), ("goal", [])):
+        gauge = Sensor("gauge", topic, "data", low=0.0, high=9.0, bins=3, unit="bar")
+        shown = corrected(tmp_path, *missions, step=4, code=code, sensors=(gauge,))
+        assert [by for one in shown for _, _, by in one] == found
 
 
 READS = """\

@@ -1,0 +1,67 @@
+"""Ratios of the units in which a message may arrive, by the quantity that its names, its type and its use suggest.
+
+A topic `/tank/pressure` may change from bar to psi; nothing explains the same ratio on a topic `/ball`. Parts of ten
+occur with every quantity: millimetres, percent, thousandths.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import pi
+from typing import Final
+
+TENS: Final = (10.0, 100.0, 1e3, 1e6)  # parts of any unit
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A quantity: the ratios of its usual units to each other, and the words that suggest it, with spaces between."""
+
+    ratios: tuple[float, ...]
+    words: str
+
+
+QUANTITIES: Final = {
+    "angle": Quantity(  # degrees, turns
+        (180 / pi, 2 * pi),
+        "angle angles azimuth bearing compass course deg degree degrees heading joint orientation pitch rad radians"
+        " roll rotation sin cos tan steering theta tilt vane yaw",
+    ),
+    "angular speed": Quantity(  # degrees, turns and turns per minute
+        (180 / pi, 2 * pi, 30 / pi), "angular gyro imu omega rotor rpm spin"
+    ),
+    "length": Quantity(  # feet, inches
+        (3.2808, 39.37),
+        "altitude depth dist distance gap height length level odometry point pose position radius range ranges scan"
+        " sonar width",
+    ),
+    "speed": Quantity(  # km/h, knots, miles per hour, feet per second
+        (3.6, 1.9438, 2.2369, 3.2808), "odometry speed twist velocity wind"
+    ),
+    "time": Quantity(  # minutes, hours
+        (60.0, 3600.0), "delay duration elapsed eta interval period time timeout"
+    ),
+    "force": Quantity(  # kilogram-force, pound-force
+        (9.80665, 4.4482), "force grip load pull push tension thrust wrench"
+    ),
+    "pressure": Quantity(  # kPa and bar per psi
+        (6.8948, 14.504), "bar barometer hpa kpa pa pressure psi vacuum"
+    ),
+    "mass": Quantity((2.2046,), "kg load mass payload scale weight"),  # pounds
+}
+
+
+def ratios(texts: Iterable[str]) -> tuple[float, ...]:
+    """Return the ratios, and their inverses, of units that a number may have, given its names, type and use."""
+    words = {word.lower() for text in texts for word in _words(text)}
+    fitting = [
+        each for one in QUANTITIES.values() if not words.isdisjoint(one.words.split()) for each in one.ratios
+    ]
+    return tuple(ratio for each in dict.fromkeys((*TENS, *fitting)) for ratio in (each, 1.0 / each))
+
+
+def _words(text: str) -> list[str]:
+    """Return the words of a text, also those of names such as `wind_angle` and `FluidPressure`."""
+    return re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", text)
