@@ -58,6 +58,7 @@ _KEYS = {
     "summary",
     "on",
     "without",
+    "inside",
     "cost",
     "lines",
     "expression",
@@ -104,6 +105,7 @@ class Template:
     parameters: tuple[Parameter, ...] = ()
     without: str = ""
     symptoms: tuple[str, ...] = ()  # symptoms that indicate the template (see `pytest_tarl.symptoms`)
+    inside: bool = False  # of sensors: written within the limits of the value, if it has any
 
     def uses(self, placeholder: str) -> int:
         """Return how often a placeholder occurs in the lines and the expression."""
@@ -148,6 +150,7 @@ def template(path: Path) -> Template:
             parameters,
             str(data.get("without", "")),
             tuple(map(str, data.get("symptoms", ()))),
+            bool(data.get("inside", False)),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
         raise SettingsError(

@@ -69,6 +69,8 @@ def forms(
                 bare = replace(bare, partner=twin.source.span(twin.node))
             yield list(_operands(template, spot, bare, scales))
             continue
+        if template.inside:
+            spot, twin = _inside(spot, twin)
         by_sensor: list[tuple[Operand, Form]] = []
         for sensor in order.comparison.sensors:
             if continuous(sensor):
@@ -76,6 +78,13 @@ def forms(
                     template, spot, _by(template, sensor, spot, twin), _scales(order, sensor, spot)
                 )
         yield by_sensor
+
+
+def _inside(spot: Spot, twin: Spot | None) -> tuple[Spot, Spot | None]:
+    """Return the expressions that the values of both axes limit; without them, the values themselves."""
+    if spot.within is None or (twin is not None and twin.within is None):
+        return spot, twin
+    return spot.within, twin.within if twin is not None else None
 
 
 def _by(template: Template, sensor: Sensor, spot: Spot, twin: Spot | None) -> Form:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 from pytest_tarl.errors import RepairError
@@ -16,6 +16,7 @@ from pytest_tarl.repairing.labels import is_member
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.typical_sizes import TypicalSizes, threshold
 from pytest_tarl.repairing.unit_factors import converts_unit
+from pytest_tarl.repairing.within_limits import within_limits
 from tarl_lint.model import SiteId, Span, Step
 
 _NUMERIC = ("abs", "float", "int", "max", "min", "pow", "round", "sum")
@@ -56,6 +57,7 @@ class Spot:
     constants: frozenset[str] = frozenset()
     numeric: bool = True
     field: str = ""  # for the kind "field": the field of the published message
+    within: Spot | None = None  # the expression that the value limits, if its usual size is known
 
 
 def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
@@ -67,6 +69,7 @@ def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
     drifted = TypicalSizes(order, order.online.recorded.sample)
     seen: set[tuple[str, int, str]] = set()
     away = _away(order)
+    fixed = {one.code for step in order.analysis.sites for one in order.analysis.operands(step.site)}
     hearing = {flow.source.span.path for flow in order.analysis.flows}
     for step in _steps(order, away, responding):
         try:
@@ -93,9 +96,15 @@ def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
                 numeric = kind != "sent" or sizes.known(step.site, node) is not None
                 codes = {one.code for one in order.analysis.operands(step.site)}
                 own = frozenset(constants(source, node, codes))
-                yield Spot(
+                spot = Spot(
                     step.site, source, node, kind, usual, larger, away[step.site], hears, own, numeric, field
                 )
+                inner = None if field else within_limits(source, node, fixed)
+                size = sizes.known(step.site, inner) if inner is not None else None
+                if inner is not None and size:
+                    most = max(size, drifted.known(step.site, inner) or 0.0)
+                    spot = replace(spot, within=replace(spot, node=inner, typical=size, larger=most))
+                yield spot
 
 
 def _steps(order: Order, away: Mapping[SiteId, int], responding: Sequence[str]) -> list[Step]:

@@ -1,0 +1,74 @@
+"""The expression that a clamp limits: a correction belongs there, so that the limits still hold for the sum.
+
+In `max(-top, min(top, gain * error))`, this is `gain * error`. A helper that limits its argument, as in
+`mass * push(error)`, is followed: its argument is limited.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection
+
+from pytest_tarl.patching.clamps import CLAMPS, OPPOSITE
+from pytest_tarl.patching.document import Document, called
+
+_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+def within_limits(source: Document, node: ast.expr, known: Collection[str]) -> ast.expr | None:
+    """Return the expression that a value limits, or None if it has no limits or the expression is ambiguous.
+
+    `known` contains the code of named constants, which count as limits and as factors.
+    """
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        return within_limits(source, node.operand, known)
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
+        sides = [node.left, node.right] if isinstance(node.op, ast.Mult) else [node.left]
+        found = [within_limits(source, each, known) for each in sides]
+        fixed = [_constant(source, each, known) for each in (node.left, node.right)]
+        return next(filter(None, found), None) if any(fixed) else None
+    if not isinstance(node, ast.Call) or node.keywords:
+        return None
+    value = _clamped(source, node, known)
+    if value is not None:
+        return within_limits(source, value, known) or value
+    return _passed(source, node, known)
+
+
+def _clamped(source: Document, call: ast.Call, known: Collection[str]) -> ast.expr | None:
+    """Return the argument of a clamp that is no limit."""
+    name = called(call)
+    if name in CLAMPS and len(call.args) == 3:
+        values, limits = call.args[:1], call.args[1:]
+    elif name in OPPOSITE and len(call.args) == 2:
+        values = [each for each in call.args if not _constant(source, each, known)]
+        limits = [each for each in call.args if each not in values]
+    else:
+        return None
+    clear = len(values) == 1 and not _constant(source, values[0], known) and bool(limits)
+    return values[0] if clear else None
+
+
+def _passed(source: Document, call: ast.Call, known: Collection[str]) -> ast.expr | None:
+    """Return the only argument of a call of a function of this file that does nothing else than limit a value of it."""
+    functions = [
+        one for one in ast.walk(source.tree) if isinstance(one, _FUNCTIONS) and one.name == called(call)
+    ]
+    if len(functions) != 1 or len(call.args) != 1 or isinstance(call.args[0], ast.Starred):
+        return None
+    names = [one.arg for one in functions[0].args.args if one.arg not in ("self", "cls")]
+    returns = [one for one in ast.walk(functions[0]) if isinstance(one, ast.Return)]
+    if len(names) != 1 or len(returns) != 1 or not isinstance(returns[0].value, ast.Call):
+        return None
+    value = _clamped(source, returns[0].value, known)
+    # the clamp of a helper that calls itself would be followed without an end, so helpers of helpers are not followed
+    if value is None or not any(isinstance(one, ast.Name) and one.id in names for one in ast.walk(value)):
+        return None
+    return None if _constant(source, call.args[0], known) else call.args[0]
+
+
+def _constant(source: Document, node: ast.expr, known: Collection[str]) -> bool:
+    """Return whether an expression is a literal or a named constant, perhaps with a sign."""
+    if isinstance(node, ast.UnaryOp):
+        return _constant(source, node.operand, known)
+    return isinstance(node, ast.Constant) or source.source(node) in known
