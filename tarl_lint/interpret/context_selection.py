@@ -15,6 +15,7 @@ from tarl_lint.interpret.budget import (
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import generations
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import Obj
 
@@ -35,11 +36,9 @@ def make_frame(
         return None
     statement = caller.statement.id if caller.statement is not None else -1
     own = (caller.id, statement, call.slot, closure.key, receiver, *caller.turn)
-    if (
-        ctx.work.executed > SEPARATE_STATEMENTS
-        and runs > SEPARATE_CALLS
-        and shared_contexts.may_share(arguments)
-    ):
+    often = ctx.work.executed > SEPARATE_STATEMENTS and runs > SEPARATE_CALLS
+    endless = ctx.closure_chains and own not in ctx.frames and generations.too_many_closures(ctx, caller)
+    if (often or endless) and shared_contexts.may_share(arguments):
         ctx.widened.add(own)
     ctx.store.reads.ask(ctx.widened.__contains__, own)
     shares = own in ctx.widened

@@ -10,7 +10,7 @@ from tarl_lint.catalog import fact
 from tarl_lint.interpret import descriptors, dunder_methods, literals, operators, short_circuits
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import enumerations, heap, recency
+from tarl_lint.memory import enumerations, generations, heap, recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, GIVEN_KEYS
 from tarl_lint.memory.values import (
@@ -296,6 +296,7 @@ def closure(ctx: Interpreter, function: ir.Function, frame: Frame, slot: object)
     key = (function.module, frame.id, function.pos, slot, *frame.turn)
     obj = recency.intern(ctx, "closure", key, function.name)
     obj.info = (function, outer, frame.program, frame.owner_class())
+    generations.note_closure(ctx, obj, function, frame)
     if outer is not None:
         around: Frame | None = outer
         while around is not None:

@@ -99,6 +99,8 @@ class Interpreter:
         self.called: set[tuple[str, int]] = set()  # module and line of each called function
         # for each instance made by methods: allocation sites and objects, from the first maker to the instance itself
         self.chains: dict[Obj, tuple[tuple[Hashable, Obj], ...]] = {}
+        # key of a closure made by a call → functions of the chain of closures that made it, itself last
+        self.closure_chains: dict[Hashable, tuple[ir.Function, ...]] = {}
         self.made: set[Hashable] = set()  # keys of instantiated classes
         self.guests: set[object] = set()  # classes that only code outside the analysed files instantiates
         self.plugins: set[object] = set()  # classes that a package declares as plugins

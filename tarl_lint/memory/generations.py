@@ -1,7 +1,8 @@
-"""Chains of instances, each made by a method of the one before, as in `position = position + step`.
+"""Chains of instances, each made by a method of the one before, as in `position = position + step`; and of closures.
 
 A method has a context for each receiver, and each context makes objects of its own. Without a limit, a callback that
-replaces an object by one that the object's method makes would make new abstract objects for ever.
+replaces an object by one that the object's method makes would make new abstract objects for ever. The same holds for
+a function that returns a closure, which calls the function: `self.state = self.state(msg)`.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from tarl_lint.memory.values import Obj, in_order
 
 # maximum number of objects of one site in a chain; the last object represents all further ones
 MAX_ALIKE: Final = 3
+MAX_CLOSURES: Final = 4  # maximum number of closures in a chain, each made while the one before runs
 
 # an object's allocation site and the object, from the oldest maker to the object itself
 Chain = tuple[tuple[Hashable, Obj], ...]
@@ -52,5 +54,30 @@ def _makers(ctx: Interpreter, frame: Frame) -> Chain:
             chain: Chain = ctx.chains.get(obj, ())
             if len(chain) > len(longest):
                 longest = chain
+        inner = inner.caller
+    return longest
+
+
+def note_closure(ctx: Interpreter, closure: Obj, function: ir.Function, frame: Frame) -> None:
+    """Record which closures were running when a closure was made."""
+    if frame.caller is not None and closure.key not in ctx.closure_chains:
+        ctx.closure_chains[closure.key] = (*_closures(ctx, frame), function)
+
+
+def too_many_closures(ctx: Interpreter, frame: Frame) -> bool:
+    """Return whether the calls of a frame may make closures for ever, so that they have to share their contexts."""
+    running = _closures(ctx, frame)
+    return len(running) > MAX_CLOSURES or len(set(running)) < len(running)
+
+
+def _closures(ctx: Interpreter, frame: Frame) -> tuple[ir.Function, ...]:
+    """Return the longest chain of the closures that are running."""
+    longest: tuple[ir.Function, ...] = ()
+    inner: Frame | None = frame
+    while inner is not None:
+        key = inner.key[3] if isinstance(inner.key, tuple) and len(inner.key) > 4 else None
+        chain = ctx.closure_chains.get(key, ())
+        if len(chain) > len(longest):
+            longest = chain
         inner = inner.caller
     return longest

@@ -10,7 +10,7 @@ from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, object_contents, recency, updates
+from tarl_lint.memory import generations, heap, object_contents, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, KEYS, item_field
 from tarl_lint.memory.values import (
@@ -142,10 +142,18 @@ def replaced_record(ctx: Interpreter, it: Invocation) -> Value:
         cls = obj.info if obj.kind == "instance" else None
         names = [n for _, n in _fields(cls)] if isinstance(cls, Obj) else []
         for name, value in named.items():
-            ctx.store.put((obj, name), value)
+            _put(ctx, obj, name, value)
             if name in names and _named_tuple(cls):
-                ctx.store.put((obj, item_field(names.index(name))), value)
+                _put(ctx, obj, item_field(names.index(name)), value)
     return made
+
+
+def _put(ctx: Interpreter, obj: Obj, name: str, value: Value) -> None:
+    """Store a field of a copy; of an object that stands for several ones, keep the former value too."""
+    if obj.many:
+        updates.weaken(ctx, obj, name, value)
+    else:
+        ctx.store.put((obj, name), value)
 
 
 def as_mapping(ctx: Interpreter, it: Invocation) -> Value:
@@ -193,8 +201,14 @@ def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
     """Return a new object of the kind that all copied objects have in common."""
     classes = {o.info for o in value.pts if o.kind == "instance"}
     if len(classes) == 1 and all(o.kind == "instance" for o in value.pts):
+        cls = classes.pop()
+        site = (frame.function, frame.statement, slot, cls)
+        last = generations.last_of_line(ctx, site, frame)
+        if last is not None:
+            return last
         obj = recency.allocate(ctx, "instance", frame, slot)
-        obj.describe(classes.pop())
+        obj.describe(cls)
+        generations.note(ctx, obj, site, frame)
         return obj
     kinds = {o.kind for o in value.pts} & {"sequence", "mapping"}
     obj = recency.allocate(ctx, kinds.pop() if kinds else "lib", frame, slot)

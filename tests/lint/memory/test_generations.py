@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 
 from tarl_lint.interpret.call_contexts import ROOT_CALL
 from tarl_lint.memory import generations, recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import ClassInfo
-from tests.lint.models.marked import differing
+from tests.lint.models.marked import differing, sections
+from tests.lint.test_work import work
 
 HEAD = """\
+import copy, dataclasses
+from typing import NamedTuple
+import attr, attrs
 import rospy
 from std_msgs.msg import Float64
 out = rospy.Publisher("out", Float64, queue_size=1)
@@ -68,12 +74,133 @@ def on(msg):
     out.publish(third.value)  # clean
 rospy.Subscriber("in", Float64, on)
 """
-CASES = dict(part.split("\n", 1) for part in PROGRAMS.split("### ")[1:])
+CASES = sections(PROGRAMS)
+# A node that replaces a record by the result of `moved`; the record's class stands above it.
+MOVING = """\
+class Node:
+    def __init__(self):
+        self.fix = Fix(0.0, 0.0)
+        rospy.Subscriber("in", Float64, self.on)
+    def on(self, msg):
+        self.fix = self.fix.moved(msg.data)
+        out.publish(self.fix.north)  # data
+        out.publish(self.fix.east)  # clean
+Node()
+"""
+# the record's class → what `moved` does
+RECORDS = {
+    "NamedTuple": [
+        "return self._replace(north=self.north + d)",
+        "return type(self)(self.north + d, self.east)",
+    ],
+    "Data": [
+        "return dataclasses.replace(self, north=self.north + d)",
+        "return copy.replace(self, north=self.north + d)",
+        "return changed(self, self.north + d)",
+        "return self.with_north(self.north + d).with_east(1.0).with_east(2.0)",
+        "return Other(self).moved(d)",
+        (
+            "made = self\n        for _ in range(3):\n            made = made.with_north(made.north + d)\n"
+            "        return made"
+        ),
+    ],
+    "Attrs": [
+        "return attr.evolve(self, north=self.north + d)",
+        "return attrs.evolve(self, north=self.north + d)",
+    ],
+    "Plain": [
+        "made = copy.copy(self)\n        made.north += d\n        return made",
+        "made = copy.deepcopy(self)\n        made.north = made.north + d\n        return made",
+        'return self.__class__(**{**vars(self), "north": self.north + d})',
+        (
+            "made = object.__new__(Fix)\n        made.__dict__.update(vars(self))\n        made.north += d\n"
+            "        return made"
+        ),
+    ],
+}
+CLASSES = {
+    "NamedTuple": "class Fix(NamedTuple):\n    north: float\n    east: float\n",
+    "Data": "@dataclasses.dataclass\nclass Fix:\n    north: float\n    east: float\n",
+    "Attrs": "@attr.s(auto_attribs=True)\nclass Fix:\n    north: float\n    east: float\n",
+    "Plain": "class Fix:\n    def __init__(self, north, east):\n        self.north = north\n        self.east = east\n",
+}
+OTHERS = """\
+    def with_north(self, north):
+        return dataclasses.replace(self, north=north)
+    def with_east(self, east):
+        return dataclasses.replace(self, east=east)
+def changed(fix, north):
+    return dataclasses.replace(fix, north=north)
+@dataclasses.dataclass
+class Other:
+    fix: object
+    def moved(self, d):
+        return dataclasses.replace(self.fix, north=self.fix.north + d)
+"""
+CLOSURES = """\
+### a closure that returns a closure
+def counter(n):
+    def step(msg):
+        out.publish(n)  # data
+        return counter(n + msg.data)
+    return step
+### three states that are closures
+def idle(n):
+    def step(msg):
+        out.publish(n)  # data
+        if msg.data > 2.0:
+            return stopped(n)
+        return running(n + msg.data) if msg.data > 1.0 else idle(n)
+    return step
+def running(n):
+    def step(msg):
+        out.publish(n)  # data
+        if msg.data > 2.0:
+            return stopped(n)
+        return idle(n + 1.0) if msg.data > 1.0 else running(n)
+    return step
+def stopped(n):
+    def step(msg):
+        out.publish(3.0)  # control
+        return idle(n) if msg.data > 1.0 else stopped(0.0)
+    return step
+counter = idle
+### a closure that returns a closure, and passes on no data
+def counter(n):
+    def step(msg):
+        out.publish(n)  # clean
+        return counter(n + 1.0)
+    return step
+"""
+STEPPING = """\
+class Node:
+    def __init__(self):
+        self.step = counter(0.0)
+        rospy.Subscriber("in", Float64, self.on)
+    def on(self, msg):
+        self.step = self.step(msg)
+Node()
+"""
+MOST_WORK = 600  # statements; without a limit on chains, these programs take from 2,600 to 80,000
 
 
 @pytest.mark.parametrize("title", CASES)
 def test_programs_with_chains_of_objects_have_the_marked_flows(title):
     assert differing(HEAD + CASES[title]) == {}
+
+
+@pytest.mark.parametrize(("record", "body"), [(r, body) for r, bodies in RECORDS.items() for body in bodies])
+def test_a_record_that_a_modified_copy_of_itself_replaces_takes_little_work(record, body):
+    text = f"{HEAD}{CLASSES[record]}    def moved(self, d):\n        {body}\n{OTHERS}{MOVING}"
+    assert differing(text) == {}
+    assert work(text).total < MOST_WORK
+
+
+@pytest.mark.parametrize("title", sections(CLOSURES))
+def test_a_closure_that_a_call_of_itself_replaces_takes_little_work(title):
+    text = HEAD + sections(CLOSURES)[title] + STEPPING
+    assert differing(text) == {}
+    assert work(text).total < MOST_WORK
 
 
 def test_the_last_object_of_a_long_chain_represents_all_further_ones(ctx, frame):
@@ -99,3 +226,16 @@ def test_entry_points_run_again_if_an_object_that_they_read_now_stands_for_sever
     recency.one_of_many(ctx, obj)
     assert not recency.single(ctx, obj)
     assert ctx.store.root in ctx.pending
+
+
+def test_calls_of_a_closure_share_contexts_if_it_was_made_while_one_of_the_same_function_ran(ctx, frame):
+    functions = {name: dataclasses.replace(frame.function) for name in "ab"}
+    for number, name in enumerate("aba"):
+        caller = frame
+        frame = Frame((1, 2, 3, number, None), number, frame.function, frame.program, frame.module)
+        frame.caller = caller
+        assert not generations.too_many_closures(ctx, frame)
+        generations.note_closure(ctx, recency.intern(ctx, "closure", number + 1), functions[name], frame)
+    inner = Frame((1, 2, 3, 3, None), 9, frame.function, frame.program, frame.module)
+    inner.caller = frame
+    assert generations.too_many_closures(ctx, inner)
