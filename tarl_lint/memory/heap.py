@@ -66,6 +66,7 @@ HOLLOW = frozenset(
         CLIENT,
     ]
 )
+NAMESPACE = "types.SimpleNamespace"  # name of an object whose attributes are also the items of its `vars()`
 # kinds of objects whose attributes are stored elsewhere or under other names
 RENAMING = frozenset(["closure", VIEW, CLIENT])
 
@@ -156,6 +157,8 @@ def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:
     """Return an unset field of a library object, which is a part of it; BOTTOM for summary and pseudo-fields."""
     if name == ANY or name.startswith("<"):
         return BOTTOM
+    if obj.name == NAMESPACE:
+        return pointer(obj) if name == "__dict__" else content(ctx, obj)
     if name.startswith("[") and (held := content(ctx, obj)).pts:
         return held
     if obj.kind == "lib" and obj.info is not BY_CLASS and name in MEASURES:
@@ -374,7 +377,7 @@ def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:
 
 def attribute_of_item(obj: Obj, key: object) -> str:
     """Return the field that `vars(obj)[key]` accesses: an attribute, unless the object is a dictionary."""
-    if obj.kind == "closure" and isinstance(key, str):
+    if (obj.kind == "closure" or obj.name == NAMESPACE) and isinstance(key, str):
         return key
     if obj.kind == "instance" and isinstance(key, str) and isinstance(obj.info, Obj):
         infos = [c.info for c in lineage(obj.info)]

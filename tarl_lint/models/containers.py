@@ -213,7 +213,10 @@ def _update(
                 sizes.absorb(ctx, obj, news)
     for name, value in named.items():
         news = through_statement(ctx, value, frame, call, name)
-        updates.write_item(ctx, base, const(name), news)
+        if name != "**":
+            updates.write_item(ctx, base, const(name), news)
+        for obj in base.objects if name == "**" else ():
+            sizes.absorb(ctx, obj, news)
 
 
 def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: Frame, call: ir.Call) -> None:

@@ -11,7 +11,7 @@ from tarl_lint.interpret.dunder_methods import FUNCTIONS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import enumerations, recency
+from tarl_lint.memory import enumerations, heap, recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY
 from tarl_lint.memory.values import (
@@ -210,6 +210,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "eval": reflection.evaluated,
     **dict.fromkeys(containers.PIPES, containers.new_pipe),
     "dict": records.new_mapping,
+    heap.NAMESPACE: objects.namespace,
     "OrderedDict": records.new_mapping,
     "defaultdict": records.new_mapping,
     "Counter": records.new_mapping,

@@ -8,8 +8,8 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency, userdata
 from tarl_lint.memory.userdata import MACHINE_FIELD
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, lineage, pointer
-from tarl_lint.models import command_line, containers
+from tarl_lint.memory.values import BOTTOM, BY_CLASS, UNKNOWN, Obj, Value, lineage, pointer
+from tarl_lint.models import command_line, containers, sizes
 
 MESSAGE_MODULE = ".msg."  # part of the name of every message class
 
@@ -20,6 +20,19 @@ def blank_object(ctx: Interpreter, it: Invocation) -> Value:
     if ctx.class_made is not None and any(map(metaclasses.makes_classes, classes)):
         return pointer(ctx.class_made)
     return Value(pts=frozenset(call_contexts.blank_instance(ctx, c, it.frame, it.call) for c in classes))
+
+
+def namespace(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the value of `SimpleNamespace(...)`: an object with the keyword arguments as attributes."""
+    plain, named = it.arguments
+    obj = recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
+    obj.name, obj.info = heap.NAMESPACE, BY_CLASS
+    for value in (*plain, *(value for name, value in named.items() if name == "**")):
+        sizes.absorb(ctx, obj, value)
+    for name, value in named.items():
+        if name != "**":
+            ctx.store.put((obj, name), value)
+    return pointer(obj)
 
 
 def weak_reference(ctx: Interpreter, it: Invocation) -> Value:

@@ -250,7 +250,10 @@ def new_mapping(ctx: Interpreter, it: Invocation) -> Value:
         elif value.pts:
             entries(ctx, obj, value)
     for key, value in named.items():
-        ctx.store.put((obj, item_field(key)), value)
+        if key == "**":
+            entries(ctx, obj, value)
+        else:
+            ctx.store.put((obj, item_field(key)), value)
     if factory is not None:
         obj.describe(factory)
     return pointer(obj)
