@@ -7,8 +7,9 @@ from typing import Final
 from tarl_lint.interpret import dunder_methods
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap
+from tarl_lint.memory import heap, joins
 from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import BOTTOM, Obj, Value, const, join, lineage, pointer
 
 METHODS: Final = frozenset(["__get__", "__set__", "__set_name__", "__setattr__"])
@@ -50,6 +51,34 @@ def write(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, 
             given = [pointer(obj), value]
             done |= dunder_methods.special(ctx, pointer(descriptor), "__set__", given, frame, pos) is not None
     return done
+
+
+def write_some(ctx: Interpreter, base: Value, value: Value, frame: Frame, pos: ir.Pos) -> None:
+    """Pass a value to one of the descriptors and properties of a class, if the name of the attribute is unknown."""
+    deltas: list[Delta] = [{}]
+    for obj in base.objects:
+        for owner in lineage(obj.info) if obj.kind == "instance" and isinstance(obj.info, Obj) else ():
+            ctx.store.reads.look(owner)
+            for name in [n.removesuffix(".setter") for n in owner.fields if _may_set(ctx, owner, n)]:
+                ctx.store.push()
+                write(ctx, pointer(obj), name, value, frame, pos)
+                deltas.append(ctx.store.pop())
+    if len(deltas) > 1:
+        joins.merge(ctx, deltas)
+
+
+def _may_set(ctx: Interpreter, owner: Obj, field: str) -> bool:
+    """Return whether an attribute of a class is the setter of a property, or a descriptor."""
+    if field.endswith(".setter"):
+        return True
+    held = ctx.store.get((owner, field)) if _used(ctx, "__set__") else None
+    classes = [o.info for o in held.objects if o.kind == "instance"] if held is not None else []
+    return any(
+        ctx.store.get((c, "__set__")) is not None
+        for cls in classes
+        if isinstance(cls, Obj)
+        for c in lineage(cls)
+    )
 
 
 def _set_property(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, pos: ir.Pos) -> bool:

@@ -10,7 +10,7 @@ from tarl_lint.catalog import fact
 from tarl_lint.interpret import descriptors, dunder_methods, literals, operators, short_circuits
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import enumerations, generations, heap, recency
+from tarl_lint.memory import enumerations, generations, heap, properties, recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, GIVEN_KEYS
 from tarl_lint.memory.values import (
@@ -120,11 +120,7 @@ def read_attribute(ctx: Interpreter, base: Value, expr: ir.Attribute, frame: Fra
 def is_property(method: Obj) -> bool:
     """Return whether a bound method is a property's getter."""
     function = function_of(method)
-    return function is not None and any(
-        (isinstance(d, ir.Name) and d.name in ("property", "cached_property"))
-        or (isinstance(d, ir.Attribute) and d.name in ("cached_property", "getter"))
-        for d in function.decorators
-    )
+    return function is not None and properties.is_property(function)
 
 
 def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:

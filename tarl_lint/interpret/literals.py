@@ -85,6 +85,8 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
     limit = MAX_ENTRIES if ctx.thorough else MAX_ROWS if registers else MAX_EACH
     if single and not expr.loops[0][2] and known and len(known) <= limit:
         return _one_by_one_of(ctx, expr, known, frame)
+    if single and known and any(o.name == heap.MEMBERS for o in first.pts):
+        return _one_by_one_of(ctx, expr, known, frame, heap.MEMBERS)
     if registers and (different := rows.of(ctx, first)):
         return _of_rows(ctx, expr, different, sizes.length(ctx, first), frame)
     if single and expr.key is None and ctx.exact and known and (chosen := _selected(ctx, expr, known, frame)):
@@ -121,20 +123,35 @@ def _makes_objects(ctx: Interpreter, value: Value) -> bool:
     return any(o.kind in AGING and o.kind != "lib" and (o, BORN) in made for o in value.pts)
 
 
-def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value], frame: Frame) -> Value:
-    """Unroll a comprehension over few known elements; return the sequence or mapping that it makes."""
+def _one_by_one_of(
+    ctx: Interpreter, expr: ir.Comprehension, known: list[Value], frame: Frame, name: str = ""
+) -> Value:
+    """Unroll a comprehension over few known elements; return the sequence or mapping that it makes.
+
+    `name` is that of the sequence. The caller makes sure that an element whose condition is unknown may be kept.
+    """
     kind = "mapping" if expr.key is not None else "sequence"
     obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
-    turn = frame.turn
+    obj.name = name or obj.name
+    turn, (target, _, conditions) = frame.turn, expr.loops[0]
+    length, count = NONE, 0
     for number, value in enumerate(known):
         frame.turn = (*turn, expr.slot, number)
-        ctx.ops.assign(ctx, expr.loops[0][0], value, frame)
+        ctx.ops.assign(ctx, target, value, frame)
+        tests = [ctx.ops.evaluate(ctx, condition, frame) for condition in conditions]
+        if any(known and not said for known, said in (test.constant() for test in tests)):
+            continue
+        gate = ctx.ops.gate(ctx, NONE.union(*map(ctx.use, tests)), frame, expr.slot) if tests else NONE
         element = ctx.ops.evaluate(ctx, expr.element, frame)
+        element = Value(element.deps | gate, element.pts, element.consts)
         if expr.key is None:
-            ctx.store.put((obj, item_field(number)), element)
+            ctx.store.put((obj, item_field(count)), element)
         else:
             updates.write_item(ctx, pointer(obj), ctx.ops.evaluate(ctx, expr.key, frame), element)
+        length, count = length | gate, count + 1
     frame.turn = turn
+    if length:
+        ctx.store.put((obj, LENGTH), Value(length))
     return pointer(obj)
 
 

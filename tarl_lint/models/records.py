@@ -23,6 +23,7 @@ from tarl_lint.memory.values import (
     const,
     in_order,
     join,
+    join_all,
     lineage,
     pointer,
 )
@@ -154,6 +155,17 @@ def _put(ctx: Interpreter, obj: Obj, name: str, value: Value) -> None:
         updates.weaken(ctx, obj, name, value)
     else:
         ctx.store.put((obj, name), value)
+
+
+def _made_of(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the named tuple made by `cls._make(values)`."""
+    given = it.arguments[0][0] if it.arguments[0] else UNKNOWN
+    known = calls.one_by_one(ctx, given)
+    fields: Arguments = (known, {}) if known is not None else ([], {"*": heap.elements(ctx, given)})
+    classes = [o.info if o.kind == "instance" else o for o in it.base.objects]
+    return join_all(
+        calls.call_value(ctx, pointer(c), fields, it.frame, it.call) for c in classes if isinstance(c, Obj)
+    )
 
 
 def as_mapping(ctx: Interpreter, it: Invocation) -> Value:
@@ -347,5 +359,6 @@ def _named_tuple(cls: object) -> bool:
 RECORDS: Final = {
     "copy": _read_copy,
     "_replace": replaced_record,
+    "_make": _made_of,
     "_asdict": as_mapping,
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from types import GeneratorType
+from types import FunctionType, GeneratorType, MethodType
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
@@ -29,6 +29,7 @@ BUILT_IN = {
     "mapping": frozenset(dir(dict)),
     "publisher": frozenset(["publish", "get_num_connections", "unregister", "topic", "topic_name", "name"]),
 }
+SPECIAL = frozenset([*dir(FunctionType), *dir(MethodType)])  # attributes of all functions and methods
 NOT_CALLABLE = frozenset(["sequence", "mapping", "message", "publisher"])
 
 
@@ -92,11 +93,17 @@ def has_attribute(ctx: Interpreter, it: Invocation) -> Value:
 
 def lacks(ctx: Interpreter, value: Value, name: str) -> bool:
     """Return whether all possible objects of a value certainly have no attribute of this name."""
-    if value.deps or name.startswith("__") or not (value.pts or value.keys()):
+    special = name.startswith("__") and not all(_own_special(obj, name) for obj in value.objects)
+    if value.deps or special or not (value.pts or value.keys()):
         return False
     return not any(hasattr(constant, name) for constant in value.keys() or ()) and all(
         _lacks(ctx, obj, name) for obj in value.objects
     )
+
+
+def _own_special(obj: Obj, name: str) -> bool:
+    """Return whether only analysed code gives an object an attribute with such a name, as `__port__` of functions."""
+    return obj.kind in ("closure", "bound") and name not in SPECIAL
 
 
 def _lacks(ctx: Interpreter, obj: Obj, name: str) -> bool:

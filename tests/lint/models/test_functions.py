@@ -102,6 +102,11 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME([("a", msg.data), ("b", 0.0)])["b"])  # clean
         out.publish(NAME([("a", 0.0), ("b", msg.data)])["b"])  # data
     """,
+    ("types.SimpleNamespace",): """
+        kept = NAME(b=0.0, **{"a": msg.data})
+        out.publish(kept.a)  # data
+        out.publish(kept.b)  # clean
+    """,
     ("defaultdict",): """
         kept = NAME(list, {"a": [0.0]})
         kept["b"].append(msg.data)

@@ -22,6 +22,24 @@ READ: dict[tuple[str, ...], str] = {
         out.publish(kept.NAME(0))  # data
         out.publish(kept.NAME(1))  # clean
     """,
+    ("__get__",): """
+        class Kept:
+            pass
+        def held(self):
+            return self.value
+        one, two = Kept(), Kept()
+        one.value, two.value = msg.data, 0.0
+        out.publish(held.NAME(one)())  # data
+        out.publish(held.NAME(two, Kept)())  # clean
+    """,
+    ("_make",): """
+        Pair = collections.namedtuple("Pair", "a b")
+        out.publish(Pair.NAME([msg.data, 0.0]).a)  # data
+        out.publish(Pair.NAME([msg.data, 0.0]).b)  # clean
+        out.publish(Pair(1.0, 2.0).NAME([0.0, msg.data]).b)  # data
+        out.publish(Pair.NAME(x for x in msg.data).b)  # data
+        out.publish(Pair.NAME(x for x in range(2)).b)  # clean
+    """,
     ("__setitem__",): """
         kept = [0.0, 0.0]
         kept.NAME(0, msg.data)
