@@ -12,7 +12,7 @@ from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.heap import RESULT, item_field
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join, pointer
-from tarl_lint.models import containers, context_managers, reflection
+from tarl_lint.models import containers, context_managers
 from tarl_lint.models.containers import READERS as CONTAINER_READERS
 from tarl_lint.models.records import RECORDS
 
@@ -96,5 +96,4 @@ READERS: Final[Mapping[str, Callable[..., Value]]] = {
     "enter_context": context_managers.put_on_stack,
     "enter_async_context": context_managers.put_on_stack,
     "set_result": _set_result,
-    "__get__": reflection.bound_by_get,
 }

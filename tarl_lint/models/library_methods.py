@@ -31,6 +31,7 @@ from tarl_lint.models import (
     environment,
     filling,
     fixed_numbers,
+    logging_handlers,
     objects,
     qt_signals,
     reflection,
@@ -77,7 +78,7 @@ def call_method(
 
 
 def _of_run_order(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
-    """Call a method of a client of a blackboard, or one that adds a part to a machine or tree; None for others."""
+    """Call a method of a blackboard's client or a logger, or one that adds a part to a machine; None for others."""
     if target.kind == CLIENT:
         return blackboards.call(ctx, target, it)
     if it.name == blackboards.ATTACHES and target.kind == "instance":
@@ -86,7 +87,7 @@ def _of_run_order(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None
         return behaviour_trees.add(ctx, target, it)
     if it.name in smach.ADDS and smach.holds_states(ctx, target):
         return smach.call(ctx, target, it)
-    return None
+    return logging_handlers.call(ctx, target, it)
 
 
 def _call_method(
@@ -254,6 +255,7 @@ def _built_by_base(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
         given = [Value(it.base.deps, frozenset([target.info[1]])), *plain]
         return reflection.set_attribute(ctx, replace(it, arguments=(given, named)))
     if isinstance(target.info, tuple):
+        logging_handlers.note_level(ctx, target.info[1], it.arguments)
         senders.inherit(ctx, target.info[1], it.arguments, it.frame, it.call)
         behaviour_trees.inherit(ctx, target.info[1], it)
         behaviour_subscribers.inherit(ctx, target.info[1], it)

@@ -356,9 +356,17 @@ def _named_tuple(cls: object) -> bool:
     return any(isinstance(i, ClassInfo) and (i.named or "typing.NamedTuple" in i.external) for i in infos)
 
 
+def _bound_by_get(ctx: Interpreter, it: Invocation) -> Value:
+    """Return `function.__get__(obj)`."""
+    receivers = [o for v in it.arguments[0][:1] for o in v.objects if o.kind == "instance"]
+    ways = [heap.bind(ctx, it.base, o, o.info) for o in receivers if isinstance(o.info, Obj)]
+    return join_all(ways) if ways else it.base
+
+
 RECORDS: Final = {
     "copy": _read_copy,
     "_replace": replaced_record,
     "_make": _made_of,
+    "__get__": _bound_by_get,
     "_asdict": as_mapping,
 }

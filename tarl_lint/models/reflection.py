@@ -82,11 +82,6 @@ def bound_method(ctx: Interpreter, it: Invocation) -> Value:
     return join_all(ways) if ways else function
 
 
-def bound_by_get(ctx: Interpreter, it: Invocation) -> Value:
-    """Return `function.__get__(obj)`."""
-    return bound_method(ctx, replace(it, arguments=([it.base, *it.arguments[0][:1]], {})))
-
-
 def member_names(ctx: Interpreter, it: Invocation) -> Value:
     """Return `dir(obj)`: the names of the attributes of an object of an analysed class, without special ones."""
     found = _members(ctx, it.arguments[0])

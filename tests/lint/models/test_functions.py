@@ -102,6 +102,22 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME([("a", msg.data), ("b", 0.0)])["b"])  # clean
         out.publish(NAME([("a", 0.0), ("b", msg.data)])["b"])  # data
     """,
+    ("logging.getLogger",): """
+        class Kept(logging.Handler):
+            def emit(self, record):
+                out.publish(record.getMessage())  # data
+        NAME("a").addHandler(Kept())
+        NAME("a.b").warning("%s", msg.data)
+    """,
+    ("logging.Handler.__init__",): """
+        class Kept(logging.Handler):
+            def __init__(self, level):
+                NAME(self, level)
+            def emit(self, record):
+                out.publish(record.getMessage())  # data
+        logging.getLogger("a").addHandler(Kept(logging.INFO))
+        logging.getLogger("a").info("%s", msg.data)
+    """,
     ("types.SimpleNamespace",): """
         kept = NAME(b=0.0, **{"a": msg.data})
         out.publish(kept.a)  # data
