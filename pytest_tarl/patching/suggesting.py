@@ -17,7 +17,7 @@ from pytest_tarl.patching.patch import BASE, SEAL
 from pytest_tarl.patching.reading import Patch
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
-RULE = "TARL301"
+RULE = "tarl-repair"  # the ids TARL001 to TARL999 belong to tarl-lint
 ROOT = "%SRCROOT%"  # GitHub resolves this to the top of the repository
 _TOLD = ("designed", "drifted", "drifted and repaired", "designed and repaired")
 

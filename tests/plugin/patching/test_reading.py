@@ -24,7 +24,9 @@ from pytest_tarl.patching.patch import (
     write,
     write_partial,
 )
+from tarl_lint.explain import known_rules
 
+ROOT = Path(__file__).parent.parent.parent.parent
 LINES = st.lists(st.sampled_from(["a = 1", "b = 2", "-- c", "++ d", "@@ e", "\\ f", ""]), max_size=12)
 TEXTS = st.tuples(LINES, st.sampled_from(["", "\n"])).map(lambda made: "\n".join(made[0]) + made[1])
 
@@ -79,6 +81,12 @@ def result(found: reading.Patch) -> dict[str, Any]:
     (one,) = run["results"]
     assert run["tool"]["driver"]["rules"][one["ruleIndex"]]["id"] == one["ruleId"]
     return dict(one)
+
+
+def test_the_rule_of_a_repair_is_documented_and_no_rule_of_the_linter(tmp_path: Path) -> None:
+    rule = result(patch(tmp_path, NODE, NODE.replace("y = 2", "y = 4")))["ruleId"]
+    assert rule not in known_rules()
+    assert f"the rule `{rule}`" in (ROOT / "docs" / "ci.md").read_text()
 
 
 def test_a_result_is_located_at_the_last_change_that_removes_lines(tmp_path: Path) -> None:
