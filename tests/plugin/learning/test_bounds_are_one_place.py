@@ -16,6 +16,10 @@ HOME = {f"learning/{name}.py" for name in (*PARTS, "bounds")}
 DIRECTIONS = {
     "stressing/spreading.py"
 }  # turns numbers into directions by normal quantiles, without an interval
+NO_INTERVALS = {  # findings of the check that are no parts of an interval
+    "searching/laws.py": ["1.28"],  # a ratio of powers, about 1.13 squared
+    "stressing/noise.py": ["the spread of a mean"],  # compares the precision of paired and unpaired tests
+}
 QUANTILES = {
     "NormalDist",
     "inv_cdf",
@@ -84,8 +88,8 @@ def test_intervals_are_computed_only_in_the_module_bounds() -> None:
     modules = {path.relative_to(PACKAGE).as_posix(): path for path in PACKAGE.rglob("*.py")}
     assert modules.keys() >= HOME
     found = {
-        name: told
+        name: [one.partition(": ")[2] for one in told]
         for name, path in modules.items()
         if name not in HOME | DIRECTIONS and (told := [*computed(path.read_text("utf-8"))])
     }
-    assert found == {}
+    assert found == NO_INTERVALS
