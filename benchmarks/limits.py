@@ -3,7 +3,8 @@
 `python benchmarks/limits.py` runs each case at increasing sizes, each in its own process. The script prints
 CPU seconds and the peak of resident memory, in total and per unit. `--share 1` runs up to 10⁶ messages per
 episode, messages of 100 MB, 10,000 sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The
-exit status is 1 if time or memory per unit more than triples from the second size to the last.
+exit status is 1 if time or memory per unit more than triples from the second size to the last, or from the first to the
+second if there are only two.
 """
 
 from __future__ import annotations
@@ -233,8 +234,9 @@ def main() -> None:
                 f"| {name} | {size:,} | {seconds:.2f} | {top:.0f} | {rows[-1][0]:.4g} | {rows[-1][1]:.3g} | {told} |",
                 flush=True,
             )
-        if len(rows) > 2 and any(
-            last > WORSE * max(second, 1e-3) for second, last in zip(rows[1], rows[-1], strict=True)
+        if len(rows) > 1 and any(
+            last > WORSE * max(before, 1e-3)
+            for before, last in zip(rows[min(1, len(rows) - 2)], rows[-1], strict=True)
         ):
             worse.append(name)
     if worse:
