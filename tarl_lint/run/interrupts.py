@@ -23,10 +23,11 @@ def uninterrupted() -> Iterator[None]:
 
 
 def end_silently() -> None:
-    """Make Ctrl-C end this process without a traceback."""
+    """Make Ctrl-C end this process without a traceback, unless it ignores Ctrl-C, as a job in the background does."""
     import signal
 
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 

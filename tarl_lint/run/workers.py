@@ -38,9 +38,13 @@ def in_processes(
         pool = _pool(workers)
         if pool is None:
             return None
-        with uninterrupted(), _safe_path():
-            chunk = 1 + len(work) // (workers * 16)
-            done = pool.map(perform, [work[number] for number in order], chunksize=chunk)
+        try:
+            with uninterrupted(), _safe_path():
+                chunk = 1 + len(work) // (workers * 16)
+                done = pool.map(perform, [work[number] for number in order], chunksize=chunk)
+        except BaseException:
+            _end(pool)
+            raise
     with pool:
         try:
             answers = dict(zip(order, done, strict=True))
@@ -63,13 +67,17 @@ def _pool(workers: int) -> ProcessPoolExecutor | None:
 
 
 def _end(pool: ProcessPoolExecutor) -> None:
-    """End a pool without waiting for its tasks, and give its own thread a moment to end.
+    """End a pool and its processes without waiting for tasks, and give its own thread a moment to end.
 
-    If that thread closes its pipe while the interpreter ends, Python 3.11 writes to the closed pipe and prints a
-    traceback. The thread ends at once unless a task is still running.
+    A process that did not get the Ctrl-C would continue its task, and the interpreter would wait for it. If the thread
+    closes its pipe while the interpreter ends, Python 3.11 writes to the closed pipe and prints a traceback. The thread
+    ends at once unless a task is still running.
     """
     thread = getattr(pool, "_executor_manager_thread", None)
+    processes = dict(getattr(pool, "_processes", None) or {})
     pool.shutdown(wait=False, cancel_futures=True)
+    for process in processes.values():
+        process.terminate()
     if thread is not None:
         thread.join(MOMENT)
 

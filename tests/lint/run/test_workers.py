@@ -130,6 +130,9 @@ def test_an_interrupt_waits_until_the_processes_have_started():
         assert got == [signal.SIGINT]
         over()
         assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+        end_silently()  # a job in the background ignores Ctrl-C, and its processes do, too
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         with uninterrupted():
             end_silently()
             assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, set())
