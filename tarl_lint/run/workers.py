@@ -38,19 +38,11 @@ def in_processes(
         pool = _pool(workers)
         if pool is None:
             return None
-        try:
-            with uninterrupted(), _safe_path():
-                chunk = 1 + len(work) // (workers * 16)
-                done = pool.map(perform, [work[number] for number in order], chunksize=chunk)
-        except BaseException:
-            _end(pool)
-            raise
-    with pool:
-        try:
-            answers = dict(zip(order, done, strict=True))
-        except BaseException:
-            _end(pool)
-            raise
+        with _ending(pool), uninterrupted(), _safe_path():
+            chunk = 1 + len(work) // (workers * 16)
+            done = pool.map(perform, [work[number] for number in order], chunksize=chunk)
+    with pool, _ending(pool):
+        answers = dict(zip(order, done, strict=True))
     return [answers[number] for number in range(len(work))]
 
 
@@ -64,6 +56,16 @@ def _pool(workers: int) -> ProcessPoolExecutor | None:
         return ProcessPoolExecutor(workers, context, end_silently)
     except (ImportError, NotImplementedError, OSError):  # raised if the system has no semaphores
         return None
+
+
+@contextmanager
+def _ending(pool: ProcessPoolExecutor) -> Iterator[None]:
+    """End a pool after an error or Ctrl-C."""
+    try:
+        yield
+    except BaseException:
+        _end(pool)
+        raise
 
 
 def _end(pool: ProcessPoolExecutor) -> None:
