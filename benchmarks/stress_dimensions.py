@@ -43,13 +43,13 @@ sys.path[:0] = [str(HERE / "drift"), str(HERE)]
 from peers import Cma  # noqa: E402
 from stage import TASKS, Stage, visit  # noqa: E402
 from stress import nominal_of  # noqa: E402
+from stress_machines import Machine  # noqa: E402
 from stress_worlds import TOLERANCE, WORLDS, Formula, World, harmless  # noqa: E402
 from stress_worlds import space as world_space  # noqa: E402
 from stress_worlds_2 import FRESH_WORLDS  # noqa: E402
 from stress_worlds_3 import NEW_WORLDS  # noqa: E402
 from stress_worlds_4 import FOURTH_WORLDS, QUIET_WORLDS  # noqa: E402
 from stress_worlds_5 import MACHINES as FIFTH_MACHINES  # noqa: E402
-from stress_worlds_5 import Machine  # noqa: E402
 from stress_worlds_6 import QUIET_MACHINES, SIXTH_MACHINES  # noqa: E402
 from stress_worlds_7 import SEVENTH_MACHINES  # noqa: E402
 from stress_worlds_8 import EIGHTH_MACHINES  # noqa: E402

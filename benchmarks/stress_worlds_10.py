@@ -11,12 +11,11 @@ regions, and one of its directions is a choice.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from math import cos, exp, pi, sin, sqrt
 
 import numpy as np
-from stress_worlds_5 import Machine, clipped, told
+from stress_machines import Machine, clipped, command
 
 from pytest_tarl.spaces import Choice, Span
 
@@ -221,15 +220,5 @@ TENTH_MACHINES: Mapping[str, Machine] = {
 }
 
 
-def main() -> None:
-    """Print for each machine how safe nominal is, and how many random drifts fail."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("machines", nargs="*", metavar="MACHINE", help="default: all")
-    parser.add_argument("--drifts", type=int, default=400, help="random drifts of each machine")
-    arguments = parser.parse_args()
-    for chosen in arguments.machines or TENTH_MACHINES:
-        print(told(chosen, TENTH_MACHINES[chosen], arguments.drifts), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    command(TENTH_MACHINES)

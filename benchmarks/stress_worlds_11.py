@@ -10,12 +10,11 @@ a share of failures that grows slowly; `drillstring` has two failing regions, an
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from math import exp, hypot, pi, sin, sqrt
 
 import numpy as np
-from stress_worlds_5 import GRAVITY, Machine, clipped, told
+from stress_machines import GRAVITY, Machine, clipped, command
 
 from pytest_tarl.spaces import Choice, Span
 
@@ -233,15 +232,5 @@ ELEVENTH_MACHINES: Mapping[str, Machine] = {
 }
 
 
-def main() -> None:
-    """Print for each machine how safe nominal is, and how many random drifts fail."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("machines", nargs="*", metavar="MACHINE", help="default: all")
-    parser.add_argument("--drifts", type=int, default=400, help="random drifts of each machine")
-    arguments = parser.parse_args()
-    for chosen in arguments.machines or ELEVENTH_MACHINES:
-        print(told(chosen, ELEVENTH_MACHINES[chosen], arguments.drifts), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    command(ELEVENTH_MACHINES)

@@ -10,12 +10,11 @@ on both sides of a valley; `tape_library` fails by chance, as its queue grows; `
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from math import exp, pi, sqrt
 
 import numpy as np
-from stress_worlds_5 import GRAVITY, Machine, clipped, told
+from stress_machines import GRAVITY, Machine, clipped, command
 
 from pytest_tarl.spaces import Choice, Span
 
@@ -451,16 +450,5 @@ TWELFTH_QUIET: Mapping[str, Machine] = {  # machines that pass everywhere in the
 }
 
 
-def main() -> None:
-    """Print for each machine how safe nominal is, and how many random drifts fail."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("machines", nargs="*", metavar="MACHINE", help="default: all")
-    parser.add_argument("--drifts", type=int, default=400, help="random drifts of each machine")
-    arguments = parser.parse_args()
-    every = {**TWELFTH_MACHINES, **TWELFTH_QUIET}
-    for chosen in arguments.machines or every:
-        print(told(chosen, every[chosen], arguments.drifts), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    command({**TWELFTH_MACHINES, **TWELFTH_QUIET})

@@ -12,12 +12,11 @@ stress_worlds_12.py. The file was complete before any search ran on it.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from math import cos, exp, hypot, pi, sin, sqrt
 
 import numpy as np
-from stress_worlds_5 import Machine, clipped, told
+from stress_machines import Machine, clipped, command
 
 from pytest_tarl.spaces import Choice, Span
 
@@ -366,16 +365,5 @@ THIRTEENTH_QUIET: Mapping[str, Machine] = {  # machines that pass everywhere in 
 }
 
 
-def main() -> None:
-    """Print for each machine how safe nominal is, and how many random drifts fail."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("machines", nargs="*", metavar="MACHINE", help="default: all")
-    parser.add_argument("--drifts", type=int, default=400, help="random drifts of each machine")
-    arguments = parser.parse_args()
-    every = {**THIRTEENTH_MACHINES, **THIRTEENTH_QUIET}
-    for chosen in arguments.machines or every:
-        print(told(chosen, every[chosen], arguments.drifts), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    command({**THIRTEENTH_MACHINES, **THIRTEENTH_QUIET})

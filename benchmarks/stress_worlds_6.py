@@ -10,13 +10,12 @@ write for it. The docstring of a mission gives the model, the controller and wha
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from dataclasses import replace
 from math import atan, atan2, copysign, cos, degrees, exp, hypot, pi, radians, sin, sqrt
 
 import numpy as np
-from stress_worlds_5 import GRAVITY, Machine, clipped, told
+from stress_machines import GRAVITY, Machine, clipped, command
 
 from pytest_tarl.spaces import Span
 
@@ -326,14 +325,5 @@ QUIET_MACHINES: Mapping[str, Machine] = {
 }  # worlds in which no point of the ranges breaks the guarantee
 
 
-def main() -> None:
-    """Print for each machine how safe nominal is, and how many random drifts fail."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("machines", nargs="*", metavar="MACHINE", help="default: all")
-    every = {**SIXTH_MACHINES, **QUIET_MACHINES}
-    for chosen in parser.parse_args().machines or every:
-        print(told(chosen, every[chosen]), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    command({**SIXTH_MACHINES, **QUIET_MACHINES})

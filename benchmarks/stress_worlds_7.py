@@ -11,12 +11,11 @@ failures become frequent only slowly, one failing region is narrow, and one dire
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from math import asinh, cos, exp, log, pi, sin, sqrt
 
 import numpy as np
-from stress_worlds_5 import GRAVITY, Machine, clipped, told
+from stress_machines import GRAVITY, Machine, clipped, command
 
 from pytest_tarl.spaces import Span
 
@@ -303,13 +302,5 @@ SEVENTH_MACHINES: Mapping[str, Machine] = {
 }
 
 
-def main() -> None:
-    """Print for each machine how safe nominal is, and how many random drifts fail."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("machines", nargs="*", metavar="MACHINE", help="default: all")
-    for chosen in parser.parse_args().machines or SEVENTH_MACHINES:
-        print(told(chosen, SEVENTH_MACHINES[chosen]), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    command(SEVENTH_MACHINES)

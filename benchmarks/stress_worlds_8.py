@@ -10,12 +10,11 @@ five directions.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from math import exp, pi, sqrt
 
 import numpy as np
-from stress_worlds_5 import GRAVITY, Machine, clipped, told
+from stress_machines import GRAVITY, Machine, clipped, command
 
 from pytest_tarl.spaces import Choice, Span
 
@@ -206,13 +205,5 @@ EIGHTH_MACHINES: Mapping[str, Machine] = {
 }
 
 
-def main() -> None:
-    """Print for each machine how safe nominal is, and how many random drifts fail."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("machines", nargs="*", metavar="MACHINE", help="default: all")
-    for chosen in parser.parse_args().machines or EIGHTH_MACHINES:
-        print(told(chosen, EIGHTH_MACHINES[chosen]), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    command(EIGHTH_MACHINES)

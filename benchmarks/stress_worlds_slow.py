@@ -8,12 +8,11 @@ conventions are those of stress_worlds_5.py.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from math import exp, sqrt
 
 import numpy as np
-from stress_worlds_5 import Machine, clipped, told
+from stress_machines import Machine, clipped, command
 
 from pytest_tarl.spaces import Span
 
@@ -192,13 +191,5 @@ SLOW_MACHINES: Mapping[str, Machine] = {
 }
 
 
-def main() -> None:
-    """Print for each machine how safe nominal is, and how many random drifts fail."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("machines", nargs="*", metavar="MACHINE", help="default: all")
-    for chosen in parser.parse_args().machines or SLOW_MACHINES:
-        print(told(chosen, SLOW_MACHINES[chosen]), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    command(SLOW_MACHINES)
