@@ -7,7 +7,7 @@ a function that returns a closure, which calls the function: `self.state = self.
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterator
 from typing import Final
 
 from tarl_lint.interpret.interpreter import Interpreter
@@ -46,16 +46,8 @@ def site_of(cls: Obj, frame: Frame, call: ir.Call) -> Hashable:
 
 def _makers(ctx: Interpreter, frame: Frame) -> Chain:
     """Return the longest chain of the receivers of the methods that are running."""
-    longest: Chain = ()
-    inner: Frame | None = frame
-    while inner is not None:
-        receiver = inner.key[4] if isinstance(inner.key, tuple) and len(inner.key) > 4 else None
-        for obj in in_order(receiver) if isinstance(receiver, frozenset) else ():
-            chain: Chain = ctx.chains.get(obj, ())
-            if len(chain) > len(longest):
-                longest = chain
-        inner = inner.caller
-    return longest
+    receivers = (obj for _, made in _running(frame) if isinstance(made, frozenset) for obj in in_order(made))
+    return max((ctx.chains.get(obj, ()) for obj in receivers), key=len, default=())
 
 
 def note_closure(ctx: Interpreter, closure: Obj, function: ir.Function, frame: Frame) -> None:
@@ -72,12 +64,13 @@ def too_many_closures(ctx: Interpreter, frame: Frame) -> bool:
 
 def _closures(ctx: Interpreter, frame: Frame) -> tuple[ir.Function, ...]:
     """Return the longest chain of the closures that are running."""
-    longest: tuple[ir.Function, ...] = ()
+    return max((ctx.closure_chains.get(key, ()) for key, _ in _running(frame)), key=len, default=())
+
+
+def _running(frame: Frame) -> Iterator[tuple[Hashable, Hashable]]:
+    """Yield the key of the closure and the receivers of each running call, innermost first."""
     inner: Frame | None = frame
     while inner is not None:
-        key = inner.key[3] if isinstance(inner.key, tuple) and len(inner.key) > 4 else None
-        chain = ctx.closure_chains.get(key, ())
-        if len(chain) > len(longest):
-            longest = chain
+        if isinstance(inner.key, tuple) and len(inner.key) > 4:
+            yield inner.key[3], inner.key[4]
         inner = inner.caller
-    return longest
