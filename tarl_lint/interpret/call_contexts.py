@@ -297,15 +297,13 @@ def blank_instance(ctx: Interpreter, cls: Obj, frame: Frame, call: ir.Call) -> O
 def _initialise(
     ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> None:
-    for owner in lineage(cls):
-        init = ctx.store.get((owner, "__init__"))
-        if init is not None:
-            ctx.building.append((obj, len(ctx.stack)))
-            ctx.ops.call_value(ctx, heap.bind(ctx, init, obj, owner), arguments, frame, call)
-            ctx.building.pop()
-            break
-    else:
+    init = heap.through_class(ctx, obj, cls, "__init__")
+    if init is None:
         ctx.ops.fill(ctx, obj, cls, arguments, frame, call)
+        return
+    ctx.building.append((obj, len(ctx.stack)))
+    ctx.ops.call_value(ctx, init, arguments, frame, call)
+    ctx.building.pop()
 
 
 def _handed(frame: Frame) -> list[Obj]:

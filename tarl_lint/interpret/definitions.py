@@ -9,7 +9,7 @@ from tarl_lint.interpret import calls, descriptors, expressions, metaclasses, si
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import control_dependence
-from tarl_lint.memory import enumerations, recency
+from tarl_lint.memory import enumerations, heap, recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.function_attributes import DECORATED, attribute_of
 from tarl_lint.memory.values import ClassInfo, Obj, Value, const, function_of, join, lineage, pointer
@@ -166,7 +166,7 @@ def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
 def _make_members(ctx: Interpreter, cls: Obj, statement: ir.Class, frame: Frame) -> None:
     """Call `__init__` for each marked member of an enumeration."""
     for number, (member, elements) in enumerate(enumerations.mark(ctx, cls)):
-        init = enumerations.initialiser(ctx, cls, member)
+        init = heap.through_class(ctx, member, cls, "__init__")
         if init is not None:
             call = ir.Call(ir.Const(None, statement.pos), (), (), statement.pos, -1 - number)
             ctx.ops.call_value(ctx, init, (elements, {}), frame, call)

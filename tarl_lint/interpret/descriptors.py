@@ -86,13 +86,11 @@ def _set_property(ctx: Interpreter, base: Value, name: str, value: Value, frame:
     done = False
     for obj in base.objects:
         cls = obj.info if obj.kind == "instance" else None
-        for owner in lineage(cls) if isinstance(cls, Obj) else ():
-            setter = ctx.store.get((owner, f"{name}.setter"))
-            if setter is not None:
-                call = ir.Call(ir.Const(None, pos), (), (), pos, dunder_methods.slot("__set__", pos))
-                ctx.ops.call_value(ctx, heap.bind(ctx, setter, obj, owner), ([value], {}), frame, call)
-                done = True
-                break
+        setter = heap.through_class(ctx, obj, cls, f"{name}.setter") if isinstance(cls, Obj) else None
+        if setter is not None:
+            call = ir.Call(ir.Const(None, pos), (), (), pos, dunder_methods.slot("__set__", pos))
+            ctx.ops.call_value(ctx, setter, ([value], {}), frame, call)
+            done = True
     return done
 
 

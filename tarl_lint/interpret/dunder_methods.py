@@ -9,7 +9,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, join, lineage
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, join
 
 METHOD_OF: Final[Mapping[str, str]] = {
     "+": "add", "-": "sub", "*": "mul", "/": "truediv", "//": "floordiv", "%": "mod", "**": "pow", "@": "matmul",
@@ -44,11 +44,8 @@ def special(
 
 
 def _special_method(ctx: Interpreter, obj: Obj, name: str) -> Value | None:
-    for owner in lineage(obj.info) if isinstance(obj.info, Obj) else ():
-        method = ctx.store.get((owner, name))
-        if method is not None:
-            return heap.bind(ctx, method, obj, owner) if method.pts else None
-    return None
+    method = heap.through_class(ctx, obj, obj.info, name) if isinstance(obj.info, Obj) else None
+    return method if method is not None and method.pts else None
 
 
 def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], frame: Frame) -> Value | None:

@@ -79,15 +79,6 @@ def _number(ctx: Interpreter, cls: Obj) -> list[tuple[str, Value]]:
     return found
 
 
-def initialiser(ctx: Interpreter, cls: Obj, member: Obj) -> Value | None:
-    """Return the `__init__` of an enumeration or of a base class, bound to a member; None if no class has one."""
-    for owner in lineage(cls):
-        init = ctx.store.get((owner, "__init__"))
-        if init is not None:
-            return heap.bind(ctx, init, member, owner)
-    return None
-
-
 def with_value(ctx: Interpreter, cls: Obj, value: Value) -> Value | None:
     """Return the marked member that `Class(value)` is; None if the value is not a known constant of such a member."""
     if not value.fixed() or value.deps:
@@ -173,12 +164,4 @@ def _attribute(ctx: Interpreter, member: Obj, name: str) -> Value:
     if name in NAMES:
         return const(own)
     stored = ctx.store.get((member, name))  # set by `__init__`
-    return stored if stored is not None else _inherited(ctx, member, cls, name)
-
-
-def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
-    for owner in lineage(cls):
-        value = ctx.store.get((owner, name))
-        if value is not None:
-            return heap.bind(ctx, value, obj, owner)
-    return Value()
+    return stored if stored is not None else heap.through_class(ctx, member, cls, name) or Value()

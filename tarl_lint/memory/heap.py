@@ -169,11 +169,10 @@ def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:
 
 
 def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
-    """Return a class attribute seen through an instance: functions become bound methods."""
-    for owner in lineage(cls):
-        value = ctx.store.get((owner, name))
-        if value is not None:
-            return bind(ctx, value, obj, owner)
+    """Return a class attribute seen through an instance, or else the content of the instance."""
+    found = through_class(ctx, obj, cls, name)
+    if found is not None:
+        return found
     if isinstance(cls.info, ClassInfo) and cls.info.opaque and not name.startswith("["):
         if name in METHODS:
             return held_method(ctx, obj, name)
@@ -184,6 +183,15 @@ def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
     for attributes in replaced_attributes(ctx, obj):
         result = join(result, read_field(ctx, attributes, item_field(name)))
     return result
+
+
+def through_class(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value | None:
+    """Return an attribute that a class or a base class defines, with functions bound to `obj`; None if none does."""
+    for owner in lineage(cls):
+        value = ctx.store.get((owner, name))
+        if value is not None:
+            return bind(ctx, value, obj, owner)
+    return None
 
 
 def replaced_attributes(ctx: Interpreter, obj: Obj) -> frozenset[Obj]:

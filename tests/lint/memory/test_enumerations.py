@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tarl_lint.memory import enumerations, recency
+from tarl_lint.memory import enumerations, heap, recency
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import ClassKey, Obj, Value, const, pointer
 from tests.lint.memory.test_heap import ONE, a_class, made
@@ -122,8 +122,8 @@ def test_the_initialiser_of_a_base_class_is_bound_to_the_member(ctx):
     base = a_class(ctx, "Named", external=("enum.Enum",))
     cls = a_class(ctx, "Level", base)
     member = made(ctx, "instance", "low")
-    assert enumerations.initialiser(ctx, cls, member) is None
+    assert heap.through_class(ctx, member, cls, "__init__") is None
     function = made(ctx, "closure", "init")
     ctx.store.put((base, "__init__"), pointer(function))
-    (bound,) = enumerations.initialiser(ctx, cls, member).pts
+    (bound,) = heap.through_class(ctx, member, cls, "__init__").pts
     assert bound.info[:2] == (function, member)
