@@ -66,10 +66,7 @@ def _number(ctx: Interpreter, cls: Obj) -> list[tuple[str, Value]]:
     last: object = 0
     flags = any(name.endswith("Flag") for name in _bases(cls))
     texts = "StrEnum" in _bases(cls)
-    for name in list(cls.fields):
-        value = ctx.store.get((cls, name)) if name.isidentifier() and not name.startswith("_") else None
-        if value is None:
-            continue
+    for name, value in _public(ctx, cls):
         if any(o.kind == "lib" and o.name == AUTO for o in value.pts):
             number = last if isinstance(last, int) else 0
             value = const(name.lower() if texts else max(2 * number, 1) if flags else number + 1)
@@ -77,6 +74,14 @@ def _number(ctx: Interpreter, cls: Obj) -> list[tuple[str, Value]]:
         last = value.constant()[1] if value.fixed() else last
         found.append((name, value))
     return found
+
+
+def _public(ctx: Interpreter, cls: Obj) -> Iterator[tuple[str, Value]]:
+    """Yield the names and values of a class's attributes, except those that begin with an underscore."""
+    for name in list(cls.fields):
+        value = ctx.store.get((cls, name)) if name.isidentifier() and not name.startswith("_") else None
+        if value is not None:
+            yield name, value
 
 
 def with_value(ctx: Interpreter, cls: Obj, value: Value) -> Value | None:
@@ -105,9 +110,8 @@ def members(ctx: Interpreter, cls: Obj) -> list[tuple[str, Value]] | None:
         return None
     ctx.store.look(cls)
     found: list[tuple[str, Value]] = []
-    for name in list(cls.fields):
-        value = ctx.store.get((cls, name)) if name.isidentifier() and not name.startswith("_") else None
-        if value is None or (value.pts and all(o.kind in FUNCTIONS for o in value.pts)):
+    for name, value in _public(ctx, cls):
+        if value.pts and all(o.kind in FUNCTIONS for o in value.pts):
             continue
         if not value.fixed() and not (value.pts and all(map(is_member, value.pts))):
             return None
