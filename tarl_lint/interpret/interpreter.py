@@ -222,20 +222,27 @@ class Interpreter:
     def _conditions(
         self, frame: Frame, statement: ir.Stmt, turns: Turns, but: ir.Loop | None = None
     ) -> Branches:
-        """Return the conditions of a statement, which do not include those inside the loop `but`."""
-        control = self.control(frame)
-        if not turns:
-            local = control.closure.get(statement.id, frozenset())
-            return frame.base | {self.branch(frame, b, ()) for b in local if but is None or not but.has(b[0])}
-        # earlier iterations of an unrolled loop may decide, but not later ones
-        around, (loop, number) = turns[:-1], turns[-1]
-        iteration = control.iteration(loop)
-        local = iteration.closure.get(statement.id, frozenset())
+        """Return the conditions of a statement, except those inside the loop `but`."""
+        whole = self.control(frame)
+        control = whole.iteration(turns[-1][0]) if turns else whole
+        local = control.closure.get(statement.id, frozenset())
         found = {self.branch(frame, b, turns) for b in local if but is None or not but.has(b[0])}
-        for before in range(number):
-            found |= {self.branch(frame, b, (*around, (loop, before))) for b in iteration.onward}
-        found.add(self.branch(frame, (loop.id, "body"), around))
-        return self._conditions(frame, loop, around, loop) | found
+        if not turns:
+            return frame.base | found
+        found.update(self.beginning(frame, turns))
+        loop, _ = turns[-1]
+        return self._conditions(frame, loop, turns[:-1], loop) | found
+
+    def beginning(self, frame: Frame, turns: Turns) -> list[tuple[int, str]]:
+        """Return the branches that decide whether the innermost of some iterations begins.
+
+        Earlier iterations of an unrolled loop may decide, but not later ones. The conditions of the loop itself are not
+        among the branches.
+        """
+        around, (loop, number) = turns[:-1], turns[-1]
+        onward = self.control(frame).iteration(loop).onward
+        found = [self.branch(frame, b, (*around, (loop, before))) for before in range(number) for b in onward]
+        return [*found, self.branch(frame, (loop.id, "body"), around)]
 
     def branch(self, frame: Frame, branch: Branch, turns: Turns | None = None) -> tuple[int, str]:
         """Return a branch of a function as seen in one of its frames, and in iterations of unrolled loops."""

@@ -10,7 +10,6 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.interpret.run_order import Part
 from tarl_lint.ir import nodes as ir
-from tarl_lint.ir.control_dependence import Control, Iteration
 from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame, Turns, inside
 from tarl_lint.memory.value_flow_graph import Place
@@ -143,26 +142,18 @@ def under(
     """
     turns = inside(statement, frame.turns if turns is None else turns)
     whole = ctx.control(frame)
-    control: Control | Iteration = whole.iteration(turns[-1][0]) if turns else whole
+    control = whole.iteration(turns[-1][0]) if turns else whole
     for branch in control.direct.get(statement.id, ()):
         if but is None or not but.has(branch[0]):
             decision, _ = ctx.branch(frame, branch, turns)
             ctx.graph.depend(node, (decision,))
             _reached(ctx, frame, whole.statements[branch[0]], node, turns)
     if turns:
-        _begun(ctx, frame, turns, node)
-    elif statement.id in control.always:
+        loop, _ = turns[-1]
+        ctx.graph.depend(node, [decision for decision, _ in ctx.beginning(frame, turns)])
+        under(ctx, frame, loop, node, turns[:-1], loop)
+    elif statement.id in whole.always:
         _entered(ctx, frame, node)
-
-
-def _begun(ctx: Interpreter, frame: Frame, turns: Turns, node: int) -> None:
-    """Make a node depend on the conditions under which an iteration of an unrolled loop begins."""
-    around, (loop, number) = turns[:-1], turns[-1]
-    onward = ctx.control(frame).iteration(loop).onward
-    decisions = [ctx.branch(frame, b, (*around, (loop, before))) for before in range(number) for b in onward]
-    decisions.append(ctx.branch(frame, (loop.id, "body"), around))
-    ctx.graph.depend(node, [decision for decision, _ in decisions])
-    under(ctx, frame, loop, node, around, loop)
 
 
 def _reached(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int, turns: Turns) -> None:
