@@ -8,7 +8,7 @@ from tarl_lint.interpret.annotated import named_types, written
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory.values import NO_CONSTANTS, Obj, Value, function_of, lineage
+from tarl_lint.memory.values import NO_CONSTANTS, Obj, Value, closure_of, function_of, lineage
 
 RECEIVERS = ("self", "cls")
 
@@ -33,7 +33,7 @@ def chosen(ctx: Interpreter, targets: list[Obj], arguments: Arguments) -> list[O
 
 def for_types(ctx: Interpreter, targets: list[Obj], known: Sequence[Sequence[str]]) -> list[Obj]:
     """Return the implementations for types, each of which is given with its base classes, the nearest first."""
-    registered = {one: types for one in targets if (types := ctx.dispatches.get(_function(one))) is not None}
+    registered = {one: types for one in targets if (types := ctx.dispatches.get(closure_of(one))) is not None}
     if not registered:
         return targets
     found: dict[Obj, None] = {}
@@ -44,10 +44,6 @@ def for_types(ctx: Interpreter, targets: list[Obj], known: Sequence[Sequence[str
             dict.fromkeys([first] if first is not None else [t for t in targets if t not in registered])
         )
     return list(found) or targets
-
-
-def _function(target: Obj) -> Obj:
-    return target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
 
 
 def _types(ctx: Interpreter, value: Value) -> list[list[str]] | None:

@@ -330,9 +330,15 @@ def inherited_from(value: Value) -> set[str]:
     return {e for i in infos if isinstance(i, ClassInfo) for e in i.external if "." in e and not _plain(e)}
 
 
+def closure_of(target: Obj) -> Obj:
+    """Return the function of a bound method; other objects themselves."""
+    found: Obj = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
+    return found
+
+
 def function_of(target: Obj) -> ir.Function | None:
     """Return the analysed function that a call of an object runs; None if unknown."""
-    closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
+    closure = closure_of(target)
     found = closure.info[0] if closure.kind == "closure" and isinstance(closure.info, tuple) else None
     return found if isinstance(found, ir.Function) else None
 

@@ -21,6 +21,7 @@ from tarl_lint.memory.values import (
     UNKNOWN,
     Obj,
     Value,
+    closure_of,
     pointer,
 )
 from tarl_lint.method_effects import fails, keeps_callables
@@ -101,7 +102,7 @@ def named_by_settings(ctx: Interpreter, target: Obj) -> str:
     """Return the qualified name of an analysed function or method that the settings mention; "" for others."""
     if not ctx.config.named:
         return ""
-    closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
+    closure = closure_of(target)
     if closure.kind != "closure" or not isinstance(closure.info, tuple):
         return ""
     function, _, program, _ = closure.info

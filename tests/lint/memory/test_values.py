@@ -17,6 +17,7 @@ from tarl_lint.memory.values import (
     Obj,
     Symbolic,
     Value,
+    closure_of,
     const,
     function_of,
     in_order,
@@ -232,6 +233,7 @@ def test_a_bound_method_has_the_function_of_its_closure(ctx):
     closure, bound = Obj("closure", "f"), Obj("bound", "f")
     closure.info = (program.function, None, program, None)
     bound.info = (closure, Obj("instance", "self"), None)
+    assert closure_of(bound) is closure_of(closure) is closure
     assert function_of(closure) is program.function
     assert function_of(bound) is program.function
     assert function_of(Obj("closure", "unknown")) is None
