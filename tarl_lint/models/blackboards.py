@@ -63,6 +63,12 @@ def _key(it: Invocation) -> Value:
     return plain[0] if plain else named.get("name", named.get("variable_name", UNKNOWN))
 
 
+def holder_of(ctx: Interpreter, client: Value, name: str) -> tuple[Value, str]:
+    """Return the objects that hold a key or a part of it, and the name of their field."""
+    *outer, last = name.split(".")
+    return (value_of(ctx, client, ".".join(outer)) if outer else client), last
+
+
 def value_of(ctx: Interpreter, client: Value, name: str) -> Value:
     """Return the value of a key, or of a part of it (`pose.position.x`)."""
     first, *parts = name.split(".")
@@ -84,8 +90,7 @@ def _write(ctx: Interpreter, client: Value, it: Invocation) -> Value:
     value = containers.through_statement(ctx, value, it.frame, it.call)
     names: Sequence[str] = _key(it).texts()
     for name in names:
-        *outer, last = name.split(".")
-        holder = value_of(ctx, client, ".".join(outer)) if outer else client
+        holder, last = holder_of(ctx, client, name)
         updates.write_field(ctx, holder, last, value)
     if not names:
         updates.add_element(ctx, pointer(blackboards.board(ctx)), value)

@@ -10,10 +10,10 @@ from typing import Final
 from tarl_lint import catalog
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
-from tarl_lint.memory import blackboards, heap, recency, updates
+from tarl_lint.memory import blackboards, recency, updates
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, inherited_from, join_all, pointer
 from tarl_lint.models import containers, parts
-from tarl_lint.models.blackboards import any_client, value_of
+from tarl_lint.models.blackboards import any_client, holder_of, value_of
 from tarl_lint.models.ros import subscriptions
 
 BATTERY: Final = "py_trees_ros.battery.ToBlackboard"
@@ -29,16 +29,13 @@ def behaviour(ctx: Interpreter, it: Invocation) -> Value:
     arriving = subscriptions.receive(ctx, it)
     if it.fact.api == CHECKS:
         node = ctx.node(it.frame, ("status", it.call.slot), "condition")
-        names = it.argument((4, "variable_name")).texts()
-        ctx.graph.flow(ctx.use(_field(ctx, arriving, names[0] if len(names) == 1 else "")), node)
+        ctx.graph.flow(ctx.use(_field(ctx, arriving, it.argument((4, "variable_name")))), node)
         ctx.graph.depend(node, [part.runs])
         part.answers[node] = None
         return pointer(made)
     for key, value in _entries(ctx, it, arriving):
         passed = containers.through_statement(ctx, value, it.frame, it.call, key)
-        *outer, last = key.split(".")
-        client = any_client(ctx)
-        holder = value_of(ctx, client, ".".join(outer)) if outer else client
+        holder, last = holder_of(ctx, any_client(ctx), key)
         for obj in holder.objects:
             held, field = (
                 blackboards.seen_through(ctx, obj, last) if obj.kind == blackboards.CLIENT else (obj, last)
@@ -62,15 +59,13 @@ def _entries(ctx: Interpreter, it: Invocation, arriving: Value) -> Iterator[tupl
         for name in list(table.fields):
             held = ctx.store.get((table, name)) if name.startswith("['") else None
             if held is not None:
-                texts = held.texts()
-                yield literal_eval(name[1:-1]), _field(ctx, arriving, texts[0] if len(texts) == 1 else "")
+                yield literal_eval(name[1:-1]), _field(ctx, arriving, held)
 
 
-def _field(ctx: Interpreter, value: Value, path: str) -> Value:
-    """Return a field of a message by its path, such as `pose.position`; the whole message if the path is empty."""
-    for name in path.split(".") if path else ():
-        value = heap.read(ctx, value, name)
-    return value
+def _field(ctx: Interpreter, message: Value, path: Value) -> Value:
+    """Return a field of a message by its path, such as `pose.position`; the whole message if the path is not known."""
+    names = path.texts()
+    return value_of(ctx, message, names[0]) if len(names) == 1 and names[0] else message
 
 
 def inherit(ctx: Interpreter, target: Obj, it: Invocation) -> None:
