@@ -206,10 +206,7 @@ class _Reader:
 
     def _param(self, element: Element, place: _Place, above: str) -> Setting | None:
         text = place.scope.text
-        stated = text(element.get("name", ""))
-        name = _parameter(
-            above, stated.lstrip("/") if above == "~" else stated
-        )  # a parameter inside a <node> is private
+        name = _param_name(above, text(element.get("name", "")))
         if "command" in element.attrib:
             raise SymbolicError(f"{name} is what a command prints on the robot")
         if "binfile" in element.attrib:
@@ -296,15 +293,17 @@ def _overridden(node: LaunchedNode, later: Iterable[Setting]) -> LaunchedNode:
 
 def _unset(param: Element, place: _Place, above: str) -> Setting:
     """Return a parameter whose value is known only on the robot."""
-    name = param.get("name", "")
-    return Setting(
-        _parameter(above, name.lstrip("/") if above == "~" else name), place.scope.file, unknown=True
-    )
+    return Setting(_param_name(above, param.get("name", "")), place.scope.file, unknown=True)
 
 
 def _perhaps(text: str, condition: str) -> str:
     """Return a string that counts under a condition; it is symbolic unless the condition is ""."""
     return f"$({text} {condition})" if condition else text
+
+
+def _param_name(above: str, name: str) -> str:
+    """Return the name of the parameter that a <param> sets; inside a <node>, it is private even with a slash."""
+    return _parameter(above, name.lstrip("/") if above == "~" else name)
 
 
 def _parameter(above: str, name: str) -> str:
