@@ -177,9 +177,8 @@ def _default_keys(ctx: Interpreter, obj: Obj, index: Value) -> frozenset[str]:
     """Return the defaults of a key that only the robot gives if entries of the mapping were stored under them."""
     defaults = index.default_keys() if obj.kind == "mapping" else frozenset[str]()
     held = ctx.store.get((obj, GIVEN_KEYS)) if defaults else None
-    return (
-        defaults if held is not None and held.consts is not None and defaults <= held.consts else frozenset()
-    )
+    stored = held.consts if held is not None else None
+    return defaults if stored is not None and defaults <= stored else frozenset()
 
 
 def member(ctx: Interpreter, cls: Obj, name: Value) -> Value:

@@ -34,8 +34,9 @@ def _default(expr: ir.Expr) -> ir.Const | None:
     if expr.function.name != "get" or len(expr.arguments) != 2:
         return None
     default = expr.arguments[1]
-    known = isinstance(default, ir.Const) and isinstance(default.value, (bool, int, float))
-    return default if known and isinstance(default, ir.Const) else None
+    if isinstance(default, ir.Const) and isinstance(default.value, (bool, int, float)):
+        return default
+    return None
 
 
 def _of_parameters(graph: Graph, deps: Nodes) -> bool:
@@ -47,9 +48,9 @@ def _of_parameters(graph: Graph, deps: Nodes) -> bool:
             continue
         if node not in graph.copies and node not in graph.carried:
             return False
-        new = set(graph.data[node]) - seen
         if not graph.data[node]:
             return False
+        new = set(graph.data[node]) - seen
         seen |= new
         pending.extend(new)
     return True

@@ -75,13 +75,13 @@ def entry(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame, slot: obj
 def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Value:
     """Return the container that a comprehension makes."""
     kind = "mapping" if expr.key is not None else "sequence"
-    registers = len(expr.loops) == 1 and ctx.registrations.inside(expr, (expr.node,))
+    single = len(expr.loops) == 1
+    registers = single and ctx.registrations.inside(expr, (expr.node,))
     first = sizes.counted(ctx, expr.loops[0][1], frame, each=registers)
-    if not registers and len(expr.loops) == 1:
+    if single and not registers:
         calls = ctx.registrations.calls_element(expr, expr.loops[0][0], (expr.node,))
         registers = calls and rows.hold_classes(ctx, first)
     known = sizes.unpacked(ctx, first)
-    single = len(expr.loops) == 1
     limit = MAX_ENTRIES if ctx.thorough else MAX_ROWS if registers else MAX_EACH
     if single and not expr.loops[0][2] and known and len(known) <= limit:
         return _one_by_one_of(ctx, expr, known, frame)

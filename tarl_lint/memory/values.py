@@ -216,11 +216,8 @@ class Value:
 
     def default_keys(self) -> frozenset[str]:
         """Return its texts if only the robot gives the text, and these are the defaults; empty for other values."""
-        return (
-            frozenset(self.names())
-            if not self.pts and self.keys() is None and self.replaceable()
-            else frozenset()
-        )
+        replaceable = not self.pts and self.keys() is None and self.replaceable()
+        return frozenset(self.names()) if replaceable else frozenset()
 
     def consts_in(self, other: Value) -> bool:
         """Return whether the constants of this value are a subset of another's."""

@@ -215,7 +215,8 @@ def _update(
         news = through_statement(ctx, value, frame, call, name)
         if name != "**":
             updates.write_item(ctx, base, const(name), news)
-        for obj in base.objects if name == "**" else ():
+            continue
+        for obj in base.objects:
             sizes.absorb(ctx, obj, news)
 
 

@@ -44,10 +44,9 @@ def _parameters(instance: Instance, shared: Sequence[Setting]) -> Iterator[str]:
         return
     for setting in shared:
         with suppress(NoYamlError, UnreadableError):  # another part of the report names the unreadable file
-            named = {one.name: one.value for one in stated((setting,), instance.name)}
-            inside = {name: value for name, value in named.items() if name.startswith(above)}
-            values.update(inside)
-            files.update(dict.fromkeys([shown(setting.file)] if inside else []))
+            inside = [one for one in stated((setting,), instance.name) if one.name.startswith(above)]
+            values.update((one.name, one.value) for one in inside)
+            files.update((shown(one.file), None) for one in inside)
     count = sum(1 for _ in leaves(values))
     if count:
         yield f"{count} {'parameter' if count == 1 else 'parameters'} from {', '.join(files)}"
