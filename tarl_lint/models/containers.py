@@ -86,14 +86,22 @@ def mutate(
         _update(ctx, base, plain, named, frame, call)
     elif name in ("extend", "extendleft"):
         _extend(ctx, base, name, plain, frame, call)
-    elif name == "append" and (place := _next_place(ctx, base, plain, frame)) is not None:
-        updates.write_item(ctx, base, const(place), through_statement(ctx, plain[0], frame, call))
-    elif name == "append" and _appended(ctx, base, plain, frame, call):
-        pass  # the element is stored at its index
-    elif name == "append" and _subscribers(plain):
-        _append_subscriber(ctx, base, plain[0], frame, call)
+    elif name == "append":
+        _append(ctx, base, plain, frame, call)
     else:
         insert_elements(ctx, base, plain[-1:] if name == "insert" else plain, frame, call)
+
+
+def _append(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
+    """Append an element at its own index if the index is known and matters."""
+    place = _next_place(ctx, base, plain, frame)
+    if place is not None:
+        updates.write_item(ctx, base, const(place), through_statement(ctx, plain[0], frame, call))
+    elif not _appended(ctx, base, plain, frame, call):
+        if _subscribers(plain):
+            _append_subscriber(ctx, base, plain[0], frame, call)
+        else:
+            insert_elements(ctx, base, plain, frame, call)
 
 
 def _extend(
