@@ -110,10 +110,8 @@ BROADCASTERS: Final = frozenset(
      "tf2_ros.transform_broadcaster.TransformBroadcaster", "tf2_ros.StaticTransformBroadcaster",
      "tf2_ros.static_transform_broadcaster.StaticTransformBroadcaster"]
 )  # fmt: skip
-LOOKUP_WORDS: Final = (
-    *sorted(LOOKUPS),
-    ".transform(",
-)  # a file that looks up a transform contains one of these words
+# a file that looks up a transform contains one of these words
+LOOKUP_WORDS: Final = (*sorted(LOOKUPS), ".transform(")
 MARKER_SERVERS: Final = frozenset(
     [
         "interactive_markers.InteractiveMarkerServer",

@@ -56,9 +56,8 @@ class Choices:
                 if any(decision in nodes for decision, _ in choice):
                     found.add(made)
                     starts.setdefault(choice, set()).add(made)
-        inside: dict[
-            Branches, set[int]
-        ] = {}  # like `starts`, but only with conditions that are among the nodes
+        # like `starts`, but only with conditions that are among the nodes
+        inside: dict[Branches, set[int]] = {}
         for choice, values in starts.items():
             inside.setdefault(frozenset(b for b in choice if b[0] in nodes), set()).update(values)
         for ways, values in inside.items():

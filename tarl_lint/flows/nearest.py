@@ -33,9 +33,8 @@ class Nearest(Generic[T]):
         self._extended = extended
         self._worthwhile = worthwhile
         self._kept: list[T] = []
-        self._last: dict[
-            Hashable, Set[int]
-        ] = {}  # kind of result → the last set of nodes for which it was computed
+        # kind of result → the last set of nodes for which it was computed
+        self._last: dict[Hashable, Set[int]] = {}
 
     def of(self, nodes: Set[int], kind: Hashable, *more: T) -> T:
         """Return the result for some nodes; `more` are known results for subsets of them.

@@ -10,9 +10,8 @@ from tarl_lint import catalog
 from tarl_lint.ir import nodes as ir
 from tarl_lint.trees import walk
 
-KINDS = frozenset(
-    ["subscribe", "receive", "filter", "service", "action", "behaviour"]
-)  # names of calls that register an input
+# kinds of calls that register an input
+KINDS = frozenset(["subscribe", "receive", "filter", "service", "action", "behaviour"])
 FACTS = {**catalog.FUNCTIONS, **catalog.METHODS}
 REGISTERING = frozenset(name.rpartition(".")[2] for name, fact in FACTS.items() if fact.kind in KINDS)
 STARTS = REGISTERING | {"init_node", "init", "create_node", "spin"}

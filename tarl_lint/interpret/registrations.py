@@ -36,17 +36,14 @@ class Registrations:
     def __init__(self, trees: Sequence[ast.Module], wrappers: Iterable[str]) -> None:
         self.trees = trees
         self.wanted = REGISTRATIONS.union(name.rpartition(".")[2] for name in wrappers)
-        self.bodies: dict[str, list[ast.AST]] | None = (
-            None  # name of a function or class → what its call runs
-        )
+        # name of a function or class → the code that a call of it runs; None before the first search
+        self.bodies: dict[str, list[ast.AST]] | None = None
         self.called: dict[str, frozenset[str]] = {}  # name → names that its code calls
-        self.known: dict[
-            Hashable, bool
-        ] = {}  # loop, comprehension or name → whether it registers or makes objects
-        self.calling: dict[
-            Hashable, bool
-        ] = {}  # loop or comprehension → whether it calls a variable of the loop
-        self.asking: dict[ir.Loop, bool] = {}
+        # loop, comprehension or name → whether it registers or makes objects
+        self.known: dict[Hashable, bool] = {}
+        # loop or comprehension → whether it calls a variable of the loop
+        self.calling: dict[Hashable, bool] = {}
+        self.asking: dict[ir.Loop, bool] = {}  # cache of `asks`
         self.sending: dict[str, bool] = {}  # name → whether a call of it publishes
         self.rows: dict[ir.Loop, Literal["direct", "helper", ""]] = {}
 

@@ -80,9 +80,8 @@ def _executed(
     found, stored = store.found_by(reads)
     ctx.work.handled += len(found) + len(reads.objects)
     reads.finish(found.keys(), stored.keys())
-    frame.returns = [
-        ({}, value) for value in returned
-    ]  # without the states of memory, which are in `delta` now
+    # without the states of memory, which are in `delta` now
+    frame.returns = [({}, value) for value in returned]
     return Run(
         passed, mode, reads, found, stored, ctx.work.spent - before,
         join_all(returned), returned, list(frame.escapes), frame.thrown, delta, ctx.graph.edges - edges,

@@ -40,9 +40,8 @@ class Control:
     statements: Mapping[int, ir.Stmt]
     raising: Raising
     types: ExceptionTypes
-    iterations: dict[int, Iteration] = field(
-        default_factory=dict
-    )  # by the number of the loop, as far as asked for
+    # cache of `iteration`: number of a loop → the control dependence inside it
+    iterations: dict[int, Iteration] = field(default_factory=dict)
 
     def iteration(self, loop: ir.Loop) -> Iteration:
         """Return the control dependence inside one iteration of a loop."""

@@ -59,9 +59,8 @@ class Expressions:
 
     def __init__(self, module: str) -> None:
         self.module = module
-        self.lazy: ast.expr | None = (
-            None  # the first argument of the current call of a function that may stop early
-        )
+        # first argument of the latest call of a function that may stop before the end of it
+        self.lazy: ast.expr | None = None
 
     def expr(self, node: ast.expr, scope: Scope) -> ir.Expr:
         """Lower one expression; an expression without a form of its own becomes an operation on its parts."""

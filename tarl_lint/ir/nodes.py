@@ -122,9 +122,7 @@ class Comprehension:
     slot: int
     node: ast.expr  # the syntax tree of `element`
     tests: Sequence[ast.expr] = ()  # the syntax trees of the conditions after `if`
-    lazy: bool = (
-        False  # whether it ends at an element that decides, as in `all(part.ready() for part in parts)`
-    )
+    lazy: bool = False  # whether it may stop early, as in `all(part.ready() for part in parts)`
 
 
 @dataclass(slots=True, eq=False)
@@ -257,7 +255,7 @@ class Loop(Stmt):
     endless: bool = False
     nodes: Sequence[ast.stmt] = ()  # the syntax trees of the body of a `for`
     end: int = (
-        0  # the numbers of the statements in the body of a `for` are between its own number and this one
+        0  # of a `for`: the numbers of the statements in its body are between its own number and this one
     )
 
     def has(self, number: int) -> bool:

@@ -15,9 +15,8 @@ from tarl_lint.memory.shared import BORN
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import Obj, Value
 
-TEMPORARY: Final = frozenset(
-    ["lib", "sequence", "mapping"]
-)  # kinds of objects that may be dropped when a call ends
+# kinds of objects that may be dropped when a call ends
+TEMPORARY: Final = frozenset(["lib", "sequence", "mapping"])
 
 
 def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj], reads: Reads) -> Delta:

@@ -22,14 +22,12 @@ from tarl_lint.settings.config import Config
 from tarl_lint.trees import outside_functions
 
 HEARS: Final = re.compile("|".join(map(whole, catalog.SOURCE_WORDS)))
-LOOKS_UP: Final = re.compile(
-    "|".join(map(whole, catalog.LOOKUP_WORDS))
-)  # with the setting `tf2`, a file that looks up transforms also receives data
+# with the setting `tf2`, a file that looks up transforms also receives data
+LOOKS_UP: Final = re.compile("|".join(map(whole, catalog.LOOKUP_WORDS)))
 # matches the words of servers, which both receive and send
 ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")
-CLIENTS: Final = re.compile(
-    "|".join(map(whole, catalog.CLIENT_WORDS))
-)  # with the setting `clients`, a file that calls services or actions receives and sends data
+# with the setting `clients`, a file that calls services or actions receives and sends data
+CLIENTS: Final = re.compile("|".join(map(whole, catalog.CLIENT_WORDS)))
 SAYS: Final = re.compile("|".join(map(whole, catalog.SINK_WORDS)))
 
 

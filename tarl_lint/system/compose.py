@@ -140,9 +140,8 @@ def _instance(
     unread = Instance(node, name, None, str(interface), silent=node.executable in _SILENT)
     known = Seen() if isinstance(found, Program) else _known(unread, launch, workspace)
     if any(one.hides and not one.package and one.file.suffix == ".py" for one in launch.problems):
-        known = replace(
-            known, certain=False
-        )  # problems in a launch file may also hide arguments of its nodes
+        # problems in a launch file may also hide arguments of its nodes
+        known = replace(known, certain=False)
     reason = f"a C++ program of {node.package}" if known.ends else unread.unread
     return replace(unread, known=known, unread=reason)
 

@@ -62,16 +62,13 @@ class Program:
         self._callbacks = callbacks
         self._handlers = {_last(name) for name in callbacks}
         self._timed: set[str] = set()  # functions that timers call
-        self._ticks: list[
-            ast.expr
-        ] = []  # callbacks of timers that are other expressions than names, such as lambdas
+        self._ticks: list[ast.expr] = []  # callbacks of timers that are lambdas
         self._named: dict[str, set[str]] = {}  # function → names in it, which may be properties and methods
         self._texts = {module.path: module.text for module in modules}
         self._trees = {module.path: module.tree for module in modules}
         self._functions: dict[str, list[tuple[str, _Function | ast.Module]]] = {}
-        self._callers: dict[
-            str, list[tuple[str, bool]]
-        ] = {}  # function → callers, and whether each calls it in a loop
+        # function → callers, and whether each calls it in a loop
+        self._callers: dict[str, list[tuple[str, bool]]] = {}
         for module in modules:
             self._functions.setdefault("", []).append((module.path, module.tree))
             self._read(module.path, module.tree, "", looped=False)
