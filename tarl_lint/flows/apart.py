@@ -60,7 +60,10 @@ def named_first(flows: Iterable[Flow]) -> Iterator[Flow]:
 
 
 def named_sinks_first(flows: Iterable[Flow]) -> Iterator[Flow]:
-    """Yield flows. A flow to a sink without topics is left out if a named sink of its line has a flow like it."""
+    """Yield flows, but none into a sink without topics if a sink with topics has it too.
+
+    Both sinks are at the same place, and the flows have the same source. An explicit flow may replace an implicit one.
+    """
     found = list(flows)
     kinds: dict[object, set[str]] = {}
     for flow in found:

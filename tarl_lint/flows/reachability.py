@@ -109,7 +109,10 @@ class Tracer:
     def paths(
         self, record: SinkRecord, reaching: Iterable[Reaching]
     ) -> Iterator[Callable[[Set[int]], Sequence[int]]]:
-        """Yield for each source a function that finds its path: only through data if data leads to the sink."""
+        """Yield a function for each source that finds a path to the sink.
+
+        The path leads only through data if data of the source reaches the sink.
+        """
         ends = sorted(record.nodes)
         statement_of = self.statements.key_of.__getitem__
         through_data = ShortestPaths(ends, self.data_formers({}), statement_of)

@@ -54,7 +54,7 @@ def write(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, 
 
 
 def write_some(ctx: Interpreter, base: Value, value: Value, frame: Frame, pos: ir.Pos) -> None:
-    """Pass a value to one of the descriptors and properties of a class, if the name of the attribute is unknown."""
+    """Store a value in an attribute of unknown name: any setter or descriptor of the class may receive the value."""
     deltas: list[Delta] = [{}]
     for obj in base.objects:
         for owner in lineage(obj.info) if obj.kind == "instance" and isinstance(obj.info, Obj) else ():

@@ -174,7 +174,7 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
 
 
 def _default_keys(ctx: Interpreter, obj: Obj, index: Value) -> frozenset[str]:
-    """Return the defaults of a key that only the robot gives if entries of the mapping were stored under them."""
+    """Return the defaults of a key that only the robot knows, if the mapping has entries under all of them."""
     defaults = index.default_keys() if obj.kind == "mapping" else frozenset[str]()
     held = ctx.store.get((obj, GIVEN_KEYS)) if defaults else None
     stored = held.consts if held is not None else None

@@ -14,7 +14,7 @@ CONVERSIONS: Final = frozenset(["float", "int"])
 
 
 def of_entry(ctx: Interpreter, expr: ir.Expr, value: Value) -> ir.Const | None:
-    """Return the default of an entry that is looked up in a parameter's mapping, if it is a number."""
+    """Return the default in `table.get("gain", 0.3)` if it is a number, and the table is the value of a parameter."""
     default = _default(expr)
     if default is None or value.pts or not value.deps:
         return None
@@ -40,7 +40,7 @@ def _default(expr: ir.Expr) -> ir.Const | None:
 
 
 def _of_parameters(graph: Graph, deps: Nodes) -> bool:
-    """Return whether nodes pass on nothing but parameters."""
+    """Return whether all data of some nodes comes from parameters, unchanged."""
     pending, seen = list(deps), set(deps)
     while pending:
         node = pending.pop()

@@ -128,7 +128,7 @@ def _one_by_one_of(
 ) -> Value:
     """Unroll a comprehension over few known elements; return the sequence or mapping that it makes.
 
-    `name` is that of the sequence. The caller makes sure that an element whose condition is unknown may be kept.
+    `name` is the name of the sequence. An element stays in it unless a condition is certainly false.
     """
     kind = "mapping" if expr.key is not None else "sequence"
     obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))

@@ -27,7 +27,7 @@ def makes_classes(cls: Obj) -> bool:
 
 
 def apply(ctx: Interpreter, cls: Obj, metaclass: Obj, frame: Frame, pos: ir.Pos) -> None:
-    """Call the `__new__` and `__init__` of a metaclass for a class, which `super().__new__` returns."""
+    """Call the `__new__` and `__init__` of a metaclass for a class; `super().__new__` returns this class."""
     bases = cls.info.bases if isinstance(cls.info, ClassInfo) else []
     listed = recency.intern(ctx, "sequence", ("bases of", cls.key))
     for number, base in enumerate(bases):

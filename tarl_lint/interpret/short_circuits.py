@@ -1,4 +1,4 @@
-"""Generator expressions in `any`, `all` and `next`: an earlier element decides whether later ones are asked."""
+"""Generator expressions in `any`, `all` and `next`: an earlier element decides whether later ones are evaluated."""
 
 from __future__ import annotations
 
@@ -14,11 +14,14 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import NONE, Value, pointer
 from tarl_lint.models import object_lists, sizes
 
-MAX_ASKED: Final = 16  # maximum number of objects that are asked one by one
+MAX_ASKED: Final = 16  # maximum number of objects whose methods are called one by one
 
 
 def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Value:
-    """Return the container that a comprehension makes, or the elements that a lazy one yields until it ends."""
+    """Return the container that a comprehension makes.
+
+    If it is lazy and calls methods of known objects, each element depends on the results of the earlier ones.
+    """
     (target, source, tests) = expr.loops[0]
     if expr.lazy and len(expr.loops) == 1 and calls_method_of(target, (expr.node, *expr.tests)):
         given = sizes.counted(ctx, source, frame, each=True)
@@ -36,7 +39,7 @@ def _asked(
     known: Sequence[Value],
     frame: Frame,
 ) -> Value:
-    """Evaluate the elements one by one, each of them under the answers of the earlier ones."""
+    """Evaluate the elements in order, each under the conditions that the earlier ones decide."""
     obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
     turn, guards, decides = frame.turn, len(ctx.guards), NONE
     for number, one in enumerate(known):

@@ -32,7 +32,7 @@ def chosen(ctx: Interpreter, targets: list[Obj], arguments: Arguments) -> list[O
 
 
 def for_types(ctx: Interpreter, targets: list[Obj], known: Sequence[Sequence[str]]) -> list[Obj]:
-    """Return the implementations for types, each of which is given with its base classes, the nearest first."""
+    """Return the implementations for types; `known` lists each type with its base classes, nearest first."""
     registered = {one: types for one in targets if (types := ctx.dispatches.get(closure_of(one))) is not None}
     if not registered:
         return targets

@@ -61,7 +61,7 @@ def mark(ctx: Interpreter, cls: Obj) -> Iterator[tuple[Obj, list[Value]]]:
 
 
 def _number(ctx: Interpreter, cls: Obj) -> list[tuple[str, Value]]:
-    """Return the public attributes of an enumeration; those that are `auto()` are replaced by their numbers."""
+    """Replace each `auto()` in an enumeration by its value; return the public attributes of the enumeration."""
     found: list[tuple[str, Value]] = []
     last: object = 0
     flags = any(name.endswith("Flag") for name in _bases(cls))
@@ -85,7 +85,7 @@ def _public(ctx: Interpreter, cls: Obj) -> Iterator[tuple[str, Value]]:
 
 
 def with_value(ctx: Interpreter, cls: Obj, value: Value) -> Value | None:
-    """Return the marked member that `Class(value)` is; None if the value is not a known constant of such a member."""
+    """Return the marked member that `Class(value)` returns; None if no marked member has this constant."""
     if not value.fixed() or value.deps:
         return None
     ctx.store.look(cls)
@@ -105,7 +105,7 @@ def automatic(ctx: Interpreter, _: object) -> Value:
 
 
 def members(ctx: Interpreter, cls: Obj) -> list[tuple[str, Value]] | None:
-    """Return the names and values of an enumeration's members; None if a member is not known, or for other classes."""
+    """Return the names and values of an enumeration's members; None for other classes and if a member is unknown."""
     if cls.kind != "class" or not enumerates(cls):
         return None
     ctx.store.look(cls)

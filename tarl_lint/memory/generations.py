@@ -1,8 +1,8 @@
-"""Chains of instances, each made by a method of the one before, as in `position = position + step`; and of closures.
+"""Chains of instances, each made by a method of the one before (`position = position + step`), and of closures.
 
 A method has a context for each receiver, and each context makes objects of its own. Without a limit, a callback that
 replaces an object by one that the object's method makes would make new abstract objects for ever. The same holds for
-a function that returns a closure, which calls the function: `self.state = self.state(msg)`.
+closures that make closures, as in `self.state = self.state(msg)`.
 """
 
 from __future__ import annotations

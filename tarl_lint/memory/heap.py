@@ -30,7 +30,7 @@ from tarl_lint.memory.values import (
 
 ANY = "*"  # summary field: the join of all elements
 KEYS = "<keys>"  # field of a mapping: dependencies of its keys
-GIVEN_KEYS = "<given>"  # field of a mapping: the defaults of its keys that only the robot gives
+GIVEN_KEYS = "<given>"  # field of a mapping: the defaults that stand for keys that only the robot knows
 LENGTH = "<length>"  # field of a container: dependencies of its length
 HELD = "<callables>"  # field of a library object: callables that were passed to it
 RESULT = "<result>"  # field of a future that holds its result

@@ -128,8 +128,8 @@ class Store:
         """Return the current value of a key to which another path stores, for the join with the value of that path.
 
         If this run creates the object only on other paths, every run creates its own. Then the run's own stores to the
-        object's keys do not make the root run again, as long as only joins read these keys. `made` has the answers of
-        the method `made` for this join.
+        object's keys do not make the root run again, as long as only joins read these keys. `made` caches the
+        results of the method `made` for this join.
         """
         if key in self.now or self.waited or not self._made_elsewhere(key[0].outermost or key[0], made):
             return self.get(key)
@@ -141,7 +141,7 @@ class Store:
         return self.found[key]
 
     def made(self, whole: Obj, made: Made) -> bool:
-        """Return whether an object exists on the current path; `made` has the answers since the last store."""
+        """Return whether an object exists on the current path; `made` caches results until the next store."""
         known = made.get(whole)
         if known is None:
             known = made[whole] = self.get((whole, BORN)) is not None

@@ -73,7 +73,7 @@ def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> Non
 
 
 def _default_key(ctx: Interpreter, base: Value, index: Value) -> frozenset[str]:
-    """Return the default of a key that only the robot gives; note in the mappings that it stands for the key."""
+    """Return the default of a key that only the robot knows; record in the mappings that it stands for the key."""
     defaults = index.default_keys()
     if len(defaults) != 1 or not base.pts or any(o.kind != "mapping" for o in base.pts):
         return frozenset()

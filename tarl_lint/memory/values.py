@@ -215,7 +215,7 @@ class Value:
         return frozenset(ClassKey(o.key) for o in self.pts) if known else None
 
     def default_keys(self) -> frozenset[str]:
-        """Return its texts if only the robot gives the text, and these are the defaults; empty for other values."""
+        """Return the defaults of a text that only the robot knows; empty for other values."""
         replaceable = not self.pts and self.keys() is None and self.replaceable()
         return frozenset(self.names()) if replaceable else frozenset()
 

@@ -1,4 +1,4 @@
-"""Lists and mappings that are the defaults of parameters: their entries may be others on the robot."""
+"""Lists and mappings that are the defaults of parameters: on the robot, their entries may have other values."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ CONTAINERS: Final = frozenset(["sequence", "mapping"])
 
 
 def replaceable(ctx: Interpreter, default: Value, frame: Frame, slot: Hashable) -> Value | None:
-    """Return a copy of a list or mapping in which each text is one that only the robot gives, with a default.
+    """Return a copy of a list or mapping whose texts are defaults, since only the robot knows the actual texts.
 
-    Numbers in the copy are not known. None if the value is anything else, or an empty or large container.
+    Numbers in the copy are unknown. Return None for other values, and for empty and large containers.
     """
     copied = _Copy(ctx, frame)
     found = copied.value(default, ("default", slot)) if default.pts else None

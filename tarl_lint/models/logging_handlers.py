@@ -1,4 +1,4 @@
-"""Models of the standard library's loggers: what is logged reaches `emit` of handlers that analysed classes define."""
+"""Models of the standard library's loggers: each record reaches `emit` of the handlers from analysed classes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, inherited_from,
 LOGGER: Final = "logging.Logger"  # name of the objects that represent loggers
 HANDLER: Final = "logging.Handler"
 HANDLERS: Final = "<handlers>"  # field of a logger that holds its handlers
-LEVEL: Final = "<level>"  # field of a handler that holds the least level which it handles
+LEVEL: Final = "<level>"  # field of a handler that holds the lowest level that the handler accepts
 # levels in ascending order, and the methods of a logger that log with them
 LEVELS: Final = ("NOTSET", "DEBUG", "INFO", "WARNING", "ERROR", "CRITICAL")
 METHODS: Final = {
@@ -84,7 +84,7 @@ def _log(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
 
 
 def _ancestors(ctx: Interpreter, logger: Obj) -> Iterator[Obj]:
-    """Yield a logger and those above it, whose handlers get its records, too."""
+    """Yield a logger and the loggers above it, whose handlers also receive its records."""
     name = logger.key[1] if isinstance(logger.key, tuple) else ""
     while name:
         yield _logger(ctx, name)

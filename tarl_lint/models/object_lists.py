@@ -34,7 +34,7 @@ def is_object(element: Value) -> bool:
 
 
 def asked(ctx: Interpreter, elements: Sequence[Value]) -> bool:
-    """Return whether each element of a loop is an object, the number of one, or a tuple with an object."""
+    """Return whether each element of a loop is an object, an integer, or a tuple of objects and perhaps constants."""
     for element in elements:
         parts = sizes.unpacked(ctx, element) or [element]
         known = all(is_object(part) or part.fixed() for part in parts)
@@ -44,7 +44,7 @@ def asked(ctx: Interpreter, elements: Sequence[Value]) -> bool:
 
 
 def without_empty(ctx: Interpreter, source: Value) -> Value:
-    """Return a value without empty lists and tuples if it may also be another one, as in `children or []`."""
+    """Return a value without empty lists and tuples if it may also be a full one, as in `children or []`."""
     if len(source.pts) < 2 or any(o.kind != "sequence" for o in source.pts):
         return source
     full = frozenset(o for o in source.pts if not sizes.is_empty(ctx, pointer(o)))
@@ -52,7 +52,7 @@ def without_empty(ctx: Interpreter, source: Value) -> Value:
 
 
 def appended(ctx: Interpreter, base: Value, first: int, news: Sequence[Value]) -> None:
-    """Store objects at the end of a list, which `place` returned."""
+    """Store objects at the end of a list; `first` is the index that `place` returned."""
     (obj,) = base.pts
     for number, value in enumerate(news):
         ctx.store.put((obj, heap.item_field(first + number)), value)

@@ -150,7 +150,7 @@ def replaced_record(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _put(ctx: Interpreter, obj: Obj, name: str, value: Value) -> None:
-    """Store a field of a copy; of an object that stands for several ones, keep the former value too."""
+    """Store a field of a copy; keep the former value as well if the copy stands for several objects."""
     if obj.many:
         updates.weaken(ctx, obj, name, value)
     else:

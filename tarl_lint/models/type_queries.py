@@ -102,7 +102,7 @@ def lacks(ctx: Interpreter, value: Value, name: str) -> bool:
 
 
 def _own_special(obj: Obj, name: str) -> bool:
-    """Return whether only analysed code gives an object an attribute with such a name, as `__port__` of functions."""
+    """Return whether only analysed code can set an attribute with this name, such as `__port__` of a function."""
     return obj.kind in ("closure", "bound") and name not in SPECIAL
 
 

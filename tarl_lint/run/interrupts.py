@@ -23,7 +23,7 @@ def uninterrupted() -> Iterator[None]:
 
 
 def end_silently() -> None:
-    """Make Ctrl-C end this process without a traceback, unless it ignores Ctrl-C, as a job in the background does."""
+    """Make Ctrl-C end this process without a traceback, unless the process ignores Ctrl-C, as background jobs do."""
     import signal
 
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:

@@ -1,4 +1,4 @@
-"""Find publishers of commands that a program sends again and again without any input, as a patrol by the clock does."""
+"""Find publishers through which a program repeats commands without any input, such as a patrol by the clock."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _FIELDS: Final = frozenset(
 def driven(
     machine: Linker, findings: Sequence[Finding], modules: Sequence[Module]
 ) -> frozenset[tuple[str, Pos]]:
-    """Return the file and position at which a program makes such publishers.
+    """Return the places (file and position) at which a program makes such publishers.
 
-    A timer or a loop makes the publish call, no flow ends there, and the program sets some field of a message to a
-    value other than zero; a node that only stops the robot does not count.
+    A publisher counts if a timer or a loop makes its publish call, and no flow ends there. The program must set some
+    field of a message to a value other than zero: a node that only stops the robot does not count.
     """
     # numbers may be commands, too; the topic's name is known only after the launch
     sent = [one for one in machine.sinks.values() if one.kind == "topic" and any(

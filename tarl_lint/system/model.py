@@ -35,7 +35,7 @@ class Endpoint:
 
     If names contain parameters, `written` has the names as in the code, and `names` has them with the values at
     launch. `type` has no package; `whole_type` is `package/Name`, or "" if it is unknown or may be one of several.
-    `driven` says that the program publishes commands, or numbers, again and again without any input.
+    `driven` says whether the program publishes commands or numbers again and again without any input.
     """
 
     role: Role

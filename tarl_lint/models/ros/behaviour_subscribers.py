@@ -1,4 +1,4 @@
-"""Models of behaviours of py_trees_ros that subscribe: they fill the blackboard, or have a status that follows data."""
+"""Models of behaviours of py_trees_ros that subscribe: messages fill the blackboard, or decide the status."""
 
 from __future__ import annotations
 

@@ -162,9 +162,9 @@ def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def transform_broadcast(ctx: Interpreter, it: Invocation) -> Value:
-    """Broadcast a transform, which is a sink for a program that runs the code if the setting `tf2` is on.
+    """Broadcast a transform. The call is a sink only in a thorough analysis with the setting `tf2`.
 
-    Reports have no flows into transforms: a transform is read with its age, and no robot moves because of it alone.
+    Reports have no flows into transforms: whoever reads a transform sees its age, and a transform alone moves no robot.
     """
     if not (ctx.config.tf2 and ctx.thorough):
         return library_functions.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)
