@@ -24,6 +24,11 @@ def called(call: ast.Call) -> str:
     return ast.unparse(call.func).rpartition(".")[2]
 
 
+def argument_names(function: Function | ast.Lambda) -> list[str]:
+    """Return the names of the positional arguments of a function, without `self` and `cls`."""
+    return [one.arg for one in function.args.args if one.arg not in ("self", "cls")]
+
+
 @dataclass(frozen=True, slots=True)
 class Edit:
     """Replace the characters from `start` to `end` by `text`; lines in `text` end with a line feed."""

@@ -17,7 +17,7 @@ import numpy as np
 from pytest_tarl.errors import RepairError
 from pytest_tarl.instrumentation.sites import plan
 from pytest_tarl.instrumentation.trace import Floats
-from pytest_tarl.patching.document import Document, document
+from pytest_tarl.patching.document import Document, argument_names, document
 from pytest_tarl.repairing.mission_pairs import Recorded, series
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.separating import between_groups, reaching, separating
@@ -257,7 +257,7 @@ def _receiving(order: Order, source: Document, node: ast.expr) -> list[str]:
     if not isinstance(node, ast.Attribute) or node.attr != NUMBER:
         return []
     function = source.function(node)
-    names = [one.arg for one in function.args.args if one.arg not in ("self", "cls")] if function else []
+    names = argument_names(function) if function else []
     if function is None or ast.unparse(node.value) not in names[:1]:
         return []
     return [

@@ -15,7 +15,7 @@ from math import exp, log
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.instrumentation.sites import plan
-from pytest_tarl.patching.document import Document, document
+from pytest_tarl.patching.document import Document, argument_names, document
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.templates import Template, templates
 from pytest_tarl.repairing.message_units import ratios
@@ -154,7 +154,7 @@ def reads(source: Document, line: int) -> list[ast.expr]:
     function = next(
         (one for one in ast.walk(source.tree) if isinstance(one, _FUNCTIONS) and one.lineno == line), None
     )
-    names = [one.arg for one in function.args.args if one.arg not in ("self", "cls")] if function else []
+    names = argument_names(function) if function else []
     if function is None or not names:
         return []
     found = list(_of(source, function, names[0]))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 from math import isclose, pi
 
-from pytest_tarl.patching.document import Document
+from pytest_tarl.patching.document import Document, argument_names
 
 TIME = (1e-9, 1e-6, 1e6, 1e9)  # factors between units of time, wherever they are
 # ratios of units that are hardly ever a gain: parts of a thousand, degrees per radian, km/h per m/s
@@ -64,7 +64,7 @@ def _of_message(source: Document, node: ast.expr) -> bool:
     function = source.function(node)
     if function is None:
         return False
-    names = {one.arg for one in function.args.args} - {"self", "cls"}
+    names = argument_names(function)
     for each in ast.walk(node):
         if isinstance(each, ast.BinOp | ast.IfExp | ast.Compare):
             return False

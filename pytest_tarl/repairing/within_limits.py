@@ -10,9 +10,7 @@ import ast
 from collections.abc import Collection
 
 from pytest_tarl.patching.clamps import CLAMPS, OPPOSITE
-from pytest_tarl.patching.document import Document, called
-
-_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+from pytest_tarl.patching.document import Document, Function, argument_names, called
 
 
 def within_limits(source: Document, node: ast.expr, known: Collection[str]) -> ast.expr | None:
@@ -52,11 +50,11 @@ def _clamped(source: Document, call: ast.Call, known: Collection[str]) -> ast.ex
 def _passed(source: Document, call: ast.Call, known: Collection[str]) -> ast.expr | None:
     """Return the only argument of a call of a function of this file that does nothing else than limit a value of it."""
     functions = [
-        one for one in ast.walk(source.tree) if isinstance(one, _FUNCTIONS) and one.name == called(call)
+        one for one in ast.walk(source.tree) if isinstance(one, Function) and one.name == called(call)
     ]
     if len(functions) != 1 or len(call.args) != 1 or isinstance(call.args[0], ast.Starred):
         return None
-    names = [one.arg for one in functions[0].args.args if one.arg not in ("self", "cls")]
+    names = argument_names(functions[0])
     returns = [one for one in ast.walk(functions[0]) if isinstance(one, ast.Return)]
     if len(names) != 1 or len(returns) != 1 or not isinstance(returns[0].value, ast.Call):
         return None
