@@ -8,7 +8,7 @@ and the size of the error, which fixed factors hit by chance only. Recorded miss
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
@@ -27,9 +27,8 @@ from pytest_tarl.symptoms.series import Pair
 from tarl_lint.model import Operand
 
 MOST = 6  # maximum number of hints
-SEPARATED = (
-    3  # maximum number of hints for thresholds that separate other values than in the designed missions
-)
+# maximum number of hints for thresholds that separate other values than in the designed missions
+SEPARATED = 3
 LEAST = 0.05  # minimum change of a value, as a logarithm or as a share of its designed size
 AGREE = 0.25  # maximum difference between mission pairs, as a share of the change
 ALIKE = 0.05  # maximum difference between the logarithms of two factors that count as equal
@@ -61,11 +60,11 @@ def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand
     shifted: list[Hint] = []
     scaled: list[Hint] = []
     for operand in _first_uses(operands):
-        found = _place(order, operand)
-        if found is None or not operand.value or isinstance(operand.value, bool):
+        value, found = _number(operand), _place(order, operand)
+        if not value or found is None:
             continue
-        value = float(operand.value)
-        separated += [((operand, by),) for by in _separating(order, values, operand, *found)]
+        compared = _compared(order, values, operand, *found)
+        separated += [((operand, by),) for by in _separating(value, compared)]
         for change in _beside(order, changes, operand, *found):
             beside += [(operand, change.ratio)] if change.ratio else []
             shifted += [((operand, 1.0 + change.difference / value),)] if change.difference else []
@@ -86,11 +85,10 @@ def _reaching(
 ) -> Iterator[tuple[Operand, float]]:
     """Yield the thresholds that only designed missions cross, each with the factor with which drifted ones do, too."""
     for operand in dict.fromkeys(operands):
-        found = _place(order, operand)
-        if found is None or not operand.value or isinstance(operand.value, bool):
+        value, found = _number(operand), _place(order, operand)
+        if not value or found is None:
             continue
         for pairs in _compared(order, values, operand, *found):
-            value = float(operand.value)
             by = reaching(value, pairs) if between_groups(value, pairs) is None else None
             if by is not None:
                 yield operand, by
@@ -140,21 +138,15 @@ def _values(order: Order, recorded: Sequence[Recorded]) -> dict[str, list[tuple[
     return found
 
 
-def _separating(
-    order: Order,
-    values: Mapping[str, Sequence[tuple[Floats, Floats]]],
-    operand: Operand,
-    source: Document,
-    node: ast.expr,
-) -> Iterator[float]:
+def _separating(value: float, compared: Iterable[Sequence[tuple[Floats, Floats]]]) -> Iterator[float]:
     """Yield the factors of a threshold with which it separates the drifted values as it did in the designed missions.
 
     For example, a node ignores positions that differ by more than its gate. After a slip of a wheel it ignores all of
     them, until the gate lies between the slip and the errors that it is meant for.
     """
-    for pairs in _compared(order, values, operand, source, node) if operand.value else ():
-        grouped = between_groups(float(operand.value or 0), pairs)
-        by = separating(float(operand.value or 0), pairs) if grouped is None else grouped
+    for pairs in compared:
+        grouped = between_groups(value, pairs)
+        by = separating(value, pairs) if grouped is None else grouped
         if by is not None:
             yield by
 
@@ -193,6 +185,11 @@ def _agreed(changes: Sequence[float], least: float) -> float | None:
     mean = sum(changes) / len(changes)
     spread = max(changes) - min(changes)
     return mean if abs(mean) >= max(least, 1e-12) and spread <= AGREE * abs(mean) else None
+
+
+def _number(operand: Operand) -> float:
+    """Return the value of a constant; 0 for booleans, and for constants that are known only at run time."""
+    return 0.0 if operand.value is None or isinstance(operand.value, bool) else float(operand.value)
 
 
 def _place(order: Order, operand: Operand) -> tuple[Document, ast.expr] | None:

@@ -12,8 +12,7 @@ from pytest_tarl.instrumentation.trace import Floats
 FEWEST = 4  # minimum number of values in each world
 DIFFER = 0.1  # minimum difference between the shares of values above the threshold in the two worlds
 MARGIN = 1.25  # factor from the outermost value to a threshold beyond it
-# minimum width of the gap between two groups of values, as a share of the range of all values
-GAP = 0.4
+GAP = 0.4  # minimum width of the gap between two groups of values, as a share of the range of all values
 
 
 def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
@@ -23,16 +22,16 @@ def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> floa
     differ in the same direction. The new threshold lies halfway between two drifted values, on a log scale, or beyond
     all of them. Values whose sign differs from that of the threshold say nothing about its size.
     """
-    sign, size = (1.0 if threshold > 0.0 else -1.0), abs(threshold)
+    size, pairs = _sized(threshold, pairs)
     if not pairs or not all(one.size and other.size for one, other in pairs):
         return None
-    changes = [_above(other, sign, size) - _above(one, sign, size) for one, other in pairs]
+    changes = [_above(other, size) - _above(one, size) for one, other in pairs]
     if not (min(changes) >= DIFFER or max(changes) <= -DIFFER):
         return None
-    before, after = (np.sort(sign * np.concatenate(each)) for each in zip(*pairs, strict=True))
+    before, after = (np.sort(np.concatenate(each)) for each in zip(*pairs, strict=True))
     if before.size < FEWEST or after.size < FEWEST:
         return None
-    above = round(float(np.mean(before > size)) * after.size)
+    above = round(_above(before, size) * after.size)
     low = float(after[after.size - above - 1]) if above < after.size else float(after[0]) / MARGIN**2
     high = float(after[after.size - above]) if above else float(after[-1]) * MARGIN**2
     if low <= 0.0 or high <= low:
@@ -47,10 +46,10 @@ def between_groups(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> 
     of it, the threshold must lie between 21 and 23 V. Return None unless both worlds have two groups, the threshold is
     between the designed ones and not between the drifted ones, and has the sign of all values.
     """
-    sign, size = (1.0 if threshold > 0.0 else -1.0), abs(threshold)
+    size, pairs = _sized(threshold, pairs)
     if not pairs:
         return None
-    before, after = (np.sort(sign * np.concatenate(each)) for each in zip(*pairs, strict=True))
+    before, after = (np.sort(np.concatenate(each)) for each in zip(*pairs, strict=True))
     designed, drifted = _gap(before), _gap(after)
     if designed is None or drifted is None or drifted[0] <= 0.0:
         return None
@@ -79,12 +78,12 @@ def reaching(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float 
     base stops a little before its goal, and the error never falls below the tolerance. The new threshold is `MARGIN`
     beyond the drifted values that come nearest to it, in the mission in which they stay farthest.
     """
-    sign, size = (1.0 if threshold > 0.0 else -1.0), abs(threshold)
+    size, pairs = _sized(threshold, pairs)
     if not pairs or not all(one.size and other.size for one, other in pairs):
         return None
-    if not all(0.0 < _above(one, sign, size) < 1.0 for one, _ in pairs):
+    if not all(0.0 < _above(one, size) < 1.0 for one, _ in pairs):
         return None
-    drifted = [sign * other for _, other in pairs]
+    drifted = [other for _, other in pairs]
     if all(float(one.min()) > size for one in drifted):
         return max(float(one.min()) for one in drifted) * MARGIN / size
     highest = min(float(one.max()) for one in drifted)
@@ -93,5 +92,13 @@ def reaching(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float 
     return None
 
 
-def _above(values: Floats, sign: float, size: float) -> float:
-    return float(np.mean(sign * values > size))
+def _sized(
+    threshold: float, pairs: Sequence[tuple[Floats, Floats]]
+) -> tuple[float, Sequence[tuple[Floats, Floats]]]:
+    """Return the size of a threshold, and the values with opposite signs if the threshold is negative."""
+    sign = 1.0 if threshold > 0.0 else -1.0
+    return abs(threshold), [(sign * one, sign * other) for one, other in pairs]
+
+
+def _above(values: Floats, size: float) -> float:
+    return float(np.mean(values > size))
