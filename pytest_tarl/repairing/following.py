@@ -61,7 +61,7 @@ def following(order: Order, candidate: Candidate) -> Iterator[Candidate]:
         ][:VARIABLES]
     )
     for form in found:
-        yield Candidate(tuple(Mutation(one.operand, 1.0, form=form) for one in candidate.mutations), ALWAYS)
+        yield _candidate([one.operand for one in candidate.mutations], form)
 
 
 def proportional(order: Order, used: Sequence[Operand]) -> Iterator[Candidate]:
@@ -72,30 +72,33 @@ def proportional(order: Order, used: Sequence[Operand]) -> Iterator[Candidate]:
     """
     plain = all(not isinstance(one.value, bool) and one.value != 0 for one in used)
     template = next((one for one in templates(order.root) if one.name == FOLLOWS), None)
-    usable = [one for one in order.comparison.sensors if continuous(one) and one.low is not None]
-    varying = [one for one in usable if (one.low or 0.0) >= 0.0 and varies(order, one)]
+    varying = [one for one in _usable(order) if varies(order, one)]
     if template is None or not plain or not varying or order.permanent:
         return
     held = [(name, designed) for name, designed, _ in variables(order, used) if designed > 0.0][:VARIABLES]
-    forms = [Form(template, variable=name, defaults=_proportion(designed)) for name, designed in held]
+    forms = [_with_power(Form(template, variable=name), 1.0, designed) for name, designed in held]
     forms += [
-        Form(template, sensor=one, defaults=_proportion(usual(order, one, order.fixture.sample)))
+        _with_power(Form(template, sensor=one), 1.0, usual(order, one, order.fixture.sample))
         for one in varying[:SENSORS]
     ]
     for form in forms:
-        bare = replace(form, parameter="power")
-        yield Candidate(tuple(Mutation(one, 1.0, form=bare) for one in used), ALWAYS)
+        yield _candidate(used, form)
 
 
-def _proportion(designed: float) -> tuple[tuple[str, float], ...]:
-    return ("power", 1.0), ("usual", float(f"{designed:.3g}"))
+def _candidate(used: Sequence[Operand], form: Form) -> Candidate:
+    return Candidate(tuple(Mutation(one, 1.0, form=form) for one in used), ALWAYS)
+
+
+def _usable(order: Order) -> list[Sensor]:
+    """Return the sensors that a power can be taken of."""
+    numeric = [one for one in order.comparison.sensors if continuous(one)]
+    return [one for one in numeric if one.low is not None and one.low >= 0.0]
 
 
 def _sensors(order: Order, candidate: Candidate) -> Sequence[Sensor]:
-    """Return the sensors that a power can be taken of, those of the condition first."""
+    """Return the usable sensors, those of the condition first."""
     asked = [conjunct.sensor for conjunct in candidate.guard.conjuncts]
-    usable = [one for one in order.comparison.sensors if continuous(one) and (one.low or 0.0) >= 0.0]
-    return sorted((one for one in usable if one.low is not None), key=lambda one: one not in asked)
+    return sorted(_usable(order), key=lambda one: one not in asked)
 
 
 def _form(order: Order, sensor: Sensor, by: float, known: Mapping[str, Template]) -> Form | None:
@@ -115,5 +118,10 @@ def _law(form: Form, designed: float, drifted: float, by: float) -> Form | None:
     power = log(by) / log(ratio)
     if not LEAST <= abs(power) <= MOST:
         return None
+    return _with_power(form, power, designed)
+
+
+def _with_power(form: Form, power: float, designed: float) -> Form:
+    """Return a form whose power is searched, with this start value and the designed value of what is followed."""
     defaults = (("power", float(f"{power:.2g}")), ("usual", float(f"{designed:.3g}")))
-    return replace(form, parameter=defaults[0][0], defaults=defaults)
+    return replace(form, parameter="power", defaults=defaults)
