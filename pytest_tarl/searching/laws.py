@@ -35,15 +35,16 @@ def laws(
     The laws that gain most are adjusted first. A constant that is listed several times, as a whole and at one of its
     uses, is tried once.
     """
-    distinct = {(unit.operands[0].code, unit.operands[0].definition): unit for unit in reversed(constants)}
-    chosen = [unit for unit in constants if unit in distinct.values()][:CONSTANTS]
-    gaining: list[tuple[float, Candidate, float]] = []
-    for unit in chosen:
-        for law in proportional(unit.operands):
-            gains = [
-                (gain, law, power) for power in SIGNS if (gain := _gain(law, power, selection)) is not None
-            ]
-            gaining += [one for one in gains if one[0] > selection.slack]
+    distinct: dict[object, Unit] = {}
+    for unit in constants:
+        distinct.setdefault((unit.operands[0].code, unit.operands[0].definition), unit)
+    gaining = [
+        (gain, law, power)
+        for unit in list(distinct.values())[:CONSTANTS]
+        for law in proportional(unit.operands)
+        for power in SIGNS
+        if (gain := _gain(law, power, selection)) is not None and gain > selection.slack
+    ]
     for _, law, power in sorted(gaining, key=lambda one: -one[0])[:ADJUSTED]:
         yield from _adjusted(law, power, selection)
 
