@@ -109,7 +109,7 @@ class FirstSteps:
                 factor, guard, [one for one in moving if not self._inert(one, guard, factor)]
             )
             if not tries.proposed and not gains.anything(HALF * tries.goal.wanted):
-                yield from self._as_measured(ALWAYS if ALWAYS in tries.guards else guard)
+                yield from self._as_measured(self._unconditional(guard))
         yield from self._between_failures(guard, moving)
         yield from self.crossing.across(guard, plateau.STEPS[:2])
         yield from self._narrow(guard, moving)
@@ -145,14 +145,14 @@ class FirstSteps:
         yield from tries.each(NEAR[0], guard, among, tries.pair)
         idle = tries.gains.idle_guard(guard) and ALWAYS in tries.guards
         if among and not tries.gains.anything(HALF * tries.goal.wanted):
-            yield from self._as_measured(ALWAYS if ALWAYS in tries.guards else guard)
+            yield from self._as_measured(self._unconditional(guard))
         if among and not idle and not tries.gains.anything():
             tries.turn += 1
             yield from tries.sweep(NEAR[1], guard, among)
-            yield from self._laws(ALWAYS if ALWAYS in tries.guards else guard)
+            yield from self._laws(self._unconditional(guard))
             yield from self.crossing.across(guard, plateau.STEPS[:2])
         if among and not idle and not tries.gains.anything(HALF * tries.goal.wanted):
-            yield from self._limits(ALWAYS if ALWAYS in tries.guards else guard)
+            yield from self._limits(self._unconditional(guard))
 
     def _laws(self, guard: Guard) -> Iterator[Candidate]:
         """Let the named constants follow what varies that clearly lost in both directions, once, if nothing gained."""
@@ -185,6 +185,10 @@ class FirstSteps:
         if not tries.gains.anything():
             rest = named(dict.fromkeys(whole.values()))
             yield from further_on(bases, rest, self.entered, joining)
+
+    def _unconditional(self, guard: Guard) -> Guard:
+        """Return `ALWAYS` if the search may change constants without a condition, else the guard."""
+        return ALWAYS if ALWAYS in self.attempts.guards else guard
 
     @property
     def _whole(self) -> dict[Operand, Unit]:
