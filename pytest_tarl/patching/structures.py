@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.document import Document, Edit, Function, Loop
 from pytest_tarl.patching.expressions import choice, fitted, number
-from pytest_tarl.patching.templates import FIELD, Template, filled, plainly
+from pytest_tarl.patching.templates import FIELD, PAIR, Template, filled, plainly
 from pytest_tarl.patching.vocabulary import class_attributes, free, names
 from pytest_tarl.sensors import Sensor
 from tarl_lint.model import Span
@@ -109,7 +109,7 @@ def _written(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
     code = source.source(node)
     if made.on == FIELD:
         return _ahead_of_publishing(place, fill)
-    if made.on == "pair":
+    if made.on == PAIR:
         return _swapped(source, node, place.form, place.condition)
     if made.on == "comparison":
         left, op, right = _compared(code)

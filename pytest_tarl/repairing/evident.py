@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from pytest_tarl.patching.structures import Form
-from pytest_tarl.patching.templates import SENT_BY_SENSOR, Template
+from pytest_tarl.patching.templates import PAIR, SENT_BY_SENSOR, Template
 from pytest_tarl.repairing.mission_pairs import Signs
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.template_forms import forms
@@ -41,7 +41,7 @@ def evident(
         strong.sort(
             key=lambda spot: (str(spot.site) not in signs.strengths, -spot.away if received else spot.away)
         )
-        if template.on == "pair":
+        if template.on == PAIR:
             found += [(told[strong[0]], template.cost, each) for each in forms(order, template, strong)]
             continue
         fitting = [

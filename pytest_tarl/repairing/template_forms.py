@@ -53,7 +53,7 @@ def forms(
     moves along x moves along y by the same laws.
     """
     if template.on == PAIR:
-        for one, other in pairs(among, MOST["pair"]):
+        for one, other in pairs(among, MOST[PAIR]):
             partner = other.source.span(other.node)
             yield list(
                 _operands(template, one, Form(template, partner=partner), {"typical": 1.0, "larger": 1.0})

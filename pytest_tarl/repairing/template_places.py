@@ -182,7 +182,7 @@ def _passed(call: ast.Call, returned: Collection[str]) -> Iterator[ast.expr]:
 
 def _sent(call: ast.Call) -> Iterator[ast.expr]:
     """Yield the names and attributes from which a published message is constructed."""
-    if ast.unparse(call.func).rpartition(".")[2] != "publish":
+    if called(call) != "publish":
         return
     for each in ast.walk(call):
         if each is call or (isinstance(each, ast.Call) and _makes_an_object(each)):
@@ -196,19 +196,21 @@ def _computes(node: ast.expr) -> bool:
     The time is left out: it is no signal that a template could change.
     """
     if isinstance(node, ast.Call):
-        return not _makes_an_object(node) and not any(
-            isinstance(each, ast.Call) and called(each) in CLOCKS for each in ast.walk(node)
-        )
+        return not _makes_an_object(node) and not _reads_clock(node)
     return isinstance(node, ast.IfExp)
 
 
 def _makes_an_object(call: ast.Call) -> bool:
-    return ast.unparse(call.func).rpartition(".")[2][:1].isupper()
+    return called(call)[:1].isupper()
+
+
+def _reads_clock(node: ast.expr) -> bool:
+    return any(isinstance(each, ast.Call) and called(each) in CLOCKS for each in ast.walk(node))
 
 
 def _is_numeric(node: ast.expr) -> bool:
     """Return whether an expression computes a number, other than from the time, which is no signal to change."""
-    if any(isinstance(each, ast.Call) and called(each) in CLOCKS for each in ast.walk(node)):
+    if _reads_clock(node):
         return False
     if isinstance(node, ast.BinOp):
         return not isinstance(node.left, ast.Constant) or not isinstance(node.left.value, str)
