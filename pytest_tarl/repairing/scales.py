@@ -14,7 +14,7 @@ from pytest_tarl.patching.charts import SHARE, Chart, offset
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.mutate import is_integral
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repairing.typical_sizes import BOUNDING, TypicalSizes
+from pytest_tarl.repairing.typical_sizes import KEEPING_UNITS, TypicalSizes
 from tarl_lint.model import Operand
 
 NEARLY_ALL = 0.8  # for shares above this, the distance to 1 is a better scale than the share
@@ -71,8 +71,8 @@ def _beside(
     """Yield the usual sizes of the values to which a constant is added, and of the sum.
 
     For a zero, also yield the sizes of values that are combined or compared with it; for a reading, the size of `read`.
-    Yield nothing if the constant is a factor or stands alone. The result of a function has a unit of its own, so it
-    says nothing of an argument.
+    Yield nothing if the constant is a factor or stands alone. The result of most functions has a unit of its own, so it
+    says nothing about their arguments.
     """
     inner: ast.AST = node
     for around in source.ancestors(node):
@@ -85,7 +85,7 @@ def _beside(
             sides = [side for side in (around.left, *around.comparators) if side is not inner]
             yield from filter(None, (sizes.known(operand.site, side) for side in sides))
             return
-        elif isinstance(around, ast.Call) and ast.unparse(around.func) not in BOUNDING:
+        elif isinstance(around, ast.Call) and ast.unparse(around.func) not in KEEPING_UNITS:
             return
         elif not (isinstance(around, ast.UnaryOp) and isinstance(around.op, ast.USub)):
             added = isinstance(around, ast.AugAssign) and isinstance(around.op, ast.Add | ast.Sub)

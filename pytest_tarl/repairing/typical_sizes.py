@@ -14,7 +14,8 @@ from pytest_tarl.patching.document import called, document
 from pytest_tarl.repairing.request import Order
 from tarl_lint.model import SiteId
 
-BOUNDING = ("abs", "float", "int", "max", "min", "round")
+# functions whose result has the unit of their arguments
+KEEPING_UNITS = ("abs", "float", "int", "max", "min", "round")
 
 
 class TypicalSizes:
@@ -48,7 +49,7 @@ class TypicalSizes:
             return self._estimated(site, node.operand)
         if isinstance(node, ast.BinOp):
             return self._of_two(site, node)
-        if isinstance(node, ast.Call) and ast.unparse(node.func) in BOUNDING:
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in KEEPING_UNITS:
             return max(filter(None, (self._estimated(site, each) for each in node.args)), default=None)
         if isinstance(node, ast.Call) and called(node) in self.returned:
             return self.returned[called(node)]
