@@ -34,7 +34,7 @@ class Placing:
     def __init__(self, mutants: Mutants) -> None:
         self.mutants = mutants
         self.order = mutants.order
-        # by the definition in the source, if there is one
+        # by the definitions in the source, or by the operand if there are none
         self._in_force: dict[Operand | tuple[Place, ...], tuple[Place, ...]] = {}
         self._why: dict[Operand, str] = {}
 
@@ -188,24 +188,21 @@ def _at(mutation: Mutation, places: Sequence[Place]) -> list[Mutation]:
 
 def _united(mutations: Sequence[Mutation]) -> list[Mutation]:
     """Unite the change of a literal with a factor on its use: `rate = 0.1` and `3 * rate` become `rate = 0.3`."""
-    by_line: dict[tuple[str, int, object], Mutation] = {
-        (one.place.path, one.place.line, one.place.value): one for one in mutations if one.place is not None
+    used: dict[tuple[str, int, object], Place] = {
+        (place.path, place.line, place.value): place for one in mutations if (place := one.place) is not None
     }
-    changed: dict[Place, float] = {}
+    changed: dict[Place | None, float] = {}
     kept: list[Mutation] = []
     for mutation in mutations:
         operand = mutation.operand
-        key = (operand.span.path, operand.span.line, operand.value)
-        use = by_line.get(key) if operand.literal and operand.value and mutation.form is None else None
-        if use is None or use.place is None or isinstance(operand.value, bool):
-            kept.append(mutation)
+        place = used.get((operand.span.path, operand.span.line, operand.value))
+        literal = operand.literal and mutation.form is None and not isinstance(operand.value, bool)
+        if place is not None and literal and operand.value:
+            changed[place] = float(mutation.value) / float(operand.value)
         else:
-            changed[use.place] = float(mutation.value) / float(operand.value or 1)
+            kept.append(mutation)
     return [
-        replace(one, value=one.value * changed[one.place])
-        if one.place is not None and one.place in changed
-        else one
-        for one in kept
+        replace(one, value=one.value * changed[one.place]) if one.place in changed else one for one in kept
     ]
 
 
