@@ -6,11 +6,12 @@ occur with every quantity: millimetres, percent, thousandths.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import pi
 from typing import Final
+
+from pytest_tarl.name_words import words
 
 TENS: Final = (10.0, 100.0, 1e3, 1e6)  # parts of any unit
 
@@ -55,13 +56,8 @@ QUANTITIES: Final = {
 
 def ratios(texts: Iterable[str]) -> tuple[float, ...]:
     """Return the ratios, and their inverses, of units that a number may have, given its names, type and use."""
-    words = {word.lower() for text in texts for word in _words(text)}
+    known = {word for text in texts for word in words(text)}
     fitting = [
-        each for one in QUANTITIES.values() if not words.isdisjoint(one.words.split()) for each in one.ratios
+        each for one in QUANTITIES.values() if not known.isdisjoint(one.words.split()) for each in one.ratios
     ]
     return tuple(ratio for each in dict.fromkeys((*TENS, *fitting)) for ratio in (each, 1.0 / each))
-
-
-def _words(text: str) -> list[str]:
-    """Return the words of a text, also those of names such as `wind_angle` and `FluidPressure`."""
-    return re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", text)

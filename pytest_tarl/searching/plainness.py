@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from enum import IntEnum
 from math import inf, isclose, isfinite, pi
 
 from pytest_tarl.model import Guard
+from pytest_tarl.name_words import words
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
@@ -15,13 +15,8 @@ from tarl_lint.model import Operand
 UNTRIED = 2  # maximum number of untried named constants to try in place of a changed literal
 # values of the acceleration of gravity in programs, in m/s²
 GRAVITY = (9.8, 9.81, 9.82, 9.807, 9.8066, 9.80665)
-SIGNS = (
-    "sign",
-    "polarity",
-    "direction",
-    "invert",
-    "inverted",
-)  # words in names of constants that are 1 or -1
+# words in names of constants that are 1 or -1
+SIGNS = ("sign", "polarity", "direction", "invert", "inverted")
 ROUNDED = 6e-4  # relative error of 3.14 as a value of π, rounded up
 
 
@@ -108,8 +103,7 @@ def is_sign(operand: Operand) -> bool:
     """Return whether an operand is a named sign: `SIGN_LEFT = -1` may become 1, but not -1.4."""
     if operand.literal or isinstance(operand.value, bool) or operand.value not in (1, -1):
         return False
-    words = re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", operand.code)
-    return any(word.lower() in SIGNS for word in words)
+    return not words(operand.code).isdisjoint(SIGNS)
 
 
 def kind(unit: Unit) -> Oddness:
