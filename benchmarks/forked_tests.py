@@ -246,24 +246,27 @@ def _run(
     status = 1
     try:
         os.setsid()
-        path = request["path"]
-        if path:
-            with suppress(ValueError):
-                if changed(known.get(path, ()), Path(path).read_bytes(), path, request["line"]):
-                    path = ""
-        if path:
+        if not _inserted(known, request):
             status = UNCHANGED
-        else:
-            names = request["tests"]
-            with Path(request["output"]).open("a", buffering=1) as output:
-                measured = own if request["slowest"] else None
-                if measured and not names:
-                    print(_told("", True, 0.0, measured, imported), file=output)
-                status = _tested(
-                    session, [items[name] for name in names], output, measured, request["slowest"]
-                )
+            return
+        measured = own if request["slowest"] else None
+        chosen = [items[name] for name in request["tests"]]
+        with Path(request["output"]).open("a", buffering=1) as output:
+            if measured and not chosen:
+                print(_told("", True, 0.0, measured.lines(imported)), file=output)
+            status = _tested(session, chosen, output, measured, request["slowest"])
     finally:
         os._exit(status)
+
+
+def _inserted(known: Mapping[str, Sequence[FunctionType]], request: Mapping[str, Any]) -> bool:
+    """Put the fault of a request, if it has one, into the functions of this process; return whether that works."""
+    path = request["path"]
+    if not path:
+        return True
+    with suppress(ValueError):
+        return changed(known.get(path, ()), Path(path).read_bytes(), path, request["line"]) > 0
+    return False
 
 
 def _tested(
@@ -299,8 +302,8 @@ def _tested(
             signal.setitimer(signal.ITIMER_PROF, 0)
         seconds = sum(os.times()[:4]) - before
         passed = len(failures) == failed
-        reached = measured.taken() if measured else []
-        print(_told(item.nodeid, passed, seconds, measured, reached), file=output)
+        lines = measured.lines(measured.taken()) if measured else {}
+        print(_told(item.nodeid, passed, seconds, lines), file=output)
         if not passed and not measured:
             return 1
         total += seconds
@@ -313,11 +316,6 @@ def _too_slow(_number: int, _frame: FrameType | None) -> None:
     raise TimeoutError("the test takes too much CPU time to be measured")
 
 
-def _told(test: str, passed: bool, seconds: float, measured: Marks | None, reached: Sequence[int]) -> str:
+def _told(test: str, passed: bool, seconds: float, lines: Mapping[str, Sequence[int]]) -> str:
     """Return a line of the output of a fork."""
-    lines: dict[str, list[int]] = {}
-    for mark in reached if measured else ():
-        assert measured is not None
-        path, numbers = measured.pieces[mark]
-        lines.setdefault(path, []).extend(numbers)
     return json.dumps({"test": test, "passed": passed, "seconds": seconds, "lines": [*lines.items()]})

@@ -27,8 +27,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -324,21 +324,17 @@ def tried(
     """
     if not tests:
         return Outcome(fault, "unreached", 0)
-    file = copy / fault.path
-    text = file.read_bytes()
-    file.write_bytes(fault.sown(text))
     limit = patience + 3 * sum(seconds[test] for test in tests)
     word, suspects = "caught", tests
     try:
-        status, failed = tested(copy, tests, limit, runner)
+        with inserted(fault, copy):
+            status, failed = tested(copy, tests, limit, runner)
     except subprocess.TimeoutExpired:
         word = "timeout"
     else:
         if not status:
             return Outcome(fault, "survived", len(tests))
         suspects = [failed] if failed else tests
-    finally:
-        file.write_bytes(text)
     try:
         sound = tested(copy, suspects, limit, runner)[0] == 0
     except subprocess.TimeoutExpired:
@@ -360,15 +356,10 @@ def tried_in_fork(
     """
     if not tests:
         return Outcome(fault, "unreached", 0)
-    file = copy / fault.path
-    text = file.read_bytes()
-    file.write_bytes(fault.sown(text))
     limit = patience + SLOWED * sum(seconds[test] for test in tests)
-    try:
+    with inserted(fault, copy) as file:
         ran = forked(tests, limit, str(file), fault.line)
-    finally:
-        file.write_bytes(text)
-        without_caches(copy)
+    without_caches(copy)
     if ran.status == str(UNCHANGED):
         return None
     if ran.status == "0":
@@ -377,6 +368,18 @@ def tried_in_fork(
     without_caches(copy)
     word = "timeout" if ran.status == "timeout" else "caught"
     return Outcome(fault, word if sound else "unclear", len(tests), ran.failed)
+
+
+@contextmanager
+def inserted(fault: Fault, copy: Path) -> Iterator[Path]:
+    """Insert a fault into its file in the copy, yield the file, and remove the fault."""
+    file = copy / fault.path
+    text = file.read_bytes()
+    file.write_bytes(fault.sown(text))
+    try:
+        yield file
+    finally:
+        file.write_bytes(text)
 
 
 def without_caches(copy: Path) -> None:

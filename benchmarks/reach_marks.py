@@ -52,6 +52,14 @@ class Marks:
             at = data.find(1, at + 1)
         return found
 
+    def lines(self, stored: Sequence[int]) -> dict[str, list[int]]:
+        """Return the lines of the pieces of marks, by file."""
+        found: dict[str, list[int]] = {}
+        for mark in stored:
+            path, numbers = self.pieces[mark]
+            found.setdefault(path, []).extend(numbers)
+        return found
+
 
 def pieces(body: Sequence[ast.stmt]) -> Iterator[list[ast.stmt]]:
     """Yield the statements of a block in pieces: of each piece, all run, or an exception ends it.
