@@ -19,27 +19,24 @@ with a pytest.ini of their own are not run.
 from __future__ import annotations
 
 import argparse
-import compileall
 import json
-import os
 import random
 import shutil
 import subprocess
-import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from py_compile import PycInvalidationMode
 
 from forked_tests import IMPORTED, SLOWEST, UNCHANGED, Forks, forks
+from measured_reach import known, measured, measured_in_forks
 from nearest_tests import Nearest
-from reach_marks import FOLDER, compiled
-from reached_lines import Reached, from_coverage, read
+from reached_lines import Reached
 from scipy.stats import beta
 from sown_faults import Fault, faults
+from tested_copy import apart, collected, environment, precompiled, without_caches
 from warm_pytest import Runner, warm
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -50,13 +47,6 @@ LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache",
 BUDGET = 120.0
 PATIENCE = 120.0  # seconds allowed beyond three times the CPU time of the tests without the fault
 SLOWED = 10  # times that a test may take its CPU seconds, on a busy machine, until a fork is killed
-SETTINGS = """[run]
-source = {source}
-parallel = true
-patch = _exit
-context = ${{TEST_OF_MUTANTS-}}
-data_file = {data}
-"""
 
 
 @dataclass(frozen=True)
@@ -169,110 +159,6 @@ def main() -> None:
     report(outcomes)
 
 
-def known(keep: Sequence[Path], measure: Callable[[], Reached]) -> Reached:
-    """Return which tests reach which lines; measure it, or read it from the files."""
-    if not keep:
-        return measure()
-    reached = Reached()
-    for file in keep:
-        if not file.exists():
-            measure().write(file)
-        reached.add(read(file))
-    return reached
-
-
-def measured_in_forks(copy: Path, package: str, tests: Sequence[str], slowest: float = SLOWEST) -> Reached:
-    """Run the tests once with marks in the package; see `reach_marks.py`."""
-    with tempfile.TemporaryDirectory(prefix="marks-") as folder:
-        compiled(copy, package, Path(folder))
-        start = f"import sys\nsys.path.append({str(Path(__file__).parent)!r})\n"
-        start += "import reach_marks\nreach_marks.install()\n"
-        (Path(folder) / "sitecustomize.py").write_text(start)
-        surroundings = {**environment(copy), FOLDER: folder}
-        surroundings["PYTHONPATH"] += os.pathsep + folder
-        with forks(copy, surroundings, tests) as running:
-            return running.measured(slowest)
-
-
-def measured(copy: Path, package: str, tests: Sequence[str]) -> Reached:
-    """Run the tests once under coverage."""
-    with tempfile.TemporaryDirectory() as folder:
-        settings, data = Path(folder) / "rc", Path(folder) / "data"
-        settings.write_text(SETTINGS.format(source=copy / package, data=data))
-        (Path(folder) / "test_times.py").write_text(TIMES)
-        surroundings = {
-            **environment(copy),
-            "COVERAGE_PROCESS_START": str(settings),
-        }
-        surroundings["PYTHONPATH"] += os.pathsep + folder
-        own = [sys.executable, "-m", "coverage"]
-        run = [
-            *own,
-            "run",
-            f"--rcfile={settings}",
-            "-m",
-            "pytest",
-            "-q",
-            "-p",
-            "test_times",
-            "-p",
-            "no:cacheprovider",
-        ]
-        seconds: dict[str, float] = {}
-        for arguments in apart(copy, with_own_settings(copy, tests)):
-            times = Path(folder) / "times.json"
-            with_times = {**surroundings, "TEST_TIMES": str(times)}
-            subprocess.run([*run, *arguments], cwd=copy, env=with_times, check=False, stdout=sys.stderr)
-            seconds |= json.loads(times.read_text())
-        subprocess.run(
-            [*own, "combine", f"--rcfile={settings}", "-q"], cwd=copy, env=surroundings, check=True
-        )
-        return from_coverage(data, copy, seconds)
-
-
-TIMES = """
-import json, os
-from pathlib import Path
-import pytest
-passed, owner, begun = {}, os.getpid(), {}
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_call(item):
-    begun[item.nodeid] = sum(os.times()[:4])
-def pytest_runtest_logreport(report):
-    if report.when == "call" and report.passed and report.nodeid in begun:
-        passed[report.nodeid] = sum(os.times()[:4]) - begun[report.nodeid]
-def pytest_unconfigure():
-    if os.getpid() == owner and not os.environ.get("PYTEST_CURRENT_TEST"):
-        Path(os.environ["TEST_TIMES"]).write_text(json.dumps(passed))
-import coverage
-def pytest_runtest_setup(item):
-    os.environ["TEST_OF_MUTANTS"] = item.nodeid  # for child processes; a test may run pytest inside
-    if (current := coverage.Coverage.current()) is not None:
-        current.switch_context(item.nodeid)
-"""
-
-
-def with_own_settings(copy: Path, tests: Iterable[str]) -> list[str]:
-    """Return the tests and the folders below them that have a pytest.ini of their own."""
-    inner = {
-        ini.parent.relative_to(copy).as_posix()
-        for test in tests
-        for ini in (copy / test).rglob("*/pytest.ini")
-    }
-    return [*tests, *sorted(inner)]
-
-
-def apart(copy: Path, tests: Iterable[str]) -> list[list[str]]:
-    """Return the arguments of each pytest run; tests with different pytest.ini files run separately."""
-    runs: dict[str, list[str]] = {}
-    for test in tests:
-        file = Path(test.partition("::")[0])
-        above = (folder / "pytest.ini" for folder in (file, *file.parents))
-        ini = next((one.as_posix() for one in above if (copy / one).is_file()), "")
-        runs.setdefault(ini, ["-c", ini, "--rootdir", "."] if ini else []).append(test)
-    return list(runs.values())
-
-
 def sample(
     copy: Path, package: str, only: set[str], each: int, seed: int, count: int | None = None
 ) -> list[Fault]:
@@ -288,25 +174,6 @@ def sample(
         all_ = [one for file in files for one in faults(file, file.relative_to(copy).as_posix())]
         chosen += random.Random(f"{seed} {name}").sample(all_, min(each, len(all_)))
     return chosen
-
-
-def precompiled(copy: Path) -> None:
-    """Compile the sources of the copy.
-
-    Python compares the digest of a source with the compiled one, so it never misses a fault.
-    """
-    for package in ("pytest_tarl", "tarl_lint"):
-        compileall.compile_dir(copy / package, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)
-
-
-def collected(copy: Path, tests: Sequence[str]) -> None:
-    """Compile the tests of the copy by collecting them, without running any."""
-    command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider"]
-    surroundings = {**environment(copy), "PYTHONDONTWRITEBYTECODE": ""}
-    for arguments in apart(copy, tests):
-        subprocess.run(
-            [*command, *arguments], cwd=copy, env=surroundings, check=False, stdout=subprocess.DEVNULL
-        )
 
 
 def tried(
@@ -382,12 +249,6 @@ def inserted(fault: Fault, copy: Path) -> Iterator[Path]:
         file.write_bytes(text)
 
 
-def without_caches(copy: Path) -> None:
-    """Remove the caches of TARL from the copy."""
-    for cache in copy.rglob(".tarl"):
-        shutil.rmtree(cache, ignore_errors=True)
-
-
 def tested(copy: Path, tests: Sequence[str], limit: float, runner: Runner) -> tuple[int, str]:
     """Return pytest's exit status and the first failed test, or no test if pytest itself failed.
 
@@ -418,16 +279,6 @@ def tested(copy: Path, tests: Sequence[str], limit: float, runner: Runner) -> tu
             ]
             return status, max(failed, key=len, default="")
     return 0, ""
-
-
-def environment(copy: Path) -> dict[str, str]:
-    """Return an environment that imports the copy and caches nothing."""
-    return {
-        **os.environ,
-        "PYTHONPATH": str(copy),
-        "PYTHONDONTWRITEBYTECODE": "1",
-        "HYPOTHESIS_STORAGE_DIRECTORY": os.devnull,
-    }
 
 
 def report(outcomes: Sequence[Outcome]) -> None:

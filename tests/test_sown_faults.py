@@ -200,7 +200,10 @@ def test_tests_with_a_pytest_ini_of_their_own_run_by_themselves(
     (own / "test_own.py").write_text("from half import half\ndef test_half(): assert half(4) == 2\n")
     (tmp_path / "tests" / "test_other.py").write_text("def test_other(): pass\n")
     names = ["tests/test_other.py::test_other", "tests/own/test_own.py::test_half"]
-    assert mutants.with_own_settings(tmp_path, ["tests"]) == ["tests", "tests/own"]
+    assert importlib.import_module("tested_copy").with_own_settings(tmp_path, ["tests"]) == [
+        "tests",
+        "tests/own",
+    ]
     (fault,) = (one for one in sown.faults(file, "half.py") if one.was == "/")
     assert mutants.tried(fault, tmp_path, names, dict.fromkeys(names, 1.0), runner).word == "caught"
     assert mutants.tried(fault, tmp_path, names[:1], dict.fromkeys(names, 1.0), runner).word == "survived"
