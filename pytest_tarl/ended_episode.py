@@ -27,9 +27,8 @@ class EndedEpisode:
     situation: Situation
     faults: Faults
     drifted: bool  # whether a drift or a fault is active; then a node that publishes nothing is not an error
-    changed: (
-        bool  # whether a candidate for a repair runs; with it, a watchdog may rightly be silent in a mission
-    )
+    # whether a candidate for a repair runs; with it, a watchdog may rightly be silent in a mission
+    changed: bool
     ros: Ros | None  # the ROS of the episode; None if the test did not use ROS
     drives_ros: bool  # whether nodes were started
     replay: Replay | None  # the recorded mission, if the episode replays one

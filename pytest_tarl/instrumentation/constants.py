@@ -18,9 +18,8 @@ def _mark(name: str) -> Mark:
     return hashlib.sha256(f"pytest_tarl.instrumentation {name}".encode()).digest()
 
 
-HOOK = _mark(
-    "hook"
-)  # the function `hook(number, value)`, which records the number of a site and returns the value
+# the function `hook(number, value)`, which records the number of a site and returns the value
+HOOK = _mark("hook")
 BUFFER = _mark("buffer")  # the list to which instrumented code appends its events
 TYPE = _mark("type")  # the builtin `type`, since the program may shadow its name
 FLOAT = _mark("float")

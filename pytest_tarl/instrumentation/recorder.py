@@ -66,9 +66,8 @@ class Recorder:
         self._local = threading.local()
         self._buffers: list[_Buffer] = []
         self._cells: dict[Cell, int] = {}
-        self._latched: list[
-            int
-        ] = []  # for each mark in the buffer, the index of the cell that became current there
+        # for each mark in the buffer, the index of the cell that became current there
+        self._latched: list[int] = []
         self._rewards: list[int] = []  # indices of the marks in the buffer at which a step ends
         self._totals: list[float] = []
         self._parts: list[Mapping[str, float]] = []

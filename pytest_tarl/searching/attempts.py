@@ -95,16 +95,14 @@ class Attempts:
         self.preferences = Preferences(self)
         self.combining = Combining(self)
         self.adjusting = Adjusting(self)
-        self.twins: tuple[
-            Unit, ...
-        ] = ()  # groups of constants that are tried together once one of them gains
+        # groups of constants that are tried together once one of them gains
+        self.twins: tuple[Unit, ...] = ()
         self._easy = easy(goal)
         self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # change → mission pair of its first run
         self._tried: set[Candidate] = set()
         self._divided: set[Unit] = set()  # units of which no single value suits all missions
-        self._adjusted: set[tuple[Unit, Guard]] = (
-            set()
-        )  # units that were adjusted because they nearly earned enough
+        # units that were adjusted because they nearly earned enough
+        self._adjusted: set[tuple[Unit, Guard]] = set()
         self._settled = Settled()
 
     def interlude(self, gain: float) -> Iterator[Candidate]:

@@ -15,9 +15,8 @@ HIGHEST = 1.0 - LOWEST  # larger losses count as this one, because margins below
 WIDTH = 0.3  # standard deviation of the weights of drifts by their mean loss, in units of the tolerated loss
 # weight (degrees of freedom) of the typical variance, averaged with the variances of drifts of similar mean loss
 LIKE = 2.0
-WORSE = (
-    1.2  # maximum standard error of an unpaired test, as a multiple of that of a paired test, to be preferred
-)
+# an unpaired test is preferred if its standard error is at most this multiple of that of a paired test
+WORSE = 1.2
 PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
 
 

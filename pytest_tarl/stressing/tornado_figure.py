@@ -9,13 +9,8 @@ from pytest_tarl.stressing.map_figure import COLOURS
 from pytest_tarl.stressing.mapping import importance, lost
 from pytest_tarl.stressing.svg_text import INK, svg_text
 
-BAR, GAP, LABEL, WIDTH, END = (
-    22,
-    12,
-    150,
-    640,
-    60,
-)  # pixels; END is the space for the value at the end of a bar
+# pixels; END is the space for the value at the end of a bar
+BAR, GAP, LABEL, WIDTH, END = 22, 12, 150, 640, 60
 
 
 def tornado(stress: Stress) -> str:
