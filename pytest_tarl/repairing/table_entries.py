@@ -33,9 +33,10 @@ def entry_uses(analysis: Analysis, literals: Sequence[Operand]) -> dict[Operand,
     reads: dict[str, list[tuple[Document, ast.expr, SiteId]]] = {}
     for source in sources:
         for node in ast.walk(source.tree):
-            key = _key_read(node)
-            site = _site(steps[source.path], node) if isinstance(node, ast.expr) and key in often else None
-            if key and site is not None and isinstance(node, ast.expr):
+            if not isinstance(node, ast.expr) or (key := _key_read(node)) not in often:
+                continue
+            site = _site(steps[source.path], node)
+            if site is not None:
                 reads.setdefault(key, []).append((source, node, site))
     found: dict[Operand, tuple[Operand, ...]] = {}
     for literal in literals:
@@ -75,7 +76,7 @@ def _keys_of_table(node: ast.AST) -> Iterator[str]:
         yield from (text for key in node.keys if (text := _text(key)))
 
 
-def _key_read(node: ast.AST) -> str:
+def _key_read(node: ast.expr) -> str:
     """Return the key with which an expression reads a table: `p["speed"]`, `p.get("speed", 0.4)`; else ""."""
     if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Load):
         return _text(node.slice)

@@ -65,10 +65,9 @@ def _of_message(source: Document, node: ast.expr) -> bool:
     if function is None:
         return False
     names = argument_names(function)
-    for each in ast.walk(node):
-        if isinstance(each, ast.BinOp | ast.IfExp | ast.Compare):
-            return False
-    return any(
+    parts = list(ast.walk(node))
+    computes = any(isinstance(each, ast.BinOp | ast.IfExp | ast.Compare) for each in parts)
+    return not computes and any(
         isinstance(each, ast.Attribute) and ast.unparse(each).partition(".")[0].partition("[")[0] in names
-        for each in ast.walk(node)
+        for each in parts
     )

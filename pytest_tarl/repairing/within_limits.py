@@ -37,14 +37,13 @@ def _clamped(source: Document, call: ast.Call, known: Collection[str]) -> ast.ex
     """Return the argument of a clamp that is no limit."""
     name = called(call)
     if name in CLAMPS and len(call.args) == 3:
-        values, limits = call.args[:1], call.args[1:]
+        possible = call.args[:1]
     elif name in OPPOSITE and len(call.args) == 2:
-        values = [each for each in call.args if not _constant(source, each, known)]
-        limits = [each for each in call.args if each not in values]
+        possible = call.args
     else:
         return None
-    clear = len(values) == 1 and not _constant(source, values[0], known) and bool(limits)
-    return values[0] if clear else None
+    values = [each for each in possible if not _constant(source, each, known)]
+    return values[0] if len(values) == 1 else None
 
 
 def _passed(source: Document, call: ast.Call, known: Collection[str]) -> ast.expr | None:
