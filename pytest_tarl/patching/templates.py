@@ -105,7 +105,7 @@ class Template:
     parameters: tuple[Parameter, ...] = ()
     without: str = ""
     symptoms: tuple[str, ...] = ()  # symptoms that indicate the template (see `pytest_tarl.symptoms`)
-    inside: bool = False  # of sensors: written within the limits of the value, if it has any
+    inside: bool = False  # for sensors: whether to change what a clamp limits, if the value has a clamp
 
     def uses(self, placeholder: str) -> int:
         """Return how often a placeholder occurs in the lines and the expression."""

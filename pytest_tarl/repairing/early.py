@@ -149,9 +149,9 @@ class Early:
         return reached_limits(order, [(designed, trace)], drifted) if trace is not None else []
 
     def entered(self, mutants: Mutants, candidate: Candidate) -> Sequence[Operand]:
-        """Return the constants of the statements that a candidate lets drifted missions enter, and none without pairs.
+        """Return the constants of the statements that a candidate lets a drifted mission enter.
 
-        A changed mission that was not recorded yet is charged.
+        Return none without recorded pairs. A changed mission that was not recorded yet is charged.
         """
         pairs = self._pairs(self.trials)
         trace = self._changed(mutants, candidate) if pairs else None

@@ -1,8 +1,8 @@
-"""Statements that a change lets a mission enter: it is then further on its way than the unrepaired one.
+"""Statements that a mission reaches only with a change: the mission then gets further than the unrepaired one.
 
 A climber whose flippers are too low never leaves the floor. With higher flippers it climbs a step, slides down again
-and earns less than before. Its reward shows nothing, but the mission runs statements that only the designed mission
-ran so far: what stops it now is among their constants.
+and earns less than before. The reward shows no progress, but the mission runs statements that only the designed
+mission ran so far. What stops it now is among their constants.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ from tarl_lint.model import Operand
 
 
 def entered(order: Order, pairs: Sequence[Recorded], changed: Trace) -> list[Operand]:
-    """Return the constants of statements that a changed mission runs, and else only designed missions, in its order.
+    """Return the constants of the statements that a change lets a mission enter, in the order in which it runs them.
 
-    `pairs` are the recorded missions without the change, those of the changed mission's seed among them.
+    Designed missions run these statements, and drifted missions without the change do not. `pairs` are the recorded
+    missions without the change; some have the seed of the changed mission.
     """
     designed = {number for one, _ in pairs for number in np.unique(one.site).tolist()}
     drifted = {number for _, one in pairs for number in np.unique(one.site).tolist()}

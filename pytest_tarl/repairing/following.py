@@ -65,10 +65,10 @@ def following(order: Order, candidate: Candidate) -> Iterator[Candidate]:
 
 
 def proportional(order: Order, used: Sequence[Operand]) -> Iterator[Candidate]:
-    """Yield unconditional candidates in which a constant is proportional to what varies more than as designed.
+    """Yield unconditional candidates in which a constant is proportional to a quantity that varies more than designed.
 
-    These are sensors that visit clearly more bins and, if there are any, the most suspect variable at the uses of the
-    constant. Each has its designed value where the constant keeps its own.
+    Such quantities are sensors that visit clearly more bins and, if there are any such sensors, the most suspect
+    variable at the uses of the constant. Where the quantity has its designed value, the constant keeps its own.
     """
     plain = all(not isinstance(one.value, bool) and one.value != 0 for one in used)
     template = next((one for one in templates(order.root) if one.name == FOLLOWS), None)

@@ -51,7 +51,7 @@ def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand
     A constant that is compared with a value, added to it or subtracted from it has the unit of this value, so it must
     change as the value did: constants next to values with the same factor change together, then each alone, then by the
     difference. A constant that multiplies or divides a value changes by the factor of the result, in either direction.
-    A threshold that only designed missions cross moves to where the drifted ones cross it, also if it is a literal.
+    A threshold that only designed missions cross moves to where the drifted ones cross it, even if it is a literal.
     """
     changes = _changes(order, recorded)
     values = _values(order, recorded)
@@ -83,7 +83,7 @@ def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand
 def _reaching(
     order: Order, values: Mapping[str, Sequence[tuple[Floats, Floats]]], operands: Sequence[Operand]
 ) -> Iterator[tuple[Operand, float]]:
-    """Yield the thresholds that only designed missions cross, each with the factor with which drifted ones do, too."""
+    """Yield the thresholds that only designed missions cross, each with the factor that lets drifted ones cross it."""
     for operand in dict.fromkeys(operands):
         value, found = _number(operand), _place(order, operand)
         if not value or found is None:
@@ -139,7 +139,7 @@ def _values(order: Order, recorded: Sequence[Recorded]) -> dict[str, list[tuple[
 
 
 def _separating(value: float, compared: Iterable[Sequence[tuple[Floats, Floats]]]) -> Iterator[float]:
-    """Yield the factors of a threshold with which it separates the drifted values as it did in the designed missions.
+    """Yield the factors with which a threshold separates the drifted values as it separated the designed ones.
 
     For example, a node ignores positions that differ by more than its gate. After a slip of a wheel it ignores all of
     them, until the gate lies between the slip and the errors that it is meant for.

@@ -1,7 +1,7 @@
 """Literal factors that convert a unit: they follow from the definition of the units, and no drift changes them.
 
-In `kpa = msg.fluid_pressure / 1000.0`, a smaller divisor has the same effect as a lower threshold for `kpa`, but hides
-it where nobody looks for it. If a sensor reads too much, a factor of its own says so.
+In `kpa = msg.fluid_pressure / 1000.0`, a smaller divisor has the same effect as a lower threshold for `kpa`, but nobody
+looks for the change there. A sensor that reads too much is corrected by a factor of its own.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def _beside_pi(source: Document, product: ast.BinOp) -> bool:
 
 
 def _of_message(source: Document, node: ast.expr) -> bool:
-    """Return whether an expression reads a field of an argument of its function, and computes nothing else from it."""
+    """Return whether an expression reads a field of an argument of its function, and does not compute with it."""
     function = source.function(node)
     if function is None:
         return False

@@ -47,7 +47,7 @@ def _clamped(source: Document, call: ast.Call, known: Collection[str]) -> ast.ex
 
 
 def _passed(source: Document, call: ast.Call, known: Collection[str]) -> ast.expr | None:
-    """Return the only argument of a call of a function of this file that does nothing else than limit a value of it."""
+    """Return the only argument of a call if the function is in this file and only limits a value computed from it."""
     functions = [
         one for one in ast.walk(source.tree) if isinstance(one, Function) and one.name == called(call)
     ]

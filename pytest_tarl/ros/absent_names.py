@@ -67,9 +67,7 @@ def _of_caught(name: str, module: str, line: int) -> str:
         return ""  # the import did not fail
     why = interface_advice(module) or module_advice(ModuleNotFoundError(name=module.partition(".")[0]))
     return (
-        f"The import of {name} in line {line} did not succeed, and the node continued without it. {why}"
-        if why
-        else ""
+        f"The import of {name} in line {line} failed, and the node continued without it. {why}" if why else ""
     )
 
 

@@ -49,7 +49,7 @@ class Bracket:
 
 
 def in_between(search: Search, guard: Guard, units: Sequence[Unit]) -> Generator[Candidate, None, bool]:
-    """Halve the interval between both reasons, on a logarithmic scale, until a mission does not fail.
+    """Halve the interval between factors that fail for different reasons, on a logarithmic scale, until one succeeds.
 
     Return whether any constant was tried.
     """

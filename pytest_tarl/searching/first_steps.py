@@ -133,7 +133,7 @@ class FirstSteps:
                 yield from tries.adjusting.refine(tries.pair)
 
     def _inert(self, unit: Unit, guard: Guard, factor: float) -> bool:
-        """Return whether a literal that decides nothing had no effect with the first factor, so that none follows."""
+        """Return whether a literal that decides nothing had no effect with the first factor; then no other is tried."""
         tried = self.attempts.gains.of(unit, guard)
         literal = unit.operands[0].literal and not self.attempts.proposed
         dull = factor == NEAR[1] and NEAR[0] in tried and not self.attempts.gains.moves(unit)
@@ -155,7 +155,7 @@ class FirstSteps:
             yield from self._limits(self._unconditional(guard))
 
     def _laws(self, guard: Guard) -> Iterator[Candidate]:
-        """Let the named constants follow what varies that clearly lost in both directions, once, if nothing gained."""
+        """If nothing gained, let the named constants that clearly lost in both directions follow what varies, once."""
         tries, gains = self.attempts, self.attempts.gains
         lost = gains.clearly_lost(guard, named(tries.units), NEAR)
         if self._proportional is not None and lost and not gains.anything():

@@ -1,8 +1,8 @@
-"""Hold the change that leads missions further on, although it gains nothing, and try other constants under it.
+"""Try other constants together with a change that lets missions get further, although it gains nothing.
 
 If two constants stop a mission one after the other, the right value of the first one only moves the failure to a later
-stage. All failures earn about the same, so no reward leads to the pair. The statements that such a mission runs do: if
-some of them are run by designed missions and not by the unrepaired one, the change leads the right way.
+stage. All failures earn about the same, so the reward does not lead to the pair, but the statements that run do: if the
+mission runs statements that designed missions run and the unrepaired one does not, the change is probably right.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ MOST = 10  # maximum number of constants that are tried under a change
 def further_on(
     bases: Sequence[Joint], rest: Sequence[Unit], entered: Entered, selection: ForwardSelection
 ) -> Iterator[Candidate]:
-    """Yield confirmed combinations of one other unit with the first of `bases` that leads missions further on.
+    """Yield confirmed combinations of one other unit with the first of `bases` that lets missions get further.
 
-    The constants of the statements that it lets missions enter come first. Raise BudgetSpentError.
+    The constants of the statements that missions enter only with this change come first. Raise BudgetSpentError.
     """
     for base in bases:
         new = set(entered(base.candidate(selection.mutate)))

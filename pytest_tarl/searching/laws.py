@@ -1,4 +1,4 @@
-"""Let constants follow what varies more than designed, if no single value of them is better than the old one.
+"""Let constants follow a quantity that varies more than designed, if no single value is better than the old one.
 
 A stage light is right for actors at its mark. If they walk over the whole stage, any other value of the lamp is worse
 on average, since half of the places want more and half want less. A power of the distance suits them all.

@@ -35,8 +35,8 @@ RECORDED = 0.05  # share of the whole risk for the bound of the recorded mean re
 # shares of the whole risk for the first chains; each further chain gets half of the rest
 SHARES = (0.4, 0.3, 0.1, 0.05)
 QUICK = SIZES[0]  # number of episodes that the search runs at a confirmed failure
-# a new chain comes before an interrupted one if its near end is below this share of the distance of the latter's next
-# drift
+# a new chain comes before the interrupted one if the distance of its near end is below this share of the distance of
+# the next drift of the interrupted chain
 AHEAD = 0.97
 
 
@@ -95,9 +95,9 @@ class Together:
     ) -> bool:
         """Test drifts on fresh seeds, farthest first, until one is not confirmed; return whether one was confirmed.
 
-        The tests are about this part of the guarantee, which must not depend on the fresh seeds. Those that are
-        `unpaired` compare with a lower bound of the recorded mean reward. This bound has a share of the risk of its
-        own and is the same in all chains, so their drifts may depend on it.
+        The tests are about this part of the guarantee; its choice must not depend on the fresh seeds. With `unpaired`,
+        the tests compare with a lower bound of the recorded mean reward. This bound has its own share of the risk and
+        is the same in all chains, so the drifts may depend on it.
 
         Each test has the whole risk of the chain: if the guarantee holds at some of the drifts, an error needs the
         confirmation of the first of these. The seeds are new for each chain, so its drifts may depend on the outcomes
@@ -274,8 +274,8 @@ class Combined:
     def _continue(self) -> bool:
         """Continue the interrupted chain, or test a chain that leads nearer; return whether a drift was confirmed.
 
-        An interrupted chain needs fewer episodes than a new one, because its seeds have run already at the drift
-        before. It is not continued if the model, which has learned from it, no longer expects a confirmation. Raise
+        An interrupted chain needs fewer episodes than a new one, because its seeds have already run at its last drift.
+        It is not continued if the model, which has learned from it, no longer expects a confirmation. Raise
         BudgetSpentError.
         """
         begun = self.together.interrupted

@@ -66,7 +66,7 @@ def variance_near(loss: float, every: Sequence[Vector], typical: float) -> float
 def pairing_wastes(
     given: Guarantee, paired: Sequence[Vector], unpaired: Sequence[Vector], episodes: int
 ) -> bool:
-    """Return whether nominal episodes with the same seeds would make a test of `episodes` hardly more precise.
+    """Return whether a test of this many episodes hardly gains from nominal episodes with the same seeds.
 
     `paired` are the cut-off losses of drifts from nominal episodes with the same seeds, and `unpaired` those from the
     mean of nominal episodes, in units of the tolerated loss. An unpaired test takes half as many episodes, but the

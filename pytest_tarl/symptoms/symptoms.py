@@ -113,9 +113,9 @@ def runaway(pairs: Sequence[Pair]) -> float:
 
 
 def overshoot(pairs: Sequence[Pair]) -> float:
-    """Return how far the value passes zero, seen from where it starts, compared with the designed missions.
+    """Return how much farther values go to the other side of zero than in the designed missions.
 
-    A mission may end by it, before the value could swing.
+    A mission may end because of an overshoot, before the value can swing.
     """
     series = [one for pair in pairs for one in (pair.designed, pair.drifted)]
     if not series or any(one.values.size < FEWEST for one in series):
@@ -208,9 +208,9 @@ def _apart(pair: Pair, size: float) -> float:
 
 
 def _past_zero(values: Floats) -> float:
-    """Return how far values get to the other side of zero, as a share of how far they are on the side of the first.
+    """Return the largest distance beyond zero, as a share of the largest distance on the side where the series starts.
 
-    Single values that stick out are left out, by a median of three.
+    A median of three removes single outliers.
     """
     smooth = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)
     toward = smooth * float(np.sign(smooth[0]))

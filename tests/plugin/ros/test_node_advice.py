@@ -89,10 +89,10 @@ except {1}:
 """
 CAUGHT = {
     ("from servo_board.msg import Servo", "ImportError as e", "Servo()"): (
-        r"The import of Servo in line 3 did not succeed, and the node continued without it\. No package .* defines serv"
+        r"The import of Servo in line 3 failed, and the node continued without it\. No package .* defines serv"
     ),
     ("import cv2000 as cv", "(ValueError, ModuleNotFoundError)", "cv.show()"): (
-        r"The import of cv in line 3 did not succeed, and the node continued without it\. .* run pip install cv2000, or"
+        r"The import of cv in line 3 failed, and the node continued without it\. .* run pip install cv2000, or"
     ),
     (
         "import os.path\n    1 / 0\n    import cv2000.parts",
