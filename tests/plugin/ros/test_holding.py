@@ -135,7 +135,8 @@ def test_node_errors_show_a_sentence_the_traceback_and_the_line_of_the_test(
 
 def test_the_debugger_stops_in_the_node(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "            flow = GAIN * missing", "            flow = GAIN * missing / 0")
-    child = tank.spawn_pytest("--pdb test_tank.py")
+    # On a busy machine, pytest alone may need more than pexpect's ten seconds to start.
+    child = tank.spawn_pytest("--pdb test_tank.py", expect_timeout=120)
     child.expect(r"\(Pdb\)")
     child.sendline("p missing, GAIN")
     child.expect(r"\(0\.\d+, 2\.0\)")
