@@ -76,43 +76,51 @@ def _run(typed: Namespace) -> int:
     config = resolve(chosen)
     _check(config)
     if typed.show_settings:
-        from tarl_lint.report.settings import settings
-
-        _print(settings(config))
+        _print(_settings(config))
         return 0
     result = _lint(chosen, config)
     if typed.write_baseline:
         _print(_accept(result, config))
         return 0
-    _show(typed, result)
+    _show(typed, result, lambda view: report.render(typed.format, result, view))
     return FOUND if runner.exceeds(result, config) else 0
 
 
 def _launched(typed: Namespace) -> int:
     """Report the systems of launch files."""
     from tarl_lint.system import command
+    from tarl_lint.system.as_result import as_result
 
-    asked = command.request(typed.launch, typed.paths, typed.origin, typed.target)
-    if typed.format not in command.FORMATS:
+    if typed.stdin_filename is not None or Path("-") in typed.paths:
         raise UsageError(
-            f"--format {typed.format} cannot show launch files: use one of {', '.join(command.FORMATS)}."
+            f"{'--launch' if typed.launch is not None else '--from and --to'} analyses the files of a workspace, not "
+            "standard input: omit - and --stdin-filename."
         )
+    asked = command.request(typed.launch, typed.paths, typed.origin, typed.target)
     typed.paths = [asked.root]
     chosen = options(typed)
     config = resolve(chosen)
     _check(config)
+    if typed.show_settings:
+        _print(_settings(config))
+        return 0
     made = _with_progress(lambda tell: command.systems(asked, config, tell, cached=chosen.cache))
     found = command.judged(made, config, writing=typed.write_baseline)
+    gone = command.vanished(found, asked, config)
     if typed.write_baseline:
-        path, written = command.accepted(found, config)
+        path, written = command.accepted(found, config, gone)
         baseline.save(path, written)
         _print([((f"{shown(path)}: {summary.numbers(written)} accepted.", "strong"),)])
         return 0
-    if typed.output_file:
-        _write_file(typed.output_file, command.rendered(typed.format, found, asked, _view(typed)))
-    else:
-        _print(command.rendered(typed.format, found, asked, _view(typed, sys.stdout)))
-    return FOUND if command.new_hazards(found) and config.fail_on != "never" else 0
+    result = as_result(found, config, gone)
+    _show(typed, result, lambda view: command.rendered(typed.format, found, asked, view, result))
+    return FOUND if runner.exceeds(result, config) else 0
+
+
+def _settings(config: Config) -> Iterator[Line]:
+    from tarl_lint.report.settings import settings
+
+    return settings(config)
 
 
 def _explanation(code: str) -> Iterator[Line]:
@@ -157,17 +165,17 @@ def _check(config: Config) -> None:
         facts(config.wrappers)
 
 
-def _show(typed: Namespace, result: Result) -> None:
+def _show(typed: Namespace, result: Result, render: Callable[[View], Iterable[Line]]) -> None:
     """Print the report, or write it to a file.
 
     Information that the format has no place for goes to standard error.
     """
     if typed.output_file:
         view = _view(typed)
-        _write_file(typed.output_file, report.render(typed.format, result, view))
+        _write_file(typed.output_file, render(view))
     else:
         view = _view(typed, sys.stdout)
-        _print(report.render(typed.format, result, view))
+        _print(render(view))
     if typed.format not in report.FOR_PEOPLE:
         for line in (*summary.vanished(result, view), *summary.unused(result), *summary.unmatched(result)):
             print(paint.harmless(plain(line)), file=sys.stderr)

@@ -1,4 +1,7 @@
-"""Comments that silence a finding: `# tarl: ignore`, `# tarl: ignore[TARL101]`, `# noqa: TARL101`."""
+"""Comments that silence a finding: `# tarl: ignore`, `# tarl: ignore[TARL101]`, `# noqa: TARL101`.
+
+In launch files of XML, the comment is `<!-- tarl: ignore[TARL308] -->`.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +17,8 @@ _COMMENT: Final = (  # a string that is compiled at first use, since most runs n
     r"(?i:#\s*(?:tarl:\s*ignore\b\s*(?:\[(?P<own>[^\]]*)\]?)?"
     r"|noqa:\s*(?P<noqa>[A-Z]+[0-9]+(?:[\s,]+[A-Z]+[0-9]+)*)))"
 )
+_XML: Final = (".launch", ".xml", ".test")
+_YAML: Final = (".yaml", ".yml")
 
 
 @dataclass(frozen=True)
@@ -51,7 +56,7 @@ def suppressions(path: str, text: str) -> tuple[Suppression, ...]:
         return ()
     return tuple(
         Suppression(path, line, column + found.start(), code)
-        for line, column, comment in _comments(text)
+        for line, column, comment in _in_file(path, text)
         for found in re.finditer(_COMMENT, comment)
         for code in _codes(found)
     )
@@ -65,6 +70,20 @@ def _codes(comment: re.Match[str]) -> tuple[str, ...]:
     if comment["own"] is None:
         return ("",)
     return tuple(word.strip().upper() for word in comment["own"].split(",") if word.strip())
+
+
+def _in_file(path: str, text: str) -> Iterator[tuple[int, int, str]]:
+    """Yield (line, column, text) of each comment of a Python, XML or YAML file; the text begins with `#`."""
+    if path.endswith(_XML):
+        for found in re.finditer(r"<!--(.*?)-->", text, re.DOTALL):
+            start = found.start()
+            yield text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start), f"#{found[1]}"
+    elif path.endswith(_YAML):
+        for number, line in enumerate(text.split("\n"), 1):
+            if comment := re.search(r"(?:^|(?<=\s))#.*", line):
+                yield number, comment.start() + 1, comment[0]
+    else:
+        yield from _comments(text)
 
 
 def _comments(text: str) -> Iterator[tuple[int, int, str]]:

@@ -49,12 +49,13 @@ class SourceFile(NamedTuple):
 
 @dataclass(frozen=True)
 class Notes:
-    """What was found but not analysed: counts, and unreadable directories."""
+    """What was found but not analysed: counts, and unreadable directories. `unread_nodes` are nodes of launch files."""
 
     cpp_nodes: int = 0
     remapping_launch_files: int = 0
     duplicate_links: int = 0
     unreadable: tuple[str, ...] = ()
+    unread_nodes: int = 0
 
 
 @dataclass(frozen=True)
@@ -80,6 +81,18 @@ def find(paths: Sequence[Path], config: Config, stdin: Stdin | None = None) -> D
             raise UsageError(_missing(path))
     walk.follow_links()
     return walk.discovery()
+
+
+def excluded(path: Path, config: Config) -> bool:
+    """Return whether the setting `exclude` matches a file or a folder around it."""
+    root = _absolute(config.root or Path.cwd())
+    patterns = gitignore.parse(root, config.exclude)
+    place, above = _absolute(path), root.rstrip("/") + "/"
+    if not place.startswith(above):
+        return False
+    parts = place[len(above) :].split("/")
+    places = [above + "/".join(parts[:depth]) for depth in range(1, len(parts) + 1)]
+    return any(gitignore.ignored(one, (patterns,), is_directory=one != place) for one in places)
 
 
 class _Walk:

@@ -43,13 +43,13 @@ def _graph(drawn: Picture) -> Iterator[str]:
     yield from _HEAD
     numbers = drawn.numbers()
     for topic in drawn.topics:
-        yield f" {numbers[topic.key]} [label={_quoted(topic.label)}, {_TOPIC}];"
+        yield f" {numbers[topic.key]} [label={quoted(topic.label)}, {_TOPIC}];"
     edges: list[str] = []
     for index, (title, parts) in enumerate(drawn.boxes()):
         yield f" subgraph cluster{index} {{"
-        yield f'  label={_quoted(title)}; style="rounded,filled"; color="#dddddd"; fillcolor="#f8f8f8";'
+        yield f'  label={quoted(title)}; style="rounded,filled"; color="#dddddd"; fillcolor="#f8f8f8";'
         for name, part in parts:
-            yield f"  {name} [label={_quoted(part.label)}, {_NEW if part.new else _PART}];"
+            yield f"  {name} [label={quoted(part.label)}, {_NEW if part.new else _PART}];"
             edges.extend(_edges(part, name, numbers))
         yield " }"
     yield from edges
@@ -65,6 +65,7 @@ def _edges(part: Part, name: str, numbers: dict[str, str]) -> Iterator[str]:
         yield f" {name} -> {numbers[topic.key]};"
 
 
-def _quoted(text: str) -> str:
+def quoted(text: str) -> str:
+    """Return a text as a string of Graphviz."""
     escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
     return f'"{escaped}"'

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, Final, TypeVar
 
 from tarl_lint import __version__
@@ -21,8 +21,12 @@ Table = dict[T, int]
 
 def report(result: Result, _view: View) -> Iterator[Line]:
     """Yield the document in ASCII, with one statement, source, sink or diagnostic per line."""
+    yield from in_lines(document(result))
+
+
+def in_lines(parts: Mapping[str, Any]) -> Iterator[Line]:
+    """Yield a document in ASCII, with one item of its lists per line."""
     yield (("{", ""),)
-    parts = document(result)
     last = list(parts)[-1]
     for key, value in parts.items():
         comma = "" if key == last else ","

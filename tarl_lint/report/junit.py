@@ -26,7 +26,7 @@ _ENTITIES: Final = {
 }
 
 
-class _Case(NamedTuple):
+class Case(NamedTuple):
     """One test case. `outcome` is failure, skipped or passed."""
 
     path: str
@@ -38,9 +38,18 @@ class _Case(NamedTuple):
 
 def report(result: Result, _view: View) -> Iterator[Line]:
     """Yield the document. Findings that fail the run are failures; accepted and unreadable ones are skipped."""
+    yield from written(cases(result))
+
+
+def cases(result: Result) -> list[Case]:
+    """Return the cases of a run: unreadable files, incomplete programs, findings."""
     found = (_case(finding, result) for finding in result.findings)
-    cases = _numbered([*_errors(result), *_incomplete(result), *found])
-    cases = cases or [_Case("tarl-lint", "no findings", "passed", "", "")]
+    return [*_errors(result), *_incomplete(result), *found]
+
+
+def written(given: list[Case]) -> Iterator[Line]:
+    """Yield the document of some cases; without any, it has one that passes."""
+    cases = _numbered(given) or [Case("tarl-lint", "no findings", "passed", "", "")]
     yield (('<?xml version="1.0" encoding="utf-8"?>', ""),)
     yield ((f"<testsuites{_attributes({'name': 'tarl-lint', **_counts(cases)})}>", ""),)
     for path, group in groupby(sorted(cases, key=lambda case: case.path), key=lambda case: case.path):
@@ -48,28 +57,28 @@ def report(result: Result, _view: View) -> Iterator[Line]:
     yield (("</testsuites>", ""),)
 
 
-def _errors(result: Result) -> Iterator[_Case]:
+def _errors(result: Result) -> Iterator[Case]:
     for error in result.errors if result.names_errors else ():
-        yield _Case(error.path, f"{UNREADABLE} the file can be analysed", "skipped", error.message, "")
+        yield Case(error.path, f"{UNREADABLE} the file can be analysed", "skipped", error.message, "")
 
 
-def _incomplete(result: Result) -> Iterator[_Case]:
+def _incomplete(result: Result) -> Iterator[Case]:
     for cut in result.statistics.cut:
-        yield _Case(cut.path, "analysed completely", "skipped", cut.message, "")
+        yield Case(cut.path, "analysed completely", "skipped", cut.message, "")
 
 
-def _case(finding: Finding, result: Result) -> _Case:
+def _case(finding: Finding, result: Result) -> Case:
     name = f"{finding.code} {finding.message}"
     head = plain(unbroken(((f"{location(finding.span)}: {finding.message}", ""),)))
     steps = taint_list(finding.flow, View(glyphs=ASCII)) if finding.flow else ()
     text = "\n".join([head, *map(plain, steps)])
     if finding.status == "accepted":
-        return _Case(finding.span.path, name, "skipped", "accepted in the baseline", text)
+        return Case(finding.span.path, name, "skipped", "accepted in the baseline", text)
     outcome = "failure" if finding.code in result.failing else "passed"
-    return _Case(finding.span.path, name, outcome, finding.message, text)
+    return Case(finding.span.path, name, outcome, finding.message, text)
 
 
-def _numbered(cases: list[_Case]) -> list[_Case]:
+def _numbered(cases: list[Case]) -> list[Case]:
     """Number cases of equal name. Line numbers are not used, since they would rename cases after every edit."""
     seen: Counter[tuple[str, str]] = Counter()
     made = []
@@ -80,7 +89,7 @@ def _numbered(cases: list[_Case]) -> list[_Case]:
     return made
 
 
-def _suite(path: str, cases: list[_Case]) -> Iterator[Line]:
+def _suite(path: str, cases: list[Case]) -> Iterator[Line]:
     yield ((f" <testsuite{_attributes({'name': path, **_counts(cases)})}>", ""),)
     for case in cases:
         yield ((f"  <testcase{_attributes({'classname': path, 'name': case.name, 'file': path})}>", ""),)
@@ -93,7 +102,7 @@ def _suite(path: str, cases: list[_Case]) -> Iterator[Line]:
     yield ((" </testsuite>", ""),)
 
 
-def _counts(cases: list[_Case]) -> dict[str, str]:
+def _counts(cases: list[Case]) -> dict[str, str]:
     outcomes = Counter(case.outcome for case in cases)
     numbers = {
         "tests": len(cases),

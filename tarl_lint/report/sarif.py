@@ -30,16 +30,26 @@ _IMPORTANCE: Final[Mapping[Dependence, str]] = {
 
 def report(result: Result, _view: View) -> Iterator[Line]:
     """Yield the document in one line of ASCII, within the size that servers accept."""
+    yield ((written(result), ""),)
+
+
+def written(result: Result, graphs: Sequence[Mapping[str, Any]] = ()) -> str:
+    """Return the text of the document, within the size that servers accept; graphs are omitted first."""
     text = ""
-    for cut in cuts(len(result.errors) + len(result.findings) + len(result.silenced)):
-        text = json.dumps(document(result, cut), separators=(",", ":"))
-        if taken(text):
-            break
-    yield ((text, ""),)
+    for drawn in (graphs, ()) if graphs else ((),):
+        for cut in cuts(len(result.errors) + len(result.findings) + len(result.silenced)):
+            text = json.dumps(document(result, cut, drawn), separators=(",", ":"))
+            if taken(text):
+                return text
+            if drawn:
+                break
+    return text
 
 
-def document(result: Result, cut: Cut = EVERYTHING) -> dict[str, Any]:
-    """Return the log of one run; paths are relative to the working directory."""
+def document(
+    result: Result, cut: Cut = EVERYTHING, graphs: Sequence[Mapping[str, Any]] = ()
+) -> dict[str, Any]:
+    """Return the log of one run, with graphs of its systems; paths are relative to the working directory."""
     codes = list(explain.known_rules())
     errors = [_unreadable(error, codes) for error in result.errors if result.names_errors]
     silenced = set(result.silenced)
@@ -63,6 +73,7 @@ def document(result: Result, cut: Cut = EVERYTHING) -> dict[str, Any]:
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {ROOT: {"description": {"text": "The working directory of tarl-lint."}}},
         "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": notes}],
+        **({"graphs": list(graphs)} if graphs else {}),
         "results": errors[: cut.results] + found,
     }
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
@@ -160,7 +171,7 @@ def _result(
         "ruleIndex": codes.index(finding.code) if finding.code in codes else -1,
         "level": own_level(finding.code),
         "message": {"text": _escaped(finding.message) + (" ([subscription](1))" if flow else "")},
-        "locations": [_location(finding.span, flow.sink if flow else None)],
+        "locations": [location(finding.span, flow.sink if flow else None)],
         "partialFingerprints": _fingerprints(finding, identity),
     }
     if flow:
@@ -185,11 +196,11 @@ def _fingerprints(finding: Finding, identity: str) -> dict[str, str]:
 
 
 def _of_flow(flow: Flow, most: int) -> dict[str, Any]:
-    source = _location(flow.source.span, flow.source)
+    source = location(flow.source.span, flow.source)
     steps = [flow.steps[place] for place in flow.chain] if _is_cut(flow, most) else flow.steps
     related = [{"id": 1, "message": {"text": "subscription"}, **source}]
     for number, span in enumerate(flow.source.via, 2):
-        related.append({"id": number, "message": {"text": "through this call"}, **_location(span)})
+        related.append({"id": number, "message": {"text": "through this call"}, **location(span)})
     return {
         "relatedLocations": related,
         "codeFlows": [{"threadFlows": [{"locations": [_step(step) for step in steps]}]}],
@@ -202,10 +213,10 @@ def _of_flow(flow: Flow, most: int) -> dict[str, Any]:
 
 
 def _step(step: Step) -> dict[str, Any]:
-    location = _location(step.span)
-    location["message"] = {"text": _escaped(f"{step.role} ({step.dependence}): {step.code}")}
+    place = location(step.span)
+    place["message"] = {"text": _escaped(f"{step.role} ({step.dependence}): {step.code}")}
     return {
-        "location": location,
+        "location": place,
         "kinds": [step.role, step.dependence],
         "importance": _IMPORTANCE[step.dependence],
         "properties": {
@@ -217,7 +228,8 @@ def _step(step: Step) -> dict[str, Any]:
     }
 
 
-def _location(span: Span, end: Source | Sink | None = None) -> dict[str, Any]:
+def location(span: Span, end: Source | Sink | None = None) -> dict[str, Any]:
+    """Return the place of a span, with the function of an end of a flow."""
     region = {
         "startLine": span.line,
         "startColumn": span.column,

@@ -16,6 +16,7 @@ from tarl_lint.run.runner import UNREADABLE, Result
 from tarl_lint.suppress import Suppression
 
 _CLASSES: Final = 5  # maximum number of classes from outside the analysed files that are named individually
+_LAUNCH: Final = (".launch", ".xml", ".test", ".yaml", ".yml")  # launch files that are not Python
 _SHOWN: Final = 20  # maximum number of vanished findings that are named individually
 
 
@@ -24,7 +25,7 @@ def closing(result: Result) -> Iterator[Line]:
     counts = (_count_flows(result), _count_hazards(result), _count_files(result))
     for text in filter(None, counts):
         yield ((text, "strong"),)
-    yield from _silenced(result)
+    yield from silenced(result)
     yield from not_analysed(result)
     yield from _beyond(result)
 
@@ -70,7 +71,7 @@ def _beyond(result: Result) -> Iterator[Line]:
         )
 
 
-def _silenced(result: Result) -> Iterator[Line]:
+def silenced(result: Result) -> Iterator[Line]:
     """Yield one line about findings that are silenced on request."""
     counts = ((len(result.silenced), "comments"), (result.left_out, "per-file-ignores"))
     parts = [f"{count} by {what}" for count, what in counts if count]
@@ -147,13 +148,16 @@ def _missed(result: Result) -> Iterator[str]:
     notes = result.statistics.notes
     if result.errors:
         verb = "is" if len(result.errors) == 1 else "are"
-        yield f"{many(len(result.errors), 'file')} that {verb} not readable as Python 3 ({UNREADABLE})"
+        python = "" if any(e.path.endswith(_LAUNCH) for e in result.errors) else " as Python 3"
+        yield f"{many(len(result.errors), 'file')} that {verb} not readable{python} ({UNREADABLE})"
     if cut := result.statistics.cut:
         yield f"parts of {many(len(cut), 'large program')} ({_named(cut)})"
     if notes.unreadable:
         yield f"{many(len(notes.unreadable), 'unreadable place')} ({', '.join(notes.unreadable[:3])})"
     if notes.cpp_nodes:
         yield many(notes.cpp_nodes, "C++ node")
+    if notes.unread_nodes:
+        yield f"{many(notes.unread_nodes, 'node')} of the launch files"
     if notes.remapping_launch_files:
         yield f"remaps in {many(notes.remapping_launch_files, 'launch file')}"
     if not result.follows_clients and (asking := sum(map(_asks, result.texts.values()))):
@@ -247,13 +251,14 @@ def statistics(result: Result) -> Iterator[Line]:
         ("files analysed", result.statistics.files),
         ("lines analysed", result.statistics.lines),
     ]
-    yield from _counted(rows)
+    yield from counted(rows)
     if flows:
         yield (("Publish calls reached, by subscribed topic:", ""),)
-        yield from _counted(_reach(flows))
+        yield from counted(_reach(flows))
 
 
-def _counted(rows: Sequence[tuple[str, int]]) -> Iterator[Line]:
+def counted(rows: Sequence[tuple[str, int]]) -> Iterator[Line]:
+    """Yield rows of a name and its number, one per line, then an empty line."""
     width = max(len(str(number)) for _, number in rows)
     for name, number in rows:
         yield ((f"{number:>{width}}", "strong"), (f"  {name}", ""))

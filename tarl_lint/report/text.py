@@ -12,7 +12,7 @@ from tarl_lint.run.runner import UNREADABLE, Result
 
 def report(result: Result, view: View) -> Iterator[Line]:
     """Yield unreadable files, the map, the findings by package, and the closing lines."""
-    yield from _errors(result)
+    yield from errors(result)
     if result.errors and result.names_errors:
         yield ()
     if flows := [f.flow for f in result.new if f.flow]:
@@ -31,9 +31,9 @@ def report(result: Result, view: View) -> Iterator[Line]:
 
 def concise(result: Result, view: View) -> Iterator[Line]:
     """Yield one line per finding, then the closing lines."""
-    yield from _errors(result)
+    yield from errors(result)
     for finding in result.new:
-        yield _heading(finding)
+        yield heading(finding)
     for line in (
         *summary.unused(result),
         *summary.unmatched(result),
@@ -46,7 +46,8 @@ def concise(result: Result, view: View) -> Iterator[Line]:
     yield from summary.closing(result)
 
 
-def _errors(result: Result) -> Iterator[Line]:
+def errors(result: Result) -> Iterator[Line]:
+    """Yield a line for each unreadable file."""
     for error in result.errors if result.names_errors else ():
         yield (
             (f"{one_line(error.path)}:{error.line}:1", "place"),
@@ -103,11 +104,12 @@ def _flows(flows: Sequence[Finding], result: Result, view: View) -> Iterator[Lin
 def _hazard(finding: Finding, result: Result, view: View) -> Iterator[Line]:
     from tarl_lint.report.frame import frame, lines_of
 
-    yield _heading(finding)
+    yield heading(finding)
     yield from frame(lines_of(result.texts.get(finding.span.path, "")), finding.span, "hazard", view)
     yield ()
 
 
-def _heading(finding: Finding) -> Line:
+def heading(finding: Finding) -> Line:
+    """Return the place, rule and message of a finding."""
     style: Style = finding.flow.kind if finding.flow else "hazard"
     return ((location(finding.span), "place"), (f" {finding.code} ", style), (finding.message, ""))

@@ -35,6 +35,8 @@ from tarl_lint.settings.unmatched import unmatched
 from tarl_lint.suppress import Suppression
 
 UNREADABLE: Final = "TARL001"
+ARCHITECTURE: Final = "TARL3"  # beginning of the codes of rules that examine launched systems
+HAZARDS: Final = ("TARL2", ARCHITECTURE)  # beginnings of the codes of hazards
 NO_BUFFERS: Final[Mapping[Path, bytes]] = MappingProxyType({})
 
 
@@ -189,8 +191,10 @@ def _result(report: Report, files: _Files, config: Config) -> Result:
 def _in_vain(comment: Suppression, config: Config) -> bool:
     """Return whether all rules that a comment may silence are enabled.
 
-    A comment without a code silences the default rules.
+    A comment without a code silences the default rules. Rules of architecture need `--launch`.
     """
+    if comment.code.startswith(ARCHITECTURE):
+        return False
     rules = comment.rules if comment.code else [r for r in comment.rules if r not in OFF_BY_DEFAULT]
     return all(map(config.enabled, rules))
 
@@ -203,7 +207,7 @@ def exceeds(result: Result, config: Config) -> bool:
 def failing(findings: Sequence[Finding], config: Config) -> frozenset[str]:
     """Return the codes of new findings for which `fail_on` fails the run; each level includes the earlier levels."""
     codes = {f.code for f in findings if f.status == "new"}
-    hazards = {code for code in codes if code.startswith("TARL2")}
+    hazards = {code for code in codes if code.startswith(HAZARDS)}
     levels = {
         "never": set[str](),
         "hazard": hazards,
@@ -325,7 +329,7 @@ def _judge(
         return os.path.realpath(place) in analysed() or not place.exists()
 
     def judged(entry: Accepted) -> bool:
-        if entry.fingerprint.code.startswith("TARL3"):
+        if entry.fingerprint.code.startswith(ARCHITECTURE):
             return False  # findings of TARL3 rules occur only in runs with --launch, so this run cannot tell
         asked = config.enabled(entry.fingerprint.code) and entry.fingerprint.digest() not in unasked
         return asked and all(map(settled, entry.files))

@@ -12,8 +12,10 @@ MOST: Final = 200  # maximum number of chains of one system
 STEPS: Final = 100_000  # maximum number of steps of the search
 
 
-def chains(hops: Sequence[Hop], origin: str = "", target: str = "") -> tuple[tuple[Chain, ...], bool]:
-    """Return the chains between two topics, and whether there are more than `MOST`.
+def chains(
+    hops: Sequence[Hop], origin: str = "", target: str = "", *, every: bool = False
+) -> tuple[tuple[Chain, ...], bool]:
+    """Return the chains between two topics, at most `MOST` unless `every`, and whether there may be more.
 
     Without `origin`, chains begin where data enters the analysed nodes. Without `target`, they end where data leaves
     these nodes. A chain passes each topic once.
@@ -29,10 +31,29 @@ def chains(hops: Sequence[Hop], origin: str = "", target: str = "") -> tuple[tup
     leading = _leading(hops, wanted)
     found: list[Chain] = []
     for chain in _walk(from_topic, starts, wanted, leading):
-        if len(found) >= MOST:
+        if chain is None or (len(found) >= MOST and not every):
             return tuple(found), True
         found.append(chain)
     return tuple(sorted(found, key=lambda c: [(h.source, h.node, h.sink) for h in c.hops])), False
+
+
+def needs_every(most: int) -> bool:
+    """Return whether a report of at most `most` chains, 0 for all, needs more chains than `MOST`."""
+    return most == 0 or most > MOST
+
+
+def limited(found: Sequence[Chain], most: int, *, more: bool) -> tuple[Sequence[Chain], str]:
+    """Return at most `most` chains, 0 for all, and a remark on the others; "" if there are none.
+
+    `more` says that the search ended before all chains were found.
+    """
+    visible = found[:most] if most else found
+    rest = len(found) - len(visible)
+    if not (rest or more):
+        return visible, ""
+    number = f"{'more than ' if more else ''}{rest} more flows" if rest else "more"
+    way = "" if more and not most else ", or show all with --max-paths 0"
+    return visible, f"… and {number}: select them with --from and --to{way}."
 
 
 def _first(hops: Sequence[Hop]) -> list[str]:
@@ -92,7 +113,8 @@ def _leading(hops: Iterable[Hop], wanted: set[str]) -> set[str]:
 
 def _walk(
     from_topic: dict[str, list[Hop]], starts: Sequence[str], wanted: set[str], leading: set[str]
-) -> Iterator[Chain]:
+) -> Iterator[Chain | None]:
+    """Yield the chains; then None if the search ends early."""
     steps = 0
     for start in starts:
         pending: list[tuple[Hop, ...]] = [(hop,) for hop in reversed(from_topic.get(start, ()))]
@@ -112,3 +134,6 @@ def _walk(
                 for hop in reversed(from_topic.get(last, ()))
                 if hop.sink not in passed and not any(hop.excludes(one) for one in path)
             ]
+        if pending:
+            yield None
+            return

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from tarl_lint.model import Finding, Kind
+from tarl_lint.read.source import SourceError
 from tarl_lint.system.binding import (
     bound,
     command_line,
@@ -48,7 +49,7 @@ _SILENT: Final = frozenset(
 )  # fmt: skip
 
 # (program, known values of its parameters) → its interface, or the reason why it cannot be analysed
-Reader = Callable[[Program, Mapping[str, object]], Interface | str]
+Reader = Callable[[Program, Mapping[str, object]], Interface | SourceError | str]
 
 
 def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader) -> System:
@@ -137,7 +138,9 @@ def _instance(
     if isinstance(interface, Interface) and isinstance(found, Program):
         decided = _decided(node, launch, name, interface, lambda given: read(found, given))
         return Instance(node, name, with_configured(decided, workspace))
-    unread = Instance(node, name, None, str(interface), silent=node.executable in _SILENT)
+    broken = interface if isinstance(interface, SourceError) else None
+    why = f"{broken.path}:{broken.line}: {broken.message}" if broken is not None else str(interface)
+    unread = Instance(node, name, None, why, silent=node.executable in _SILENT, broken=broken)
     known = Seen() if isinstance(found, Program) else _known(unread, launch, workspace)
     if any(one.hides and not one.package and one.file.suffix == ".py" for one in launch.problems):
         # problems in a launch file may also hide arguments of its nodes
@@ -174,7 +177,7 @@ def _decided(
     launch: Launch,
     name: str,
     every: Interface,
-    read: Callable[[Mapping[str, object]], Interface | str],
+    read: Callable[[Mapping[str, object]], Interface | SourceError | str],
 ) -> Interface:
     """Return the interface of a launched node; pass all its parameters only if names are unknown without them."""
     values = parameter_values(launch, node, name)

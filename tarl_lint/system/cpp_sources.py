@@ -50,6 +50,11 @@ def named_topics(package: Package, executable: str) -> tuple[Endpoint, ...]:
     return tuple(end for path in _sources(package, executable) for end in _ends(path))
 
 
+def compiled(package: Package) -> tuple[str, ...]:
+    """Return the names of the C++ programs of a package, in the order of CMakeLists.txt."""
+    return tuple(dict.fromkeys(name for name, _ in _programs(package.folder, package.name)))
+
+
 def is_compiled(package: Package, executable: str) -> bool:
     """Return whether CMakeLists.txt states the C++ files of a program."""
     return bool(_sources(package, executable))

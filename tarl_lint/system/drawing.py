@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from tarl_lint.system.chains import chains
 from tarl_lint.system.compose import SERVER, UNKNOWN
-from tarl_lint.system.model import System
+from tarl_lint.system.model import Chain, System
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,31 @@ class Drawing:
     touching: tuple[tuple[str, str], ...]
 
 
-def drawing(system: System) -> Drawing:
-    """Return the picture of a system; equal systems have equal pictures."""
+def drawing(system: System, origin: str = "", target: str = "") -> Drawing:
+    """Return the picture of a system; equal systems have equal pictures.
+
+    With `origin` or `target`, the picture has only the nodes and topics of the chains between these topics.
+    """
+    drawn = _everything(system)
+    return _between(drawn, chains(system.hops, origin, target)[0]) if origin or target else drawn
+
+
+def _between(drawn: Drawing, found: Iterable[Chain]) -> Drawing:
+    hops = {hop for chain in found for hop in chain.hops}
+    inputs, outputs = {(hop.source, hop.node) for hop in hops}, {(hop.node, hop.sink) for hop in hops}
+    nodes = {hop.node for hop in hops}
+    topics = {name for hop in hops for name in (hop.source, hop.sink)}
+    return Drawing(
+        tuple(one for one in drawn.nodes if one in nodes),
+        tuple(one for one in drawn.topics if one in topics),
+        drawn.unread & nodes,
+        tuple(one for one in drawn.inputs if one[:2] in inputs),
+        tuple(one for one in drawn.outputs if one in outputs),
+        (),
+    )
+
+
+def _everything(system: System) -> Drawing:
     kinds: dict[tuple[str, str], str] = {}
     outputs: set[tuple[str, str]] = set()
     for hop in system.hops:

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
-from tarl_lint.model import Finding, Span
+from tarl_lint.model import Cut, Finding, Span
 from tarl_lint.parameter_names import ParameterName
-from tarl_lint.read.source import Script
+from tarl_lint.read.source import Script, SourceError
 from tarl_lint.run.cache import Cache, digest, packed, unpacked
 from tarl_lint.system.model import Endpoint, Interface, Misfit, Qos
 
 # number of additional entries to keep: those of other launch files and of earlier versions of files
 SPARE: Final = 1000
+_BROKEN: Final = 0  # first item of an entry for a file with an error; that of an interface is a path
 
 
 def key(
@@ -27,18 +28,24 @@ def key(
     return digest([entry, package, repr(sorted(fixed.items(), key=lambda one: one[0])), *scripts])
 
 
-def kept(cache: Cache, name: str) -> Interface | str | None:
-    """Return the interface under a key, or the reason why the program cannot be analysed; None without an entry."""
+def kept(cache: Cache, name: str) -> Interface | SourceError | None:
+    """Return the interface under a key, or the error in the program's file; None without an entry."""
     entry = cache.entry(name)
-    if entry is None or isinstance(entry, str):
-        return entry
+    if entry is None:
+        return None
+    if entry[0] == _BROKEN:
+        return SourceError(*entry[1:])
     values = zip(Interface.__dataclass_fields__, entry, strict=True)
     return Interface(**{field: _PARTS.get(field, _same)(value) for field, value in values})
 
 
-def keep(cache: Cache, name: str, interface: Interface | str) -> None:
+def keep(cache: Cache, name: str, interface: Interface | SourceError) -> None:
     """Store an interface under a key."""
-    cache.put_entry(name, interface if isinstance(interface, str) else packed(interface))
+    if isinstance(interface, SourceError):
+        error = interface
+        cache.put_entry(name, [_BROKEN, error.path, error.line, error.message, error.bug])
+    else:
+        cache.put_entry(name, packed(interface))
 
 
 def _same(value: Any) -> Any:
@@ -73,5 +80,6 @@ _PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "uses": lambda entries: tuple(map(_misfit, entries)),
     "deciding": tuple,
     "configured": tuple,
+    "cut": lambda entries: tuple(Cut(*one) for one in entries),
     "in_names": lambda entries: tuple(ParameterName(*one) for one in entries),
 }

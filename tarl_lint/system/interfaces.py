@@ -19,7 +19,7 @@ from tarl_lint.flows.statement_text import Texts
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.ir.lower_expressions import position
 from tarl_lint.ir.nodes import Pos
-from tarl_lint.model import Finding, Flow
+from tarl_lint.model import Cut, Finding, Flow
 from tarl_lint.models.ros.endpoints import Publisher, SourceRecord
 from tarl_lint.node_names import node_name
 from tarl_lint.parameter_names import MARK, ParameterName
@@ -55,7 +55,7 @@ def interface(
     others: Sequence[Script],
     config: Config,
     fixed: Mapping[str, object] = MappingProxyType({}),
-) -> Interface | str:
+) -> Interface | SourceError:
     """Return the interface of a program, or the reason why it cannot be analysed.
 
     `entry` is the function that starts the program; "" if the file itself is run. `others` are the files that it may
@@ -63,7 +63,7 @@ def interface(
     """
     first = parsed(script)
     if isinstance(first, SourceError):
-        return f"{first.path}:{first.line}: {first.message}"
+        return first
     imported = [parsed(one) for one in reached([script], others) if one.path != script.path]
     modules = [replace(first, started=(entry,) if entry else ()),
                *(_as_import(one) for one in imported if isinstance(one, Module))]  # fmt: skip
@@ -106,6 +106,7 @@ def interface(
         closed=quiet,
         whole=quiet and named and not machine.cut,
         complete=quiet and not machine.cut,
+        cut=tuple(sorted(_cut(machine, modules))),
         private=private,
         public=public,
         stale=stale(found, modules),
@@ -115,6 +116,13 @@ def interface(
         configured=configured or (),
         uses=tuple(one for _, unknown in fields for one in unknown),
     )
+
+
+def _cut(machine: Linker, modules: Iterable[Module]) -> Iterator[Cut]:
+    """Yield the parts of a program that exhausted the budget."""
+    for one in modules:
+        if one.path in machine.cut:
+            yield Cut(one.path, node_name(one.tree))
 
 
 def _heard(machine: Linker) -> Mapping[str, frozenset[str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from tarl_lint import __version__
@@ -11,35 +11,43 @@ from tarl_lint.model import Finding
 from tarl_lint.report.json import extent, statement
 from tarl_lint.system.chains import chains
 from tarl_lint.system.model import Endpoint, Hop, Instance, System
+from tarl_lint.system.one_sided import OneSided, one_sided
 from tarl_lint.workspace.launch_model import Setting
 
 FORMAT_VERSION: Final = 1  # 1: first format
 
 
-def document(systems: Sequence[System], origin: str = "", target: str = "") -> dict[str, Any]:
-    """Return all systems in the frozen order of keys."""
+OfFlow = Callable[[Finding], Mapping[str, Any]]
+
+
+def document(
+    systems: Sequence[System], origin: str = "", target: str = "", of_flow: OfFlow | None = None
+) -> dict[str, Any]:
+    """Return all systems in the frozen order of keys. `of_flow` returns the statements of a flow."""
     return {
         "format": FORMAT_VERSION,
         "tool": {"name": "tarl-lint", "version": __version__},
-        "systems": [_system(one, origin, target) for one in systems],
+        "systems": [_system(one, origin, target, of_flow or _statements) for one in systems],
     }
 
 
-def _system(system: System, origin: str, target: str) -> dict[str, Any]:
+def _system(system: System, origin: str, target: str, of_flow: OfFlow) -> dict[str, Any]:
     found, more = chains(system.hops, origin, target)
+    lonely = [_one_sided(one) for one in one_sided(system)]
     numbers = {id(hop): number for number, hop in enumerate(system.hops)}
     return {
         "launch": shown(system.file),
         "arguments": dict(system.arguments),
         "nodes": [_node(one) for one in system.instances],
         "parameters": [_parameter(one) for one in system.settings if not one.unknown],
-        "hops": [_hop(one) for one in system.hops],
+        "hops": [_hop(one, of_flow) for one in system.hops],
         "chains": [{"kind": one.kind, "hops": [numbers[id(hop)] for hop in one.hops]} for one in found],
         "more_chains": more,
         "diagnostics": [_finding(one) for one in system.findings],
         "unknown": [
             {"path": shown(one.file), "line": one.line, "reason": one.reason} for one in system.problems
         ],
+        **({"one_sided": lonely} if lonely else {}),
     }
 
 
@@ -72,7 +80,7 @@ def _parameter(setting: Setting) -> dict[str, Any]:
     return {"name": setting.name, "value": setting.value, "yaml": setting.yaml, "path": shown(setting.file)}
 
 
-def _hop(hop: Hop) -> dict[str, Any]:
+def _hop(hop: Hop, of_flow: OfFlow) -> dict[str, Any]:
     return {
         "node": hop.node,
         "from": hop.source,
@@ -84,11 +92,25 @@ def _hop(hop: Hop) -> dict[str, Any]:
                 "kind": one.flow.kind,
                 "source": one.flow.source.id,
                 "sink": one.flow.sink.id,
-                "steps": [statement(each) for each in one.flow.steps],
+                **of_flow(one),
             }
             for one in hop.findings
             if one.flow is not None
         ],
+    }
+
+
+def _statements(finding: Finding) -> Mapping[str, Any]:
+    return {"steps": [statement(each) for each in finding.flow.steps] if finding.flow is not None else []}
+
+
+def _one_sided(one: OneSided) -> dict[str, Any]:
+    return {
+        "name": one.name,
+        "missing": one.missing,
+        "types": list(one.types),
+        "nodes": list(one.users),
+        "certain": one.certain,
     }
 
 

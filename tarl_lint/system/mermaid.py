@@ -17,7 +17,7 @@ _CLASSES: Final = (
 )
 
 
-def report(systems: Sequence[System]) -> Iterator[str]:
+def report(systems: Sequence[System], origin: str = "", target: str = "") -> Iterator[str]:
     """Yield the graph of all systems, each in a box of its own if there are several."""
     yield "flowchart LR"
     yield "  %% solid: data is published; dotted: used only in conditions, or not at all; dashed box: not read"
@@ -25,7 +25,7 @@ def report(systems: Sequence[System]) -> Iterator[str]:
         several = len(systems) > 1
         if several:
             yield f"  subgraph s{number} [{quoted(shown(system.file))}]"
-        yield from _graph(drawing(system), f"s{number}" if several else "")
+        yield from _graph(drawing(system, origin, target), f"s{number}" if several else "")
         if several:
             yield "  end"
     yield from _CLASSES

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Literal
 
 from tarl_lint.files import shown
-from tarl_lint.model import Finding, Kind, Span
+from tarl_lint.model import Cut, Finding, Kind, Span
 from tarl_lint.parameter_names import ParameterName
+from tarl_lint.read.source import SourceError
 from tarl_lint.workspace.conditions import exclusive
 from tarl_lint.workspace.launch_model import LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem
@@ -80,6 +81,7 @@ class Interface:
     `private_words` are the words that only private names (`~path`) contain.
     `exact` are the names of all parameters that the program reads, without `~`; None if some of them are not known.
     `private` are the parameters that a program of rospy reads only as its own, `public` those only in its namespace.
+    `cut` are the parts that exhausted the budget of the analysis.
     """
 
     path: str
@@ -102,6 +104,7 @@ class Interface:
     private_words: frozenset[str] = frozenset()
     private: frozenset[str] = frozenset()
     public: frozenset[str] = frozenset()
+    cut: tuple[Cut, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -122,7 +125,10 @@ class Seen:
 
 @dataclass(frozen=True)
 class Instance:
-    """A launched node. Without an interface, `unread` is the reason why the node's program was not read."""
+    """A launched node. Without an interface, `unread` is the reason why the node's program was not read.
+
+    `broken` is the error in the node's Python file, if it has one.
+    """
 
     node: LaunchedNode
     name: str
@@ -132,6 +138,7 @@ class Instance:
     silent: bool = False  # whether the node is known to publish nothing that other nodes subscribe to
     # if the code of the node could not be read: the remappings of its launch groups that it can use
     meant: tuple[tuple[str, str], ...] = ()
+    broken: SourceError | None = None
 
     def resolve(self, name: str) -> str:
         """Return the launched name of a topic or service in the code."""
@@ -226,7 +233,9 @@ class System:
 
     `messages` are the fields of types `package/Name` of the workspace that the nodes use, each with its type or "".
     `packages` are the packages of the workspace. `included` are the types that well-known packages use whose launch
-    files are included, but not in the workspace. `ros2` says that the launch file is for ROS 2.
+    files are included, but not in the workspace. `ros2` says that the launch file is for ROS 2. `silenced` are the
+    findings that comments silence, `disabled` those in files in which
+    `per-file-ignores` disables their rule.
     """
 
     file: Path
@@ -235,6 +244,8 @@ class System:
     hops: tuple[Hop, ...] = ()
     problems: tuple[Problem, ...] = ()
     findings: tuple[Finding, ...] = ()
+    silenced: tuple[Finding, ...] = ()
+    disabled: tuple[Finding, ...] = ()
     arguments: tuple[tuple[str, str], ...] = field(default=())
     messages: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     packages: frozenset[str] = frozenset()

@@ -31,13 +31,13 @@ class _Box:
     width: float
 
 
-def report(systems: Sequence[System]) -> Iterator[str]:
+def report(systems: Sequence[System], origin: str = "", target: str = "") -> Iterator[str]:
     """Yield the lines of one picture, the systems one below the other."""
     body: list[str] = []
     width, top = 0.0, MARGIN
     for system in systems:
         body.append(f'<text class="title" x="{MARGIN}" y="{top + 8}">{escape(shown(system.file))}</text>')
-        lines, right, bottom = _system(drawing(system), top + 28)
+        lines, right, bottom = _system(drawing(system, origin, target), top + 28)
         body += lines
         width, top = max(width, right), bottom + MARGIN
     yield (

@@ -6,26 +6,57 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from tarl_lint.files import shown
-from tarl_lint.model import Finding, Step
-from tarl_lint.report.line import Glyphs, Line, Style, View, location
-from tarl_lint.system.chains import chains, slashed
+from tarl_lint.model import Finding
+from tarl_lint.report import summary
+from tarl_lint.report.line import Glyphs, Line, View, location
+from tarl_lint.report.text import errors
+from tarl_lint.run.runner import Result
+from tarl_lint.system.chain_lines import heading, statements
+from tarl_lint.system.chains import chains, limited, needs_every, slashed
 from tarl_lint.system.details import details
-from tarl_lint.system.model import Chain, Hop, Instance, Role, System
+from tarl_lint.system.model import Instance, Role, System
+from tarl_lint.system.one_sided import one_sided
+from tarl_lint.system.statistics import statistics
 
 HEADINGS: Final = ("node", "program", "subscribes", "publishes")
 SHOWN: Final = 4  # maximum number of similar topics that a message suggests
 WIDEST: Final = 44  # maximum width of a list of topics (columns)
 
 _ROLES: Final[tuple[Role, Role]] = ("subscribes", "publishes")
-_KINDS: Final[Mapping[str, Style]] = {"explicit": "explicit", "implicit": "implicit", "not read": "quiet"}
+# the role that no known node has → the heading, what the users of the name do, and what other nodes may do
+_MISSING: Final[Mapping[Role, tuple[str, str, str]]] = {
+    "publishes": ("No publisher", "heard by", "publish"),
+    "serves": ("No server", "called by", "offer"),
+    "performs": ("No action server", "used by", "offer"),
+}
 
 
-def report(systems: Sequence[System], view: View, origin: str = "", target: str = "") -> Iterator[Line]:
-    """Yield the lines of all systems. With `origin` or `target`, only the chains between these topics."""
+def report(
+    systems: Sequence[System], result: Result, view: View, origin: str = "", target: str = ""
+) -> Iterator[Line]:
+    """Yield the lines of all systems. With `origin` or `target`, only the chains between these topics.
+
+    The lines at the end concern all systems: unreadable files, incomplete programs, silenced findings, entries of the
+    baseline that are gone.
+    """
     for number, system in enumerate(systems):
         if number:
             yield ()
         yield from _system(system, view, origin, target)
+    closing = list(_closing(systems, result, view))
+    if closing:
+        yield ()
+        yield from closing
+
+
+def _closing(systems: Sequence[System], result: Result, view: View) -> Iterator[Line]:
+    if view.statistics:
+        yield from statistics(systems, result)
+    yield from errors(result)
+    for cut in result.statistics.cut:
+        yield ((cut.message, "error"),)
+    yield from summary.silenced(result)
+    yield from summary.vanished(result, view)
 
 
 def _system(system: System, view: View, origin: str, target: str) -> Iterator[Line]:
@@ -36,18 +67,22 @@ def _system(system: System, view: View, origin: str, target: str) -> Iterator[Li
     yield ((name, "strong"), (f": {count}{f', {unread} not read' if unread else ''}", ""))
     if not (origin or target):
         yield from _table(system, view.glyphs)
-    found, more = chains(system.hops, origin, target)
+    found, more = chains(system.hops, origin, target, every=needs_every(view.most_flows))
+    visible, rest = limited(found, view.most_flows, more=more)
     yield ()
-    if found:
+    if found or more:
         yield (("Flows across nodes:", "strong"),)
-        for chain in found:
-            yield from _chain(chain, view)
-        if more:
-            yield (("  … and more: select them with --from and --to.", "quiet"),)
+        for chain in visible:
+            yield (("  ", ""), *heading(chain, view.glyphs))
+            if view.show_paths or view.all_steps:
+                yield from statements(chain, view)
+        if rest:
+            yield ((f"  {rest}", "quiet"),)
     else:
         yield ((_nothing(system, origin, target), ""),)
     yield from _findings(system)
     if not (origin or target):
+        yield from _lonely(system)
         yield from _problems(system)
 
 
@@ -107,39 +142,6 @@ def _cropped(text: str, width: int, glyphs: Glyphs) -> str:
     return text if len(text) <= width else text[: width - len(glyphs.dots)] + glyphs.dots
 
 
-def _chain(chain: Chain, view: View) -> Iterator[Line]:
-    arrow = f" {view.glyphs.arrow} "
-    pieces: list[tuple[str, Style]] = [("  ", ""), (chain.hops[0].source, "place")]
-    for hop in chain.hops:
-        node: tuple[str, Style] = (hop.node, "")
-        if hop.kind == "not read":
-            node = (f"[{hop.node}, not read]", "quiet")
-        pieces += [(arrow, ""), node, (arrow, ""), (hop.sink, "place")]
-    yield (*pieces, (f"  {chain.kind}", _KINDS[chain.kind]))
-    if view.show_paths or view.all_steps:
-        for hop in chain.hops:
-            yield from _steps(hop, view)
-
-
-def _steps(hop: Hop, view: View) -> Iterator[Line]:
-    """Yield the taint list of a hop: its shortest chain of statements, or all of them."""
-    if not hop.findings or hop.findings[0].flow is None:
-        return
-    flow = hop.findings[0].flow
-    named = f"    {hop.node}: {hop.source} {view.glyphs.arrow} {hop.sink}"
-    yield (named, "quiet"), (f"  {hop.kind}", _KINDS[hop.kind])
-    steps = flow.steps if view.all_steps or not flow.chain else [flow.steps[index] for index in flow.chain]
-    for step in steps:
-        yield _step(step, view.glyphs)
-
-
-def _step(step: Step, glyphs: Glyphs) -> Line:
-    sign = {"data": glyphs.data, "control": glyphs.control, "context": glyphs.context}[step.dependence]
-    code = " ".join(step.code.split())
-    return ((f"      {sign} ", step.dependence if step.dependence != "context" else "quiet"),
-            (f"{location(step.span)}", "place"), (f"  {code}", ""))  # fmt: skip
-
-
 def _findings(system: System) -> Iterator[Line]:
     new = [one for one in system.findings if one.status == "new"]
     if new:
@@ -158,6 +160,24 @@ def _finding(finding: Finding) -> Line:
         (f" {finding.code} ", "hazard"),
         (finding.message, ""),
     )
+
+
+def _lonely(system: System) -> Iterator[Line]:
+    """Yield the topics, services and actions that only have the side that uses them."""
+    found = one_sided(system)
+    for missing, (title, verb, may) in _MISSING.items():
+        chosen = [one for one in found if one.missing == missing]
+        if chosen:
+            yield ()
+            yield ((f"{title} here:", "strong"),)
+        for one in chosen:
+            types = f" ({' or '.join(one.types)})" if one.types else ""
+            doubt = "" if one.certain else f"; a part that was not read may {may} it"
+            yield (
+                (f"  {one.name}", "place"),
+                (f"{types}: {verb} {', '.join(one.users)}", ""),
+                (doubt, "quiet"),
+            )
 
 
 def _problems(system: System) -> Iterator[Line]:

@@ -41,7 +41,13 @@ def read_launch(path: Path, workspace: Workspace, arguments: Mapping[str, str] |
         return Launch(
             path,
             problems=(
-                Problem(path, 0, "it nests too deeply, contains itself, or has too many parts", hides=True),
+                Problem(
+                    path,
+                    0,
+                    "it nests too deeply, contains itself, or has too many parts",
+                    hides=True,
+                    unreadable=True,
+                ),
             ),
         )
 

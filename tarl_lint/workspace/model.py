@@ -16,7 +16,7 @@ class Problem:
     """Something that could not be read: the file, a line (0 for the whole file) and the reason.
 
     `hides` says that a launch file may start further nodes there; `package` is the one that contains an included file
-    that is not in the workspace, or "".
+    that is not in the workspace, or "". `unreadable` says that nothing of the file could be read.
     """
 
     file: Path
@@ -24,6 +24,7 @@ class Problem:
     reason: str
     hides: bool = False
     package: str = ""
+    unreadable: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 
@@ -65,10 +66,14 @@ def package(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", FILES)
 def test_a_hostile_launch_file_ends_in_a_report(package, capsys, name):
     (package / "launch" / name).write_text(FILES[name])
-    assert main(["--launch", f"launch/{name}"]) in (0, 1)
+    code = main(["--launch", f"launch/{name}"])
     out, err = capsys.readouterr()
     assert "Traceback" not in out + err
-    if name not in SILENT:
+    if code == 2:
+        assert re.fullmatch(rf"tarl-lint: launch/{name}(:\d+)?: the launch file cannot be read: .*\.\n", err)
+        assert main(["--launch", "all"]) in (0, 1)
+        assert "TARL001 The file cannot be read: " in capsys.readouterr().out
+    elif name not in SILENT:
         assert "Not known here:" in out, out
 
 

@@ -254,10 +254,6 @@ def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
         ),
         (["--launch", "all"], "there is no launch file in a package at or below it."),
         (["--format", "svg"], "--format svg draws the nodes of launch files: add --launch."),
-        (
-            ["--launch", "all", "--format", "sarif"],
-            "--format sarif cannot show launch files: use one of text, json,",
-        ),
         (["--launch", "all", "missing"], "missing: no such folder."),
         (
             ["--launch", "all", "robot=a"],
@@ -313,10 +309,6 @@ def test_topic_names_with_the_same_ending_are_suggested_for_an_unknown_topic(cap
     monkeypatch.chdir(EXAMPLE)
     _, out, _ = run(capsys, "--launch", "bringup.launch.py", "--from", "scan")
     assert "No node that was read uses /scan. Did you mean /scout/rear/scan?" in out
-
-
-def test_every_format_is_accepted():
-    assert set(command.FORMATS) == {"text", "json", "mermaid", "svg"}
 
 
 def test_the_guide_matches_the_output(capsys, monkeypatch):

@@ -16,9 +16,10 @@ def parsed(file: Path, problems: list[Problem]) -> ast.Module | None:
     """Return the syntax tree of a file; if it cannot be read or parsed, record a problem and return None."""
     try:
         return ast.parse(read_bytes(file, LARGEST))
-    except UnreadableError as reason:
-        problems.append(Problem(file, 0, str(reason)))
+    except UnreadableError as problem:
+        problems.append(Problem(file, 0, str(problem), unreadable=True))
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = getattr(error, "lineno", 0) or 0
-        problems.append(Problem(file, line, f"it is not Python 3: {getattr(error, 'msg', error)}"))
+        reason = f"it is not Python 3: {getattr(error, 'msg', error)}"
+        problems.append(Problem(file, line, reason, unreadable=True))
     return None

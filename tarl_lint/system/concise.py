@@ -1,0 +1,49 @@
+"""Reports of systems with one finding or flow per line: concise, and the log of GitHub."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from tarl_lint.files import shown
+from tarl_lint.report import github as pull_request
+from tarl_lint.report import summary
+from tarl_lint.report.line import Line, View, one_line
+from tarl_lint.report.text import errors, heading
+from tarl_lint.run.runner import Result
+from tarl_lint.system.chain_lines import heading as in_line
+from tarl_lint.system.chains import chains, limited, needs_every
+from tarl_lint.system.model import System
+from tarl_lint.system.statistics import statistics
+
+
+def concise(
+    systems: Sequence[System], result: Result, view: View, origin: str = "", target: str = ""
+) -> Iterator[Line]:
+    """Yield one line per hazard and one per flow across nodes, then the closing lines."""
+    yield from errors(result)
+    yield from map(heading, result.new)
+    yield from flows(systems, view, origin, target)
+    yield from (line for line in summary.vanished(result, view) if line)
+    if view.statistics:
+        yield from statistics(systems, result)
+    yield from summary.closing(result)
+
+
+def github(
+    systems: Sequence[System], result: Result, view: View, origin: str = "", target: str = ""
+) -> Iterator[Line]:
+    """Yield the annotations of the hazards; flows across nodes, which have no line, are in the log only."""
+    yield from pull_request.report(result, view)
+    yield from flows(systems, view, origin, target)
+
+
+def flows(systems: Sequence[System], view: View, origin: str, target: str) -> Iterator[Line]:
+    """Yield a line for each flow across nodes: the launch file, then topics and nodes."""
+    for system in systems:
+        found, more = chains(system.hops, origin, target, every=needs_every(view.most_flows))
+        visible, rest = limited(found, view.most_flows, more=more)
+        place = one_line(shown(system.file))
+        for chain in visible:
+            yield ((f"{place}: ", "place"), *in_line(chain, view.glyphs))
+        if rest:
+            yield ((f"{place}: ", "place"), (rest, "quiet"))

@@ -1,0 +1,39 @@
+"""Counts of launched systems."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from tarl_lint.report.line import Line
+from tarl_lint.report.summary import counted
+from tarl_lint.run.runner import UNREADABLE, Result
+from tarl_lint.system.chains import chains
+from tarl_lint.system.model import System
+from tarl_lint.system.one_sided import one_sided
+
+
+def statistics(systems: Sequence[System], result: Result) -> Iterator[Line]:
+    """Yield the counts of a run, one per line. Nodes and flows count once for each launch file that has them."""
+    nodes = [one for system in systems for one in system.instances if one.node.kind != "test"]
+    kinds = Counter(chain.kind for system in systems for chain in chains(system.hops)[0])
+    lonely = Counter(one.missing for system in systems for one in one_sided(system))
+    yield from counted(
+        [
+            *sorted(Counter(one.code for one in result.findings).items()),
+            (UNREADABLE, len(result.errors)),
+            ("silenced by comments", len(result.silenced)),
+            ("silenced by per-file-ignores", result.left_out),
+            ("accepted in the baseline", sum(one.status == "accepted" for one in result.findings)),
+            ("launch files", sum(not one.file.is_dir() for one in systems)),
+            ("nodes", len(nodes)),
+            ("nodes that were not read", sum(one.interface is None for one in nodes)),
+            ("flows across nodes, explicit", kinds["explicit"]),
+            ("flows across nodes, implicit", kinds["implicit"]),
+            ("flows across nodes, through nodes that were not read", kinds["not read"]),
+            ("subscribed topics without a publisher", lonely["publishes"]),
+            ("called services without a server", lonely["serves"]),
+            ("used actions without a server", lonely["performs"]),
+            ("files analysed", result.statistics.files),
+        ]
+    )
