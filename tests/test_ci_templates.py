@@ -113,6 +113,29 @@ def test_the_github_action_annotates_and_writes_sarif(project: Path) -> None:
     assert run("Lint", project, paths="node.py", arguments="--fail-on never").returncode == 0
 
 
+def launch_file(project: Path) -> None:
+    """Make the project a package whose launch file has a remapping that matches nothing (TARL308)."""
+    (project / "package.xml").write_text(
+        "<package><name>arm</name><export><build_type>catkin</build_type></export></package>"
+    )
+    (project / "launch").mkdir()
+    (project / "launch/arm.launch").write_text(
+        '<launch><arg name="to" default="/a"/><node pkg="arm" type="node.py" name="n">'
+        '<remap from="ouut" to="$(arg to)"/></node></launch>'
+    )
+
+
+@pytest.mark.parametrize("launch", ["all", "arm.launch to:=/b"])
+def test_the_github_action_lints_launch_files(project: Path, launch: str) -> None:
+    launch_file(project)
+    ended = run("Lint launch files", project, launch=launch, sarif="flows.sarif", arguments="--no-cache")
+    assert ended.returncode == 1, ended.stderr
+    assert "::error file=launch/arm.launch,line=1," in ended.stdout
+    assert f"to {launch.partition('=')[2] or '/a'} has no effect" in ended.stdout
+    (log,) = json.loads((project / "flows.launch.sarif").read_text())["runs"]
+    assert [one["ruleId"] for one in log["results"]] == ["TARL308"]
+
+
 @pytest.mark.parametrize(
     ("repair", "flags"), [("false", "--tarl-online"), ("true", "--tarl-online --tarl-repair")]
 )
@@ -145,9 +168,10 @@ def test_every_input_is_used_and_described() -> None:
         assert f"inputs.{name}" in text
 
 
-@pytest.mark.parametrize("job", [".tarl-lint", ".tarl-compare"])
+@pytest.mark.parametrize("job", [".tarl-lint", ".tarl-lint-launch", ".tarl-compare"])
 def test_the_gitlab_jobs_run(project: Path, job: str) -> None:
     results(project)
+    launch_file(project)
     (project / "test_plain.py").write_text("def test_plain():\n    pass\n")
     commands = [*GITLAB[job]["script"], *GITLAB[job].get("after_script", [])]
     here = str(Path(sys.executable).parent)

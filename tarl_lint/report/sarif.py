@@ -33,12 +33,12 @@ def report(result: Result, _view: View) -> Iterator[Line]:
     yield ((written(result), ""),)
 
 
-def written(result: Result, graphs: Sequence[Mapping[str, Any]] = ()) -> str:
+def written(result: Result, graphs: Sequence[Mapping[str, Any]] = (), category: str = "") -> str:
     """Return the text of the document, within the size that servers accept; graphs are omitted first."""
     text = ""
     for drawn in (graphs, ()) if graphs else ((),):
         for cut in cuts(len(result.errors) + len(result.findings) + len(result.silenced)):
-            text = json.dumps(document(result, cut, drawn), separators=(",", ":"))
+            text = json.dumps(document(result, cut, drawn, category), separators=(",", ":"))
             if taken(text):
                 return text
             if drawn:
@@ -47,9 +47,12 @@ def written(result: Result, graphs: Sequence[Mapping[str, Any]] = ()) -> str:
 
 
 def document(
-    result: Result, cut: Cut = EVERYTHING, graphs: Sequence[Mapping[str, Any]] = ()
+    result: Result, cut: Cut = EVERYTHING, graphs: Sequence[Mapping[str, Any]] = (), category: str = ""
 ) -> dict[str, Any]:
-    """Return the log of one run, with graphs of its systems; paths are relative to the working directory."""
+    """Return the log of one run, with graphs of its systems; paths are relative to the working directory.
+
+    Servers replace the results of an earlier run only if it had the same `category`.
+    """
     codes = list(explain.known_rules())
     errors = [_unreadable(error, codes) for error in result.errors if result.names_errors]
     silenced = set(result.silenced)
@@ -70,6 +73,7 @@ def document(
     notes = [*_notifications(result), *_incomplete(result), *left_out]
     run = {
         "tool": {"driver": driver},
+        **({"automationDetails": {"id": f"{category}/"}} if category else {}),
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {ROOT: {"description": {"text": "The working directory of tarl-lint."}}},
         "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": notes}],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, Final
 
 from tarl_lint.files import shown
 from tarl_lint.model import Span
@@ -14,10 +14,12 @@ from tarl_lint.system.chains import chains
 from tarl_lint.system.drawing import drawing
 from tarl_lint.system.model import System, place_of
 
+CATEGORY: Final = "tarl-lint/launch"  # keeps these results apart from those of a run without launch files
+
 
 def report(systems: Sequence[System], result: Result, origin: str = "", target: str = "") -> Iterator[Line]:
     """Yield the document in one line of ASCII, within the size that servers accept; the graphs are omitted first."""
-    yield ((written(result, [_graph(one, origin, target) for one in systems]), ""),)
+    yield ((written(result, [_graph(one, origin, target) for one in systems], CATEGORY), ""),)
 
 
 def _graph(system: System, origin: str, target: str) -> dict[str, Any]:

@@ -27,6 +27,7 @@ BODY = f"""\
   <node pkg="base" type="driver" name="driver"/>
 </launch>
 """
+UNREADABLE = "The file is not valid Python ('(' was never closed): fix this line, or exclude the file."
 BROKEN = "#!/usr/bin/env python3\nx = (\n"
 
 
@@ -64,8 +65,7 @@ def test_every_format_of_the_linter_shows_launch_files(robot, capsys):
 
 def test_concise_has_a_line_for_each_hazard_flow_and_unreadable_file(robot, capsys):
     assert report(capsys, "concise").splitlines() == [
-        "arm/scripts/broken.py:2:1 TARL001 The file is not valid Python ('(' was never closed): "
-        + "fix this line, or exclude the file.",
+        f"arm/scripts/broken.py:2:1 TARL001 {UNREADABLE}",
         f"arm/launch/a.launch:3:1 {HAZARD} {MESSAGE}",
         f"arm/launch/a.launch: {FLOW}",
         f"1 hazard: 1 {HAZARD} in 2 files.",
@@ -119,6 +119,8 @@ def test_sarif_has_hazards_as_results_and_each_system_as_a_graph(robot, capsys, 
     document = json.loads(report(capsys, "sarif"))
     assert list(jsonschema.Draft4Validator(schema).iter_errors(document)) == []
     (log,) = document["runs"]
+    # servers keep the results of runs with different identifiers apart
+    assert log["automationDetails"] == {"id": "tarl-lint/launch/"}
     broken, hazard = log["results"]
     assert broken["ruleId"] == "TARL001"
     assert hazard["ruleId"] == log["tool"]["driver"]["rules"][hazard["ruleIndex"]]["id"] == HAZARD
