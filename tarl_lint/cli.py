@@ -78,6 +78,11 @@ def _run(typed: Namespace) -> int:
     if typed.show_settings:
         _print(_settings(config))
         return 0
+    if config.select and all(code.startswith(runner.ARCHITECTURE) for code in config.select):
+        raise UsageError(
+            f"select names only rules about launch files ({', '.join(config.select)}): add --launch FILE, or "
+            "--launch all."
+        )
     result = _lint(chosen, config)
     if typed.write_baseline:
         _print(_accept(result, config))
@@ -93,8 +98,8 @@ def _launched(typed: Namespace) -> int:
 
     if typed.stdin_filename is not None or Path("-") in typed.paths:
         raise UsageError(
-            f"{'--launch' if typed.launch is not None else '--from and --to'} analyses the files of a workspace, not "
-            "standard input: omit - and --stdin-filename."
+            "--launch, --from and --to analyse the files of a workspace, not standard input: omit - and "
+            "--stdin-filename."
         )
     asked = command.request(typed.launch, typed.paths, typed.origin, typed.target)
     typed.paths = [asked.root]

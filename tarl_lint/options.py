@@ -171,7 +171,7 @@ def _add_output(group: argparse._ArgumentGroup) -> None:
         choices=(*FORMATS, DRAWN),
         default="text",
         metavar="FORMAT",
-        help=f"one of {', '.join(FORMATS)} (default: text); with --launch text, json, mermaid, {DRAWN}",
+        help=f"one of {', '.join(FORMATS)} (default: text); with --launch also {DRAWN}",
     )
     group.add_argument(
         "--show-paths", action="store_true", help="show the shortest chain of statements of every flow"
@@ -247,7 +247,7 @@ def _add_speed(group: argparse._ArgumentGroup) -> None:
         "--jobs",
         type=_jobs,
         metavar="N",
-        help="number of processes; auto (default): one per processor for large trees",
+        help="number of processes; auto (default): one per processor for large trees; --launch always uses one",
     )
     group.add_argument(
         "--no-cache",

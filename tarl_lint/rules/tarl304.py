@@ -8,8 +8,9 @@ Actions are compared in the same way as services. In the root namespace, `dock` 
 the type is not one that many nodes offer, such as `Trigger`.
 
 Beside nodes that were not read, and with missing launch files, the rule reports only misspelt names that no such node
-mentions, as TARL301 does. The rule also reports nothing if no server has a similar name, because the server may be
-started elsewhere.
+mentions, as TARL301 does. The rule reports nothing if no server has a similar name, because the server may be started
+elsewhere: with drivers and controllers, it usually is. The report of `--launch` lists these services under "No server
+here", actions under "No action server here", and JSON lists both under `one_sided`; they do not fail the run.
 """
 
 from __future__ import annotations

@@ -51,7 +51,8 @@ def limited(found: Sequence[Chain], most: int, *, more: bool) -> tuple[Sequence[
     rest = len(found) - len(visible)
     if not (rest or more):
         return visible, ""
-    number = f"{'more than ' if more else ''}{rest} more flows" if rest else "more"
+    least = "more than " if more else ""
+    number = f"{least}{rest} more flow{'' if rest == 1 else 's'}" if rest else "more"
     way = "" if more and not most else ", or show all with --max-paths 0"
     return visible, f"… and {number}: select them with --from and --to{way}."
 

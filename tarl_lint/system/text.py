@@ -55,6 +55,8 @@ def _closing(systems: Sequence[System], result: Result, view: View) -> Iterator[
     yield from errors(result)
     for cut in result.statistics.cut:
         yield ((cut.message, "error"),)
+    if not result.reports_hazards:
+        yield (("No rule about launch files (TARL3) is enabled.", "quiet"),)
     yield from summary.silenced(result)
     yield from summary.vanished(result, view)
 
