@@ -21,8 +21,8 @@ use the type: a laser driver publishes no `Twist`, the types of well-known packa
 workspace use only types that their files name.
 
 The rule reports nothing if no publisher has a similar name, because sensors, simulators and teleoperation are often
-started elsewhere: of 16 such subscriptions in launch files of which every part is known, none was a mistake. The report
-of `--launch` lists these subscriptions under "No publisher here", and JSON under `one_sided`; they do not fail the run.
+started elsewhere: of 23 such topics in launch files of which every part is known, one was a mistake. The report of
+`--launch` lists these topics under "No publisher here", and JSON under `one_sided`; they do not fail the run.
 """
 
 from __future__ import annotations
