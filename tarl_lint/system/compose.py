@@ -55,7 +55,12 @@ Reader = Callable[[Program, Mapping[str, object]], Interface | SourceError | str
 def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader) -> System:
     """Return the system of a launch file. `files` are the Python files of the workspace."""
     instances = _with_meant([_instance(node, launch, workspace, files, read) for node in launch.nodes])
-    problems = (*launch.problems, *hidden_packages.problems(launch, workspace), *_unparsed(launch))
+    problems = (
+        *launch.problems,
+        *hidden_packages.problems(launch, workspace),
+        *_unparsed(launch),
+        *_cut_short(instances),
+    )
     used = {use.type for one in instances if one.interface is not None for use in one.interface.uses}
     return System(
         launch.file,
@@ -101,6 +106,13 @@ def _may_use(instance: Instance, old: str) -> bool:
     unknown = not all(one.names for one in ends)
     used = {resolved(name, namespace, own) for one in ends for name in one.names}
     return unknown or resolved(old, namespace, own) in used
+
+
+def _cut_short(instances: Iterable[Instance]) -> Iterator[Problem]:
+    """Yield a problem for each part of a program whose analysis exhausted the budget, once."""
+    cut = {one for each in instances if each.interface is not None for one in each.interface.cut}
+    for one in sorted(cut):
+        yield Problem(Path(one.path), 0, one.message.removeprefix(one.path).removeprefix(":").strip())
 
 
 def _unparsed(launch: Launch) -> Iterator[Problem]:

@@ -36,8 +36,8 @@ def report(
 ) -> Iterator[Line]:
     """Yield the lines of all systems. With `origin` or `target`, only the chains between these topics.
 
-    The lines at the end concern all systems: unreadable files, incomplete programs, silenced findings, entries of the
-    baseline that are gone.
+    The lines at the end concern all systems: unreadable files, silenced findings, entries of the baseline that
+    are gone.
     """
     for number, system in enumerate(systems):
         if number:
@@ -53,8 +53,6 @@ def _closing(systems: Sequence[System], result: Result, view: View) -> Iterator[
     if view.statistics:
         yield from statistics(systems, result)
     yield from errors(result)
-    for cut in result.statistics.cut:
-        yield ((cut.message, "error"),)
     if not result.reports_hazards:
         yield (("No rule about launch files (TARL3) is enabled.", "quiet"),)
     yield from summary.silenced(result)

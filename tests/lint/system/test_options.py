@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
+from tarl_lint.interpret import fixpoint
 from tarl_lint.system.chains import chains, limited
 from tarl_lint.system.model import Hop
 from tests.lint.test_system import MANIFEST, RELAY, flows, relay, run, write
@@ -272,3 +274,23 @@ def test_cpp_nodes_count_without_a_launch_file_too(arm, capsys):
     assert flows(out) == ["/in → /relay → /out → [/limit, not read] → /cmd_vel  not read"]
     (arm / "arm/scripts/relay.py").unlink()
     assert flows(run(capsys, "--to", "cmd_vel")[1]) == ["/out → [/limit, not read] → /cmd_vel  not read"]
+
+
+# a function of 300 statements between the subscription and the publish call
+LONG = (
+    "def helper(x):\n    return x\ndef on(msg):\n    x = msg.data\n"
+    + "".join(f"    x = helper(x) + {number}\n" for number in range(300))
+    + "    out.publish(x)\nrospy.Subscriber('in', Float64, on)\n"
+)
+
+
+def test_a_program_that_exhausts_its_budget_is_named_in_every_format(arm, capsys, monkeypatch):
+    monkeypatch.setattr(fixpoint, "MAX_STATEMENTS", 100)
+    source = RELAY.replace("rospy.Subscriber", "# ").replace("rospy.spin", f"{LONG}rospy.spin")
+    write(arm, {"arm/scripts/relay.py": source})
+    for form in ("text", "concise", "json", "json2", "sarif", "github", "gitlab", "junit"):
+        text = "".join(run(capsys, "--launch", "a.launch", "--format", form)[1:])
+        assert "arm/scripts/relay.py" in text, form
+        assert re.search("too large to analyse completely|parts of 1 large program", text), form
+    out = run(capsys, "--launch", "a.launch")[1]
+    assert "arm/scripts/relay.py: (node relay): too large to analyse completely; flows may be missing" in out
