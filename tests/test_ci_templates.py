@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 import yaml
@@ -134,6 +136,19 @@ def test_the_github_action_lints_launch_files(project: Path, launch: str) -> Non
     assert f"to {launch.partition('=')[2] or '/a'} has no effect" in ended.stdout
     (log,) = json.loads((project / "flows.launch.sarif").read_text())["runs"]
     assert [one["ruleId"] for one in log["results"]] == ["TARL308"]
+
+
+def test_the_ament_command_lints_launch_files(
+    project: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    launch_file(project)
+    monkeypatch.chdir(project)
+    path = ROOT / "editors/ros/ament_tarl_lint/ament_tarl_lint/main.py"
+    command = runpy.run_path(str(path))["main"]
+    assert command(["--launch", "launch/arm.launch", "to:=/b", "--xunit-file", "results/a.xml"]) == 1
+    assert "to /b has no effect" in capsys.readouterr().out
+    cases = ElementTree.parse(project / "results/a.xml").getroot().iter("testcase")
+    assert [one.find("failure") is not None for one in cases] == [True, False]  # the hazard and a flow
 
 
 @pytest.mark.parametrize(

@@ -157,7 +157,8 @@ def _missed(result: Result) -> Iterator[str]:
     if notes.cpp_nodes:
         yield many(notes.cpp_nodes, "C++ node")
     if notes.unread_nodes:
-        yield f"{many(notes.unread_nodes, 'node')} of the launch files"
+        verb = "was" if notes.unread_nodes == 1 else "were"
+        yield f"{many(notes.unread_nodes, 'node')} that {verb} not read"
     if notes.remapping_launch_files:
         yield f"remaps in {many(notes.remapping_launch_files, 'launch file')}"
     if not result.follows_clients and (asking := sum(map(_asks, result.texts.values()))):

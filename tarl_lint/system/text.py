@@ -43,16 +43,19 @@ def report(
         if number:
             yield ()
         yield from _system(system, view, origin, target)
-    closing = list(_closing(systems, result, view))
+    closing = list(_closing(systems, result, view, brief=bool(origin or target)))
     if closing:
         yield ()
         yield from closing
 
 
-def _closing(systems: Sequence[System], result: Result, view: View) -> Iterator[Line]:
+def _closing(systems: Sequence[System], result: Result, view: View, *, brief: bool) -> Iterator[Line]:
     if view.statistics:
         yield from statistics(systems, result)
-    yield from errors(result)
+    if not brief:
+        yield from errors(result)
+    elif result.errors:
+        yield from summary.not_analysed(result)
     if not result.reports_hazards:
         yield (("No rule about launch files (TARL3) is enabled.", "quiet"),)
     yield from summary.silenced(result)

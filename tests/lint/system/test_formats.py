@@ -69,7 +69,7 @@ def test_concise_has_a_line_for_each_hazard_flow_and_unreadable_file(robot, caps
         f"arm/launch/a.launch:3:1 {HAZARD} {MESSAGE}",
         f"arm/launch/a.launch: {FLOW}",
         f"1 hazard: 1 {HAZARD} in 2 files.",
-        "Not analysed: 1 file that is not readable as Python 3 (TARL001), 1 node of the launch files.",
+        "Not analysed: 1 file that is not readable as Python 3 (TARL001), 1 node that was not read.",
     ]
 
 

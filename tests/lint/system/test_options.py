@@ -207,6 +207,14 @@ def test_a_search_that_ends_early_says_so(monkeypatch):
     assert limited(found, 0, more=more)[1] == "… and more: select them with --from and --to."
 
 
+def test_a_query_counts_unreadable_programs_in_one_line(arm, capsys):
+    write(arm, {"arm/scripts/broken.py": "#!/usr/bin/env python3\nx = (\n"})
+    launch(arm, '<node pkg="arm" type="broken.py" name="broken"/>')
+    assert "TARL001 The file is not valid Python" in run(capsys, "--launch", "a.launch")[1]
+    out = run(capsys, "--launch", "a.launch", "--from", "scan")[1]
+    assert out.endswith("\n\nNot analysed: 1 file that is not readable as Python 3 (TARL001).\n")
+
+
 def test_statistics_count_nodes_flows_and_hazards(arm, capsys):
     for form in ("text", "concise"):
         lines = run(capsys, "--launch", "a.launch", "--format", form, "--statistics")[1].splitlines()
