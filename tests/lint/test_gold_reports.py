@@ -27,7 +27,14 @@ OPTIONS = {
     "none": ("--max-paths", "0", "--statistics"),
     "paths": ("--show-paths", "--ignore", "TARL102"),
 }
-SYSTEMS = {"svg": ("--format", "svg"), "mermaid": ("--format", "mermaid"), "text": ()}
+SYSTEMS = {
+    "svg": ("--format", "svg"),
+    "mermaid": ("--format", "mermaid"),
+    "dot": ("--format", "dot"),
+    "concise": ("--format", "concise"),
+    "junit": ("--format", "junit"),
+    "text": (),
+}
 
 
 @pytest.fixture(scope="module")
