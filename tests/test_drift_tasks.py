@@ -37,6 +37,7 @@ JUDGING = (
     "drift_judging_20",
     "drift_judging_21",
     "drift_judging_22",
+    "drift_judging_23",
     "drift_structure",
 )
 TASKS = sorted(
@@ -318,6 +319,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "two constants",
     ],
+    "drift_judging_23": [
+        "narrow window",
+        "one constant",
+        "one constant",
+        "permanent",
+        "range",
+        "rare failures",
+        "structure",
+        "two constants",
+    ],
 }
 
 
@@ -378,6 +389,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_20",
         "drift_judging_21",
         "drift_judging_22",
+        "drift_judging_23",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
