@@ -94,6 +94,7 @@ class Window:
     drifts={"fresh": FRESH},
     episodes=200,
     min_success=0.97,
+    tolerance=1.0,  # the motor of the pod works harder in more wind
 )
 def test_flies(tarl, tarl_drift):
     """Fly for half a minute."""
