@@ -24,7 +24,7 @@ from tarl_lint.system.cpp_sources import is_compiled, named_topics
 from tarl_lint.system.cpp_types import used_types
 from tarl_lint.system.gz_bridges import bridged, own_name
 from tarl_lint.system.image_transport import is_republisher, republished, transported
-from tarl_lint.system.known_packages import identity, kinds, of_package, typed, unlikely
+from tarl_lint.system.known_packages import identity, kinds, name_words, of_package, typed, unlikely
 from tarl_lint.system.known_programs import stated
 from tarl_lint.system.model import Hop, Instance, Interface, Role, Seen, System, full_name
 from tarl_lint.system.reconfigured import with_configured
@@ -177,7 +177,9 @@ def _known(instance: Instance, launch: Launch, workspace: Workspace) -> Seen:
         inside = workspace.package(identity(node)[0])  # for a nodelet, the package of its class
         known = kinds(node) if inside is None else used_types(inside, workspace)
         found = found if found.ends else typed(instance, values, ros2=launch.ros2)
-        return replace(found, kinds=known, never=unlikely(node) if inside is None else frozenset())
+        if inside is not None:
+            return replace(found, kinds=known)
+        return replace(found, kinds=known, never=unlikely(node), words=name_words(node))
     ends = named_topics(package, node.executable) if node.kind == "node" else ()
     compiled = node.kind == "component" or is_compiled(package, node.executable)
     known = used_types(package, workspace) if compiled else None

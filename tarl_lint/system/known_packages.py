@@ -12,8 +12,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from tarl_lint.model import Span
-from tarl_lint.system.command_topics import COMMANDS
 from tarl_lint.system.model import Endpoint, Instance, Role, Seen, place_of
+from tarl_lint.system.sensor_drivers import driver_types, driver_words, unused_types, words
 from tarl_lint.workspace.launch_model import LaunchedNode
 from tarl_lint.workspace.ros_arguments import plain
 
@@ -134,22 +134,15 @@ _STAMPED: Final = ("use_stamped", "publish_stamped_twist", "stamped")
 _UNSTAMPED: Final = "Twist"
 
 
-_SENSOR: Final = re.compile(
-    r"(?<![a-z])(camera|cam|lidar|ladar|laser|scanner|sick|hokuyo|velodyne|ouster|livox|imu|gps|gnss|radar|sonar|"
-    r"ultrasonic|microstrain|xsens|realsense|zed|tof|thermal|ublox|novatel|septentrio|barometer|rfid|barcode)(?![a-z])"
-)
-# what makes a package more than the driver of a sensor
-_ACTIVE: Final = re.compile(
-    r"follow|control|nav|track|servo|drive(?!r)|slam|pilot|guard|safe|stop|avoid|teleop|plan|fus|filter|base|robot|sim|odom|"
-    r"match|joint|tilt|goal|map|graph|mount|(?<![a-z])pan(?![a-z])"
-)
-_SENSED_NEVER: Final = COMMANDS | {"Joy", "Path", "OccupancyGrid", "JointState", "PoseArray"}
-
-
 def unlikely(node: LaunchedNode) -> frozenset[str]:
     """Return types that a program of an unknown package does not use: the driver of a sensor commands nothing."""
-    text = "/".join(identity(node)).lower()
-    return _SENSED_NEVER if _SENSOR.search(text) and not _ACTIVE.search(text) else frozenset()
+    return unused_types(*identity(node))
+
+
+def name_words(node: LaunchedNode) -> frozenset[str] | None:
+    """Return the words of the names that a program may give topics and services; None if they may be any."""
+    found = driver_words(*identity(node))
+    return None if found is None else found | frozenset(words(node.name))
 
 
 def kinds(node: LaunchedNode) -> frozenset[str] | None:
@@ -159,13 +152,15 @@ def kinds(node: LaunchedNode) -> frozenset[str] | None:
         return frozenset()
     found = of_package(package)
     told = package in _TOLD and f"{package}/{program}" in _TYPED
-    return found - _TOLD_TYPES if found is not None and told else found
+    if found is None:
+        return driver_types(package, program)
+    return found - _TOLD_TYPES if told else found
 
 
 def of_package(package: str) -> frozenset[str] | None:
     """Return the types of messages and services that the programs of a package may use; None if they are unknown."""
     types = _PACKAGES.get(package)
-    return None if types is None else frozenset(types.split())
+    return driver_types(package, "") if types is None else frozenset(types.split())
 
 
 def typed(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen:

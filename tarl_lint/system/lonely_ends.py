@@ -34,15 +34,21 @@ def near(system: System, one: Lonely, others: Iterable[Lonely], *, longer: bool 
     node itself uses, and for misspelt names, unless they mention one of the names. `longer` says that names may also
     differ by whole words; in the root, only those of special types.
     """
-    complete = system.complete(one.end)
+    hidden = system.hides_end(one.end)
+    able = tuple(system.able(one.end))
     found = {
         (other.name, other.node.name): other
         for other in others
         if not exclusive(one.node.node, other.node.node)
         and _alike(one, other, longer=longer)
-        and (complete or _certain(system, one, other))
+        and (_certain(one, other, able) or not (hidden or any(_explains(node, one, other) for node in able)))
     }
     return [found[key] for key in sorted(found)]
+
+
+def _explains(node: Instance, one: Lonely, other: Lonely) -> bool:
+    """Return whether a node that may use their type may be the other end of one of two ends."""
+    return node.may_name(one.name) or node.may_name(other.name) or _mentions(node, one, other)
 
 
 def _alike(one: Lonely, other: Lonely, *, longer: bool) -> bool:
@@ -54,18 +60,20 @@ def _alike(one: Lonely, other: Lonely, *, longer: bool) -> bool:
     )
 
 
-def _certain(system: System, one: Lonely, other: Lonely) -> bool:
-    """Return whether two ends belong together, even if a node that was not read may use their type."""
+def _certain(one: Lonely, other: Lonely, able: Iterable[Instance]) -> bool:
+    """Return whether two ends belong together, even if other nodes may use their type."""
     if other.node.name == one.name.rpartition("/")[0] or under_own_name(one.name, other.name, other.node):
         return True
     if not misspelt(one.name, other.name):
         return False
-    unread = (
-        node for node in system.instances if node not in (one.node, other.node) and node.may_use(one.end.type)
-    )
+    return not any(_mentions(node, one, other) for node in able if node not in (one.node, other.node))
+
+
+def _mentions(node: Instance, one: Lonely, other: Lonely) -> bool:
+    """Return whether a node mentions the last part of one of two names."""
     lasts = [name.rpartition("/")[2] for name in (one.name, other.name)]
     mention = re.compile("|".join(rf"(?<!\w){re.escape(last)}(?!\w)" for last in lasts))
-    return not any(mention.search(text) for node in unread for text in _texts(node))
+    return any(mention.search(text) for text in _texts(node))
 
 
 def _texts(node: Instance) -> Iterator[str]:

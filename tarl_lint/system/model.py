@@ -12,6 +12,7 @@ from tarl_lint.files import shown
 from tarl_lint.model import Cut, Finding, Kind, Span
 from tarl_lint.parameter_names import ParameterName
 from tarl_lint.read.source import SourceError
+from tarl_lint.system.sensor_drivers import offered
 from tarl_lint.workspace.conditions import exclusive
 from tarl_lint.workspace.launch_model import LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem
@@ -113,7 +114,8 @@ class Seen:
 
     `certain` says that the node has no others, except those of transforms and parameters. `through` says that data of
     each subscribed topic may reach each published one. `kinds` are all types of messages and services that the node may
-    use; None if they are unknown. `never` are types that it does not use in any case.
+    use; None if they are unknown. `never` are types that it does not use in any case. `words` are the words of the
+    names that the node may give topics and services; None if they may be any.
     """
 
     ends: tuple[Endpoint, ...] = ()
@@ -121,6 +123,7 @@ class Seen:
     through: bool = True
     kinds: frozenset[str] | None = None
     never: frozenset[str] = frozenset()
+    words: frozenset[str] | None = None
 
 
 @dataclass(frozen=True)
@@ -172,6 +175,12 @@ class Instance:
         return not self.interface.complete or any(
             kind in types or not {"", "AnyMsg"}.isdisjoint(types) for types in unnamed
         )
+
+    def may_name(self, name: str) -> bool:
+        """Return whether the node may have an unknown endpoint with this launched name."""
+        if self.interface is not None or self.known.words is None or name.startswith(f"{self.name}/"):
+            return True
+        return offered(name, self.known.words)
 
     def ends(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
         """Yield the endpoints of a role by launched name, without those whose name is unknown."""
@@ -252,14 +261,22 @@ class System:
     included: Mapping[str, frozenset[str]] = field(default_factory=dict)
     ros2: bool = False
 
-    def complete(self, end: Endpoint) -> bool:
-        """Return whether a topic or service with one known end certainly has no other in this system.
+    def able(self, end: Endpoint) -> Iterator[Instance]:
+        """Yield the nodes that may have further endpoints of the type of an endpoint.
 
         Nodes of other packages do not use types that packages of this workspace define.
         """
-        own = end.whole_type.partition("/")[0] in self.packages
-        able = (one for one in self.instances if not own or one.node.package in self.packages)
-        return not any(one.may_use(end.type) for one in able) and not self.hides(end.type, own=own)
+        own = self._is_own(end)
+        yield from (one for one in self.instances
+                    if (not own or one.node.package in self.packages) and one.may_use(end.type))  # fmt: skip
+
+    def hides_end(self, end: Endpoint) -> bool:
+        """Return whether a part of the launch that was not read may start a node with such an endpoint."""
+        return self.hides(end.type, own=self._is_own(end))
+
+    def _is_own(self, end: Endpoint) -> bool:
+        """Return whether a package of the workspace defines the type of an endpoint."""
+        return end.whole_type.partition("/")[0] in self.packages
 
     def hides(self, kind: str, *, own: bool = False) -> bool:
         """Return whether a part of the launch that was not read may start a node that uses a type.

@@ -118,7 +118,7 @@ SOWN: dict[str, tuple[str, str, list[Edit]]] = {
 
 
 def found(folder: Path, capsys: pytest.CaptureFixture[str]) -> list[dict[str, str]]:
-    main(["--launch", str(folder / BRINGUP), str(folder), "driver:=false", "--format", "json"])
+    main(["--launch", str(folder / BRINGUP), str(folder), "--format", "json"])
     (system,) = json.loads(capsys.readouterr().out)["systems"]
     return list(system["diagnostics"])
 
