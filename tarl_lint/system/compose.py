@@ -24,7 +24,7 @@ from tarl_lint.system.cpp_sources import is_compiled, named_topics
 from tarl_lint.system.cpp_types import used_types
 from tarl_lint.system.gz_bridges import bridged, own_name
 from tarl_lint.system.image_transport import is_republisher, republished, transported
-from tarl_lint.system.known_packages import identity, kinds, name_words, of_package, typed, unlikely
+from tarl_lint.system.known_packages import identity, kinds, name_words, started_by, typed, unlikely
 from tarl_lint.system.known_programs import stated
 from tarl_lint.system.model import Hop, Instance, Interface, Role, Seen, System, full_name
 from tarl_lint.system.reconfigured import with_configured
@@ -71,9 +71,7 @@ def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: 
         messages=fields(used, workspace),
         ros2=launch.ros2,
         packages=frozenset(one.name for one in workspace.packages),
-        included={
-            one.package: kinds_of for one in problems if (kinds_of := of_package(one.package)) is not None
-        },
+        included={one.package: started_by(one.package) for one in problems if one.hides and one.package},
     )
 
 

@@ -157,6 +157,11 @@ def kinds(node: LaunchedNode) -> frozenset[str] | None:
     return found - _TOLD_TYPES if told else found
 
 
+def started_by(package: str) -> Seen:
+    """Return what is known of the nodes that the launch files of a package start."""
+    return Seen(kinds=of_package(package), never=unused_types(package, ""), words=driver_words(package, ""))
+
+
 def of_package(package: str) -> frozenset[str] | None:
     """Return the types of messages and services that the programs of a package may use; None if they are unknown."""
     types = _PACKAGES.get(package)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from typing import Final, NamedTuple
 
-from tarl_lint.system.model import Endpoint, Instance, System
+from tarl_lint.system.model import Endpoint, Instance, System, mention
 from tarl_lint.system.similar_names import (
     in_private_names,
     longer_alike,
@@ -34,21 +33,26 @@ def near(system: System, one: Lonely, others: Iterable[Lonely], *, longer: bool 
     node itself uses, and for misspelt names, unless they mention one of the names. `longer` says that names may also
     differ by whole words; in the root, only those of special types.
     """
-    hidden = system.hides_end(one.end)
     able = tuple(system.able(one.end))
     found = {
         (other.name, other.node.name): other
         for other in others
         if not exclusive(one.node.node, other.node.node)
         and _alike(one, other, longer=longer)
-        and (_certain(one, other, able) or not (hidden or any(_explains(node, one, other) for node in able)))
+        and (_certain(one, other, able) or not _explained(system, one, other, able))
     }
     return [found[key] for key in sorted(found)]
 
 
-def _explains(node: Instance, one: Lonely, other: Lonely) -> bool:
-    """Return whether a node that may use their type may be the other end of one of two ends."""
-    return node.may_name(one.name) or node.may_name(other.name) or _mentions(node, one, other)
+def _explained(system: System, one: Lonely, other: Lonely, able: Iterable[Instance]) -> bool:
+    """Return whether something that was not read may be the other end of one of two ends.
+
+    `able` are the nodes that may use their type.
+    """
+    names = one.name, other.name
+    return system.hides(one.end, *names) or any(
+        any(map(node.may_name, names)) or mention(_texts(node), names) for node in able
+    )
 
 
 def _alike(one: Lonely, other: Lonely, *, longer: bool) -> bool:
@@ -66,14 +70,8 @@ def _certain(one: Lonely, other: Lonely, able: Iterable[Instance]) -> bool:
         return True
     if not misspelt(one.name, other.name):
         return False
-    return not any(_mentions(node, one, other) for node in able if node not in (one.node, other.node))
-
-
-def _mentions(node: Instance, one: Lonely, other: Lonely) -> bool:
-    """Return whether a node mentions the last part of one of two names."""
-    lasts = [name.rpartition("/")[2] for name in (one.name, other.name)]
-    mention = re.compile("|".join(rf"(?<!\w){re.escape(last)}(?!\w)" for last in lasts))
-    return any(mention.search(text) for text in _texts(node))
+    others = (node for node in able if node not in (one.node, other.node))
+    return not any(mention(_texts(node), (one.name, other.name)) for node in others)
 
 
 def _texts(node: Instance) -> Iterator[str]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -125,6 +126,16 @@ class Seen:
     never: frozenset[str] = frozenset()
     words: frozenset[str] | None = None
 
+    def may_use(self, kind: str) -> bool:
+        """Return whether the node may use a type of messages or services."""
+        return kind in self.kinds if self.kinds is not None else kind not in self.never
+
+    def may_offer(self, kind: str, names: Sequence[str], texts: Iterable[str]) -> bool:
+        """Return whether the node may use a type under one of these names. `texts` are the values that it receives."""
+        if not self.may_use(kind):
+            return False
+        return self.words is None or any(offered(one, self.words) for one in names) or mention(texts, names)
+
 
 @dataclass(frozen=True)
 class Instance:
@@ -170,7 +181,7 @@ class Instance:
         if self.whole:
             return False
         if self.interface is None:
-            return kind in self.known.kinds if self.known.kinds is not None else kind not in self.known.never
+            return self.known.may_use(kind)
         unnamed = [one.type.split(" | ") for one in self.interface.endpoints if not one.names]
         return not self.interface.complete or any(
             kind in types or not {"", "AnyMsg"}.isdisjoint(types) for types in unnamed
@@ -241,10 +252,9 @@ class System:
     """The nodes of one launch file. Hops and chains are sorted.
 
     `messages` are the fields of types `package/Name` of the workspace that the nodes use, each with its type or "".
-    `packages` are the packages of the workspace. `included` are the types that well-known packages use whose launch
+    `packages` are the packages of the workspace. `included` is what is known of the nodes of packages whose launch
     files are included, but not in the workspace. `ros2` says that the launch file is for ROS 2. `silenced` are the
-    findings that comments silence, `disabled` those in files in which
-    `per-file-ignores` disables their rule.
+    findings that comments silence, `disabled` those in files in which `per-file-ignores` disables their rule.
     """
 
     file: Path
@@ -258,7 +268,7 @@ class System:
     arguments: tuple[tuple[str, str], ...] = field(default=())
     messages: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     packages: frozenset[str] = frozenset()
-    included: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    included: Mapping[str, Seen] = field(default_factory=dict)
     ros2: bool = False
 
     def able(self, end: Endpoint) -> Iterator[Instance]:
@@ -270,23 +280,23 @@ class System:
         yield from (one for one in self.instances
                     if (not own or one.node.package in self.packages) and one.may_use(end.type))  # fmt: skip
 
-    def hides_end(self, end: Endpoint) -> bool:
-        """Return whether a part of the launch that was not read may start a node with such an endpoint."""
-        return self.hides(end.type, own=self._is_own(end))
-
     def _is_own(self, end: Endpoint) -> bool:
         """Return whether a package of the workspace defines the type of an endpoint."""
         return end.whole_type.partition("/")[0] in self.packages
 
-    def hides(self, kind: str, *, own: bool = False) -> bool:
-        """Return whether a part of the launch that was not read may start a node that uses a type.
+    def hides(self, end: Endpoint, *names: str) -> bool:
+        """Return whether a part of the launch that was not read may start a node with such an endpoint.
 
-        `own` says that a package of the workspace defines it, so launch files of other packages start no such node.
+        `names` are the launched names that the endpoint may have. If a package of the workspace defines the type,
+        launch files of other packages start no such node.
         """
-        hiding = [one for one in self.problems if one.hides]
-        if own:
-            hiding = [one for one in hiding if not one.package or one.package in self.packages]
-        return any(kind in self.included.get(one.package, (kind,)) for one in hiding)
+        own = self._is_own(end)
+        return any(
+            one.hides
+            and (not own or not one.package or one.package in self.packages)
+            and self.included.get(one.package, Seen()).may_offer(end.type, names, one.given)
+            for one in self.problems
+        )
 
     def ends(self, role: Role) -> Iterator[tuple[str, Instance, Endpoint]]:
         """Yield the endpoints that all nodes have in a role, by launched name."""
@@ -299,6 +309,13 @@ class System:
         for instance in self.instances:
             for name, endpoint in instance.named(role):
                 yield name, instance, endpoint
+
+
+def mention(texts: Iterable[str], names: Iterable[str]) -> bool:
+    """Return whether one of the texts contains the last part of one of the names, as a word."""
+    lasts = "|".join(re.escape(name.rpartition("/")[2]) for name in names)
+    word = re.compile(rf"(?<!\w)(?:{lasts})(?!\w)")
+    return any(word.search(text) for text in texts)
 
 
 def full_name(node: LaunchedNode, own: str) -> str:

@@ -161,14 +161,15 @@ class Runner:
         name = performed(action.values.get("source"), context)
         # the source of the bridge is usually not in the workspace, because its package is installed
         if name.startswith(_GZ_BRIDGE):
-            given = {
+            bridged = {
                 key: value for key, value in items_of(action.values.get("arguments")) if isinstance(key, str)
             }
-            self._node(gz_bridge(action.line, given), context, condition)
+            self._node(gz_bridge(action.line, bridged), context, condition)
             return
         if symbolic(name) or not name:
             reason = f"the included file {name or '?'} is not in the workspace"
-            self._problem(context, action.line, reason, hides=True, package=package_in(name))
+            given = tuple(performed(one, context) for _, one in items_of(action.values.get("arguments")))
+            self._problem(context, action.line, reason, hides=True, package=package_in(name), given=given)
             return
         for key, value in items_of(action.values.get("arguments")):
             context.configurations[performed(key, context)] = performed(value, context)
@@ -279,9 +280,16 @@ class Runner:
             yield stated
 
     def _problem(
-        self, context: Context, line: int, reason: str, *, hides: bool = False, package: str = ""
+        self,
+        context: Context,
+        line: int,
+        reason: str,
+        *,
+        hides: bool = False,
+        package: str = "",
+        given: tuple[str, ...] = (),
     ) -> None:
-        problem = Problem(context.file, line, reason, hides, package)
+        problem = Problem(context.file, line, reason, hides, package, given)
         if problem not in self.problems:
             self.problems.append(problem)
 

@@ -77,8 +77,14 @@ class _Reader:
                     place = replace(self._element(element, inside, unsure), condition=place.condition)
             except SymbolicError as reason:
                 hides = element.tag in ("include", "group", "node")
-                package = package_in(element.get("file", "")) if element.tag == "include" else ""
-                self._problem(element, place, f"<{element.tag}>: {reason}", hides=hides, package=package)
+                self._problem(
+                    element,
+                    place,
+                    f"<{element.tag}>: {reason}",
+                    hides=hides,
+                    package=package_in(element.get("file", "")) if element.tag == "include" else "",
+                    given=_given(element, place) if element.tag == "include" else (),
+                )
                 if (
                     element.tag == "param"
                     and "value" in element.attrib
@@ -261,9 +267,17 @@ class _Reader:
             raise SymbolicError(f"{path.name}: {reason}") from None
 
     def _problem(
-        self, element: Element, place: _Place, reason: str, *, hides: bool = False, package: str = ""
+        self,
+        element: Element,
+        place: _Place,
+        reason: str,
+        *,
+        hides: bool = False,
+        package: str = "",
+        given: tuple[str, ...] = (),
     ) -> None:
-        problem = Problem(place.scope.file, int(element.get(LINE, "0")), reason, hides, package)
+        line = int(element.get(LINE, "0"))
+        problem = Problem(place.scope.file, line, reason, hides, package, given)
         if problem not in self.problems:
             self.problems.append(problem)
 
@@ -289,6 +303,12 @@ def _overridden(node: LaunchedNode, later: Iterable[Setting]) -> LaunchedNode:
     within = (one for one in later if node.name and f"{one.name}/".startswith(f"{full}/"))
     own = (replace(one, name=f"~{one.name[len(full) :].lstrip('/')}") for one in within)
     return replace(node, settings=(*node.settings, *own))
+
+
+def _given(include: Element, place: _Place) -> tuple[str, ...]:
+    """Return the values that an <include> passes on."""
+    stated = (one.get("value", one.get("default", "")) for one in include if one.tag == "arg")
+    return tuple(place.scope.symbolic(one)[0] for one in stated)
 
 
 def _unset(param: Element, place: _Place, above: str) -> Setting:

@@ -16,7 +16,8 @@ class Problem:
     """Something that could not be read: the file, a line (0 for the whole file) and the reason.
 
     `hides` says that a launch file may start further nodes there; `package` is the one that contains an included file
-    that is not in the workspace, or "". `unreadable` says that nothing of the file could be read.
+    that is not in the workspace, or "", and `given` are the values that this file receives. `unreadable` says that
+    nothing of the file could be read.
     """
 
     file: Path
@@ -25,6 +26,7 @@ class Problem:
     hides: bool = False
     package: str = ""
     unreadable: bool = False
+    given: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
