@@ -168,7 +168,9 @@ def _plan(file: Path, arguments: tuple[tuple[str, str], ...]) -> LaunchPlan:
     _check_arguments(launch, [name for name, _ in arguments])
     nodes = [one for one in launch.nodes if one.kind != "test"]
     if not nodes:
-        why = f": {launch.problems[0].reason}" if launch.problems else " with these arguments"
+        # a part that may start nodes explains best why there are none
+        reasons = [one.reason for one in sorted(launch.problems, key=lambda one: not one.hides)]
+        why = f": {reasons[0]}" if reasons else " with these arguments"
         raise SettingsError(f"tarl.launch: {file.name} starts no node{why}.")
     return LaunchPlan(
         file,

@@ -36,6 +36,7 @@ from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.message_files import fields
 from tarl_lint.workspace.model import Problem, Workspace
 from tarl_lint.workspace.node_programs import Program, program
+from tarl_lint.workspace.parameter_yaml import ENDINGS as YAML
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
 from tarl_lint.workspace.ros_names import resolved
 
@@ -47,6 +48,9 @@ _SILENT: Final = frozenset(
     ["static_transform_publisher", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui",
      "state_publisher", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_console", "rqt_image_view", "xacro"]
 )  # fmt: skip
+_NO_YAML: Final = (
+    "TARL307 does not check its parameters, since reading them needs PyYAML: run pip install PyYAML"
+)
 
 # (program, known values of its parameters) → its interface, or the reason why it cannot be analysed
 Reader = Callable[[Program, Mapping[str, object]], Interface | SourceError | str]
@@ -114,13 +118,16 @@ def _cut_short(instances: Iterable[Instance]) -> Iterator[Problem]:
 
 
 def _unparsed(launch: Launch) -> Iterator[Problem]:
-    """Yield a problem for each file with parameters of nodes that cannot be read."""
-    files: dict[Path, Setting] = {}
-    for setting in (one for node in launch.nodes for one in node.settings):
-        if setting.yaml is not None and setting.name == "~":
-            files.setdefault(setting.file, setting)
-    reasons = {file: _unparsable(setting) for file, setting in files.items()}
-    yield from (Problem(file, 0, reason) for file, reason in reasons.items() if reason)
+    """Yield a problem for each file with parameters, and each parameter in a launch file, that is not YAML."""
+    found: dict[tuple[Path, str], None] = {}
+    for setting in (*launch.settings, *(one for node in launch.nodes for one in node.settings)):
+        whole = setting.name == "~" or setting.file.suffix in YAML
+        if setting.yaml is None or (launch.ros2 and not whole):  # ROS 2 may take other texts for strings
+            continue
+        reason = _unparsable(setting)
+        if reason and (whole or reason != _NO_YAML):
+            found[setting.file, reason if whole else f"the parameter {setting.name}: {reason}"] = None
+    yield from (Problem(file, 0, reason) for file, reason in found)
 
 
 def _unparsable(setting: Setting) -> str:
@@ -128,9 +135,7 @@ def _unparsable(setting: Setting) -> str:
     try:
         content(setting)
     except NoYamlError:
-        return (
-            "TARL307 does not check its parameters, since reading them needs PyYAML: run pip install PyYAML"
-        )
+        return _NO_YAML
     except UnreadableError as reason:
         return str(reason)
     return ""

@@ -37,62 +37,67 @@ def _sensor(packages: str, signs: str, types: str, words: str) -> Sensor:
 _TYPES: Final = frozenset(
     ["Bool", "String", "Empty", "Trigger", "SetBool", "Header", "Temperature", "Marker", "MarkerArray",
      "DiagnosticArray", "DiagnosticStatus"]
-    + [f"{kind}{form}" for kind in ("Float32", "Float64", "Int8", "Int16", "Int32", "Int64", "UInt8", "UInt16", "UInt32",
-                                    "UInt64", "Byte", "Char") for form in ("", "MultiArray")]
+    + [f"{kind}{form}" for kind in ("Float32", "Float64", "Int8", "Int16", "Int32", "Int64", "UInt8", "UInt16",
+                                    "UInt32", "UInt64", "Byte", "Char") for form in ("", "MultiArray")]
 )  # fmt: skip
-_WORDS: Final = frozenset(
-    """
-    raw data info status state states diagnostics device sensor config configuration settings parameters firmware
-    version temperature start stop enable disable enabled reset restart reboot power standby resume pause set get send
-    command cmd request response trigger sync time reference stamp count seq frame id packet packets datagram telegram
-    stream output out input in marker markers error errors fault health heartbeat connected
-    front rear back left right top bottom center centre middle upper lower main primary secondary corrected calibrated
-    calibration calibrate
-    """.split()
-)
+_WORDS: Final = _sensor(
+    "",
+    "",
+    "",
+    "raw data info status state states diagnostics device sensor config configuration settings parameters "
+    "firmware version temperature start stop enable disable enabled reset restart reboot power standby resume "
+    "pause set get send command cmd request response trigger sync time reference stamp count seq frame id "
+    "packet packets datagram telegram stream output out input in marker markers error errors fault health "
+    "heartbeat connected front rear back left right top bottom center centre middle upper lower main primary "
+    "secondary corrected calibrated calibration calibrate",
+).words
 
 SENSORS: Final = (
     _sensor(
         "urg_node urg_node2 rplidar_ros sllidar_ros2 ydlidar_ros ydlidar_ros2_driver hls_lfcd_lds_driver "
         "ldlidar_stl_ros2 hokuyo_node lms1xx sick_tim sick_scan sick_scan2 sick_scan_xd sick_safetyscanners "
-        "sick_safetyscanners2 xv_11_laser_driver velodyne_driver velodyne_pointcloud velodyne_laserscan ouster_ros "
-        "livox_ros_driver livox_ros_driver2 rslidar_sdk",
+        "sick_safetyscanners2 xv_11_laser_driver velodyne_driver velodyne_pointcloud velodyne_laserscan "
+        "ouster_ros livox_ros_driver livox_ros_driver2 rslidar_sdk",
         "lidar ladar laser scanner sick hokuyo velodyne ouster livox radar sonar ultrasonic tof",
-        "LaserScan MultiEchoLaserScan LaserEcho LaserFan PointCloud PointCloud2 Polygon PolygonStamped Range Imu Image "
-        "CompressedImage Status Odometry",
-        "scan scans scanner laser lidar ladar radar sonar ultrasonic tof lds cloud clouds point points pointcloud range "
-        "ranges distance echo echoes multi most intense intensity intensities reflectivity ambient near ir nearir signal "
-        "image depth first last sector segment field fields zone zones layer beam beams rpm rpms motor spin speed encoder "
-        "imu target targets object objects track tracks detections horizontal vertical single dual return xyz xyzi ring",
+        "LaserScan MultiEchoLaserScan LaserEcho LaserFan PointCloud PointCloud2 Polygon PolygonStamped Range Imu "
+        "Image CompressedImage Status Odometry",
+        "scan scans scanner laser lidar ladar radar sonar ultrasonic tof lds cloud clouds point points pointcloud "
+        "range ranges distance echo echoes multi most intense intensity intensities reflectivity ambient near ir "
+        "nearir signal image depth first last sector segment field fields zone zones layer beam beams rpm rpms "
+        "motor spin speed encoder imu target targets object objects track tracks detections horizontal vertical "
+        "single dual return xyz xyzi ring",
     ),
     _sensor(
         "usb_cam v4l2_camera cv_camera gscam uvc_camera libuvc_camera camera_ros camera1394 openni_camera "
         "openni2_camera astra_camera freenect_camera prosilica_camera realsense2_camera",
         "camera cam realsense zed thermal",
-        "Image CompressedImage CameraInfo Packet SetCameraInfo PollImage PointCloud2 DisparityImage Imu MagneticField "
-        "FluidPressure Odometry PoseStamped PoseWithCovarianceStamped PointStamped TransformStamped LaserScan Extrinsics "
-        "IMUInfo Metadata RGBD DeviceInfo Detection2DArray Detection3DArray",
-        "image images img picture camera cam color colour depth rgb rgbd bgr gray grey mono ir infra infrared infra1 "
-        "infra2 fisheye thermal rect rectified registered aligned unaligned compressed theora stereo disparity "
-        "confidence point points cloud pointcloud scan imu gyro accel mag odom odometry pose exposure gain white balance "
-        "brightness video shutter snapshot capture extrinsics metadata projector laser emitter preset detections",
+        "Image CompressedImage CameraInfo Packet SetCameraInfo PollImage PointCloud2 DisparityImage Imu "
+        "MagneticField FluidPressure Odometry PoseStamped PoseWithCovarianceStamped PointStamped TransformStamped "
+        "LaserScan Extrinsics IMUInfo Metadata RGBD DeviceInfo Detection2DArray Detection3DArray",
+        "image images img picture camera cam color colour depth rgb rgbd bgr gray grey mono ir infra infrared "
+        "infra1 infra2 fisheye thermal rect rectified registered aligned unaligned compressed theora stereo "
+        "disparity confidence point points cloud pointcloud scan imu gyro accel mag odom odometry pose exposure "
+        "gain white balance brightness video shutter snapshot capture extrinsics metadata projector laser emitter "
+        "preset detections",
     ),
     _sensor(
         "",
         "imu microstrain xsens",
-        "Imu MagneticField FluidPressure QuaternionStamped Quaternion Vector3 Vector3Stamped TimeReference NavSatFix "
-        "Odometry PoseStamped PoseWithCovarianceStamped TwistWithCovarianceStamped",
-        "imu imus mag magnetic magnetometer field gyro gyroscope accel accelerometer acceleration angular linear free "
-        "velocity delta dv dq orientation attitude quaternion rpy euler roll pitch yaw heading north pressure baro "
-        "altitude bias gravity filter filtered filtering odom odometry pose twist gps gnss nav fix position",
+        "Imu MagneticField FluidPressure QuaternionStamped Quaternion Vector3 Vector3Stamped TimeReference "
+        "NavSatFix Odometry PoseStamped PoseWithCovarianceStamped TwistWithCovarianceStamped",
+        "imu imus mag magnetic magnetometer field gyro gyroscope accel accelerometer acceleration angular linear "
+        "free velocity delta dv dq orientation attitude quaternion rpy euler roll pitch yaw heading north "
+        "pressure baro altitude bias gravity filter filtered filtering odom odometry pose twist gps gnss nav fix "
+        "position",
     ),
     _sensor(
         "nmea_navsat_driver",
         "gps gnss ublox novatel septentrio",
-        "NavSatFix NavSatStatus TimeReference TwistWithCovarianceStamped QuaternionStamped Odometry Imu PoseStamped "
-        "PoseWithCovarianceStamped PointStamped Vector3Stamped Sentence",
-        "gps gnss gpsfix fix extended nav navsat sat satellite satellites position velocity vel twist heading rtk rtcm "
-        "ntrip nmea sentence gga odom odometry pose utm ecef llh lla enu baseline rover base moving imu pvt relposned hp",
+        "NavSatFix NavSatStatus TimeReference TwistWithCovarianceStamped QuaternionStamped Odometry Imu "
+        "PoseStamped PoseWithCovarianceStamped PointStamped Vector3Stamped Sentence",
+        "gps gnss gpsfix fix extended nav navsat sat satellite satellites position velocity vel twist heading rtk "
+        "rtcm ntrip nmea sentence gga odom odometry pose utm ecef llh lla enu baseline rover base moving imu pvt "
+        "relposned hp",
     ),
 )  # fmt: skip
 # further words that tell a driver of a sensor, of which no words of topics are known
@@ -104,11 +109,11 @@ _ACTIVE: Final = re.compile(
 )
 # what makes a program one that processes the data of a sensor, and may publish results of any type
 _PROCESSING: Final = re.compile(
-    r"detect|segment|cluster|proc|percept|recogn|obstacle|people|person|human|face|leg|object|estimat|merg|assembl|conver|"
-    r"(?<![a-z])to(?![a-z])|[a-z]2[a-z]|view|display|record|server|bridge|relay|mux|throttle|transform|fake|mock|dummy|virtual|"
-    r"play|calib|line|marker|tag|project|stitch|regist|monitor|learn|predict|classif|yolo|collect|demo|example|tutorial|"
-    r"test|tool|util|local|loc(?![a-z])|measure|extract|search|find|count|collision|watch|manager|supervis|gate|web|stream|rviz|"
-    r"rqt"
+    r"detect|segment|cluster|proc|percept|recogn|obstacle|people|person|human|face|leg|object|estimat|merg|assembl|"
+    r"conver|(?<![a-z])to(?![a-z])|[a-z]2[a-z]|view|display|record|server|bridge|relay|mux|throttle|transform|fake|"
+    r"mock|dummy|virtual|play|calib|line|marker|tag|project|stitch|regist|monitor|learn|predict|classif|yolo|collect|"
+    r"demo|example|tutorial|test|tool|util|local|loc(?![a-z])|measure|extract|search|find|count|collision|watch|"
+    r"manager|supervis|gate|web|stream|rviz|rqt"
 )
 _SIGN: Final = re.compile(
     rf"(?<![a-z])({'|'.join(sorted(_OTHERS.union(*(one.signs for one in SENSORS))))})(?![a-z])"
@@ -117,7 +122,9 @@ _SIGN: Final = re.compile(
 _NEVER: Final = COMMANDS | {"Joy", "Path", "OccupancyGrid", "JointState", "PoseArray"}
 _WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 # words in the names of packages and programs that say nothing about their topics
-_EMPTY: Final = frozenset(["ros", "node", "nodelet", "driver", "drivers", "component", "generic", "caller", "py", "exe"])
+_EMPTY: Final = frozenset(
+    ["ros", "node", "nodelet", "driver", "drivers", "component", "generic", "caller", "py", "exe"]
+)
 
 
 def sensors(package: str, program: str) -> tuple[Sensor, ...]:

@@ -5,6 +5,7 @@ The actions come from Python, XML or YAML. None of them is executed.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,7 +20,7 @@ from tarl_lint.workspace.launch_model import Kind, LaunchedNode, Setting
 from tarl_lint.workspace.launch_node_values import anonymous, command, items_of, pairs, private, setting
 from tarl_lint.workspace.launch_values import Context, performed, symbolic, truth
 from tarl_lint.workspace.model import Problem
-from tarl_lint.workspace.python.evaluator import Unknown
+from tarl_lint.workspace.python.evaluator import Library, Unknown
 from tarl_lint.workspace.ros_arguments import first_of_each
 from tarl_lint.workspace.ros_names import joined, package_in
 
@@ -27,6 +28,7 @@ LARGEST: Final = 1_000_000  # maximum size of a YAML file (bytes)
 DEEPEST: Final = 20  # maximum nesting of includes
 _GZ_BRIDGE: Final = "$(find-pkg-share ros_gz_bridge)/launch/ros_gz_bridge.launch"
 MOST: Final = 5_000  # maximum number of actions of a launch file with its includes
+SUBSTITUTION: Final = re.compile(r"\$\([^()]*\)")
 
 
 Opener = Callable[[Path, Context, list[Problem]], Any]  # function that returns the actions of a launch file
@@ -130,12 +132,15 @@ class Runner:
             same = not condition or context.configurations.get(name) == value
             context.configurations[name] = value if same else f"$(var {name})"
         elif kind == "namespace":
+            pushed = performed(values.get("namespace"), context)
+            self._unknown(context, action.line, "the namespace of a group", pushed)
             context.namespace = joined(context.namespace, text("namespace"))
         elif kind == "environment":
             context.environment[name] = text("value")
         elif kind == "remap":
-            pair = performed(values.get("src"), context), text("dst")
-            context.remaps.append(pair)
+            pair = performed(values.get("src"), context), performed(values.get("dst"), context)
+            self._unknown(context, action.line, "a remapping", *pair)
+            context.remaps.append((pair[0], text("dst")))
         elif kind == "parameter":
             stated = {values.get("name"): values.get("value")}
             given = self._stated(stated, context, action.line, "")
@@ -171,6 +176,9 @@ class Runner:
             given = tuple(performed(one, context) for _, one in items_of(action.values.get("arguments")))
             self._problem(context, action.line, reason, hides=True, package=package_in(name), given=given)
             return
+        self._opaque(
+            context, action.line, f"the arguments of {Path(name).name}", action.values.get("arguments")
+        )
         for key, value in items_of(action.values.get("arguments")):
             context.configurations[performed(key, context)] = performed(value, context)
         here = (Path(name), frozenset(context.configurations.items()))
@@ -198,6 +206,8 @@ class Runner:
 
     def _components(self, components: Any, context: Context, condition: str) -> None:
         """Add the composable nodes of a container."""
+        if isinstance(components, Unknown):
+            self._problem(context, components.line, f"`{components.text}` is not followed", hides=True)
         for one in components if isinstance(components, list | tuple) else ():
             if isinstance(one, Action) and one.kind == "component":
                 holds, unsure = self._holds(one, context)
@@ -212,20 +222,30 @@ class Runner:
         self, values: Mapping[str, Any], context: Context, line: int, kind: Kind, condition: str
     ) -> None:
         found = {key: performed(values.get(key), context) for key in ("package", "executable", "name")}
-        for key in ("package", "executable"):
-            if symbolic(found[key]):
-                reason = f"the {key} of a node is known on the robot only: {found[key]}"
-                self._problem(context, line, reason)
+        stated_namespace = performed(values.get("namespace"), context)
         arguments = command(values, context)
+        own_remaps = tuple(pairs(values.get("remappings"), context))
+        for key in ("package", "executable", "name"):
+            self._unknown(context, line, f"the {key} of a node", found[key])
+        called = found["name"] or found["executable"]
+        of_node = "of a node" if symbolic(called) or not called else f"of {called}"
+        self._unknown(context, line, f"the namespace {of_node}", stated_namespace)
+        self._unknown(context, line, f"the command line {of_node}", arguments)
+        for pair in own_remaps:
+            self._unknown(context, line, f"a remapping {of_node}", *pair)
+        remappings = values.get("remappings")
+        each = remappings if isinstance(remappings, list | tuple) else (remappings,)
+        self._opaque(context, line, f"the remappings {of_node}", *each)
+        self._opaque(context, line, f"the parameters {of_node}", values.get("parameters"))
         given = ros_arguments.ros2(arguments)
         stated = (*({name: Quoted(value)} for name, value in private(given)), *given.files)
         settings = (*context.settings, *self._settings(stated, context, line),
                     *self._settings(values.get("parameters"), context, line))  # fmt: skip
         name = found["name"] or given.name
-        namespace = joined(context.namespace, performed(values.get("namespace"), context) or given.namespace)
+        namespace = joined(context.namespace, stated_namespace or given.namespace)
         own = name or found["executable"].rpartition("::")[2]
         inherited = first_of_each(context.remaps, namespace, own)
-        remaps = (*context.remaps, *given.remaps, *pairs(values.get("remappings"), context))
+        remaps = (*context.remaps, *given.remaps, *own_remaps)
         self.nodes.append(
             LaunchedNode(
                 found["package"],
@@ -262,6 +282,8 @@ class Runner:
                 continue
             if truth(performed(source.get("allow_substs"), context)):
                 content = performed(substitutions(content), context)
+                for text in dict.fromkeys(SUBSTITUTION.findall(content)):
+                    self._unknown(context, line, f"a value in the parameter file {Path(name).name}", text)
             yield Setting("~", Path(name), yaml=content)
 
     def _stated(
@@ -270,6 +292,7 @@ class Runner:
         for key, value in values.items():
             context.spend()
             name = f"{above}{performed(key, context)}"
+            self._unknown(context, line, "the name of a parameter", name)
             if isinstance(value, dict):
                 yield from self._stated(value, context, line, f"{name}.")
                 continue
@@ -278,6 +301,18 @@ class Runner:
                 self._problem(context, line, f"the parameter {name} is not constant")
                 stated = Setting(f"~{name}", context.file, unknown=True)
             yield stated
+
+    def _unknown(self, context: Context, line: int, what: str, *texts: str) -> None:
+        """Record a problem if one of the texts depends on values known only on the robot."""
+        if any(map(symbolic, texts)):
+            self._problem(context, line, f"{what} is known on the robot only: {' -> '.join(texts)}")
+
+    def _opaque(self, context: Context, line: int, what: str, *values: Any) -> None:
+        """Record a problem for each value that the launch file computes in a way that is not followed."""
+        for one in values:
+            if isinstance(one, Unknown | Library):
+                text = one.text if isinstance(one, Unknown) else one.name
+                self._problem(context, line, f"{what}: `{text}` is not constant")
 
     def _problem(
         self,

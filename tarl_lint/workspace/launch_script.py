@@ -98,11 +98,18 @@ class _Api:
         """Start a node."""
         given = {**dict(zip(_OF_NODE, values, strict=False)), **keywords}
         package, executable, name, namespace, _, arguments = (_text(given.get(key)) for key in _OF_NODE)
+        named = ("package", "executable", "name", "namespace", "command line")
+        for what, text in zip(named, (package, executable, name, namespace, arguments), strict=True):
+            self.unknown(f"the {what} of a node", text)
+        if isinstance(remap_args, Unknown):
+            self.problem(f"the remappings of a node: `{remap_args.text}` is not constant", hides=False)
         stated = ros1(arguments)
         pairs = remap_args if isinstance(remap_args, list | tuple) else ()
         remaps = [
             (_text(one[0]), _text(one[1])) for one in pairs if isinstance(one, list | tuple) and len(one) == 2
         ]
+        for old, new in remaps:
+            self.unknown("a remapping of a node", old, new)
         self.started.nodes.append(
             LaunchedNode(
                 package,
@@ -137,9 +144,14 @@ class _Api:
         known = self.workspace.package(package) if isinstance(package, str) else None
         return str(known.folder) if known is not None else Unknown(self.file.line, f"find {package}")
 
-    def problem(self, reason: str) -> None:
+    def problem(self, reason: str, *, hides: bool = True) -> None:
         """Note what could not be read."""
-        self.started.problems.append(Problem(self.path, self.file.line, reason, hides=True))
+        self.started.problems.append(Problem(self.path, self.file.line, reason, hides))
+
+    def unknown(self, what: str, *texts: str) -> None:
+        """Note a value of a node that is known only on the robot."""
+        if any("$(" in one for one in texts):
+            self.problem(f"{what} is known on the robot only: {' -> '.join(texts)}", hides=False)
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,11 @@ LAUNCH = {
 Edit = tuple[str, str, str]  # file, old text, new text
 _LAUNCHED = "mower_bringup/launch/mower.launch.xml"
 _NAVIGATION = "mower_navigation/mower_navigation/"
+_FENCE = """\
+    <node pkg="mower_navigation" exec="fence" name="fence">
+      <param name="reach" value="1.5"/>
+    </node>
+"""
 
 SOWN: dict[str, tuple[str, str, list[Edit]]] = {
     "mower: a publisher with an absolute name": (
@@ -39,8 +44,7 @@ SOWN: dict[str, tuple[str, str, list[Edit]]] = {
     ),
     "mower: a node outside the namespace": (
         "TARL301", "/mower/pilot subscribes to /mower/blocked",
-        [(_LAUNCHED, '    <node pkg="mower_navigation" exec="fence" name="fence">\n'
-                     '      <param name="reach" value="1.5"/>\n    </node>\n', ""),
+        [(_LAUNCHED, _FENCE, ""),
          (_LAUNCHED, "  <group>", '  <node pkg="mower_navigation" exec="fence"/>\n  <group>')],
     ),
     "mower: a private topic under a public name": (
@@ -122,7 +126,9 @@ def written(workspace: str, folder: Path) -> Path:
     """Write a workspace, with scripts that can be started."""
     if workspace == "scout":
         return Path(shutil.copytree(EXAMPLE, folder / "src"))
-    _, *files = re.split(r"^--- (\S+)\n", (HERE / f"workspaces/{workspace}.txt").read_text("utf-8"), flags=re.M)
+    _, *files = re.split(
+        r"^--- (\S+)\n", (HERE / f"workspaces/{workspace}.txt").read_text("utf-8"), flags=re.M
+    )
     for name, text in zip(files[::2], files[1::2], strict=True):
         path = folder / "src" / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -141,7 +147,9 @@ def found(workspace: str, folder: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("kind", SOWN)
-def test_a_sown_misconfiguration_is_found_beside_drivers_that_were_not_read(kind: str, tmp_path: Path) -> None:
+def test_a_sown_misconfiguration_is_found_beside_drivers_that_were_not_read(
+    kind: str, tmp_path: Path
+) -> None:
     code, message, edits = SOWN[kind]
     workspace = kind.partition(":")[0]
     folder = written(workspace, tmp_path)

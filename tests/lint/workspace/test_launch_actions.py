@@ -144,6 +144,12 @@ SetLaunchConfiguration('f', 'false'),
     TextSubstitution(text='t'), LaunchConfiguration(['a', 'b'], default=['c', 'd'])]],
 => /$(not $(var u)) ; /$(equals a $(var u)) ; /$(not-equals $(var u) a)
 => /$(if $(var u)) ; /$(eval $(var u) + 1) ; /$(env E) ; /d ; /n ; /t ; /cd
+!! the name of a node is known on the robot only: $(not $(var u))
+!! the name of a node is known on the robot only: $(equals a $(var u))
+!! the name of a node is known on the robot only: $(not-equals $(var u) a)
+!! the name of a node is known on the robot only: $(if $(var u))
+!! the name of a node is known on the robot only: $(eval $(var u) + 1)
+!! the name of a node is known on the robot only: $(env E)
 """
 YAML = "/**:\n  ros__parameters:\n    kp: 2.0\n"  # arm.yaml
 CASES = dict(one.split("\n", 1) for one in ACTIONS.strip().removeprefix("# ").split("\n# "))
@@ -289,7 +295,8 @@ def generate_launch_description():
     found = launched(package, HEAD + body, "a.launch.py")
     assert [one.name for one in found.nodes] == ["$(var open)"]
     assert reasons(found) == [
-        "the condition `IfCondition(LaunchConfiguration('open')).evaluate(context)` is not constant"
+        "the condition `IfCondition(LaunchConfiguration('open')).evaluate(context)` is not constant",
+        "the name of a node is known on the robot only: $(var open)",
     ]
     assert found.arguments == ("open",)
 
