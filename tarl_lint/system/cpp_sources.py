@@ -18,16 +18,10 @@ from tarl_lint.system.cpp_qos import after_name
 from tarl_lint.system.image_transport import CAMERA, IMAGE
 from tarl_lint.system.model import Endpoint, Role
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
-from tarl_lint.workspace.cmake import commands
+from tarl_lint.workspace.cmake import EXECUTABLES, commands
 from tarl_lint.workspace.model import Package
 
 LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
-_EXECUTABLES: Final = (
-    "add_executable",
-    "ament_auto_add_executable",
-    "cuda_add_executable",
-    "rosbuild_add_executable",
-)
 _SUFFIXES: Final = (".cpp", ".cc", ".cxx", ".c++")
 _COMMENT: Final = re.compile(r"//[^\n]*|/\*.*?\*/|(\"(?:[^\"\\\n]|\\.)*\")", re.DOTALL)
 _CALL: Final = re.compile(
@@ -74,7 +68,7 @@ def _programs(folder: Path, package: str) -> tuple[tuple[str, Path], ...]:
     found: list[tuple[str, Path]] = []
     renamed: dict[str, str] = {}
     for command in commands(text, folder, package):
-        if command.name in _EXECUTABLES and command.words:
+        if command.name in EXECUTABLES and command.words:
             name, *files = command.words
             found += [(name, folder / file) for file in files if file.endswith(_SUFFIXES)]
         elif command.name == "set_target_properties" and "OUTPUT_NAME" in command.words[:-1]:

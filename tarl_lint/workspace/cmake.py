@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
-from tarl_lint.workspace.cmake_blocks import Blocks
+from tarl_lint.workspace.cmake_blocks import Blocks, Call
 from tarl_lint.workspace.model import Problem
 
 LARGEST: Final = 500_000  # maximum size of a file (bytes)
@@ -17,10 +17,25 @@ MOST: Final = 2_000  # maximum number of words of a variable
 LONGEST: Final = 1_000  # maximum length of a word of a variable (characters)
 _TOKEN: Final = re.compile(
     r"""\#\[(?P<eq>=*)\[.*?\](?P=eq)\] | \#[^\n]*
-        | (?P<word>"(?:[^"\\]|\\.)*" | [^\s()#"]+) | (?P<open>\() | (?P<close>\))""",
+        | (?P<word>"(?:[^"\\]|\\.)*" | [^\s()#"]+) | (?P<open>\() | (?P<close>\)) | (?P<stray>")""",
     re.VERBOSE | re.DOTALL,
 )
 _VARIABLE: Final = re.compile(r"\$\{(\w+)\}")
+# commands that build a C++ program
+EXECUTABLES: Final = (
+    "add_executable",
+    "ament_auto_add_executable",
+    "cuda_add_executable",
+    "rosbuild_add_executable",
+)
+# variables of conditions under which tests are built
+_TESTING: Final = frozenset({"BUILD_TESTING", "CATKIN_ENABLE_TESTING"})
+# folders of the interfaces that commands of ROS 1 declare
+_PLACES: Final = {"add_message_files": "msg", "add_service_files": "srv", "add_action_files": "action"}
+_INTERFACES: Final = frozenset({"rosidl_generate_interfaces", *_PLACES})
+# blocks whose first command must be closed by the second
+_BLOCKS: Final = {"if": "endif", "foreach": "endforeach", "while": "endwhile", "macro": "endmacro",
+                  "function": "endfunction"}  # fmt: skip
 _KEYWORDS: Final = frozenset(
     ["PROGRAMS", "FILES", "TARGETS", "DIRECTORY", "DESTINATION", "RENAME", "PATTERN", "OPTIONAL", "PERMISSIONS",
      "COMPONENT", "USE_SOURCE_PERMISSIONS", "CONFIGURATIONS", "EXCLUDE", "REGEX", "RUNTIME", "LIBRARY", "ARCHIVE",
@@ -36,16 +51,24 @@ class Command:
 
     name: str
     words: tuple[str, ...]
+    line: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Cmake:
-    """The installed programs (file, installed name) and Python packages (name, folder) of a package."""
+    """The installed programs (file, installed name) and Python packages (name, folder) of a package.
+
+    `compiled` are its C++ programs without tests, `components` the classes of its composable nodes, and
+    `configurations` the `.cfg` files that it declares.
+    """
 
     programs: tuple[tuple[str, str], ...] = ()
     python_packages: tuple[tuple[str, str], ...] = ()
     uses_setup: bool = False
     problems: tuple[Problem, ...] = ()
+    compiled: tuple[str, ...] = ()
+    components: tuple[str, ...] = ()
+    configurations: tuple[str, ...] = ()
 
 
 def cmake(folder: Path, package: str) -> Cmake:
@@ -55,19 +78,131 @@ def cmake(folder: Path, package: str) -> Cmake:
         text = read_text(path, LARGEST) if path.is_file() else ""
     except UnreadableError as reason:
         return Cmake(problems=(Problem(path, 0, str(reason)),))
-    programs: dict[str, str] = {}
-    packages: dict[str, str] = {}
-    uses_setup = False
+    found = _Build(folder, path)
     for command in commands(text, folder, package):
-        if command.name == "catkin_python_setup":
-            uses_setup = True
-        elif command.name in ("install", "catkin_install_python"):
-            programs |= dict(_programs(folder, command.words))
-        elif command.name == "ament_python_install_package" and command.words:
-            name, *rest = command.words
-            place = rest[rest.index("PACKAGE_DIR") + 1] if "PACKAGE_DIR" in rest[:-1] else name
-            packages[name] = place
-    return Cmake(tuple(sorted(programs.items())), tuple(sorted(packages.items())), uses_setup)
+        found.take(command)
+    found.problems += [Problem(path, line, reason) for line, reason in _unclosed(text)]
+    return Cmake(
+        tuple(sorted(found.programs.items())),
+        tuple(sorted(found.packages.items())),
+        found.uses_setup,
+        tuple(dict.fromkeys(found.problems)),
+        tuple(sorted({found.renamed.get(one, one) for one in found.compiled})),
+        tuple(sorted(found.components)),
+        tuple(sorted(found.configurations)),
+    )
+
+
+@dataclass
+class _Build:
+    """Collects what the commands of a `CMakeLists.txt` build and install."""
+
+    folder: Path
+    path: Path
+    programs: dict[str, str] = field(default_factory=dict)
+    packages: dict[str, str] = field(default_factory=dict)
+    uses_setup: bool = False
+    compiled: set[str] = field(default_factory=set)
+    components: set[str] = field(default_factory=set)
+    configurations: set[str] = field(default_factory=set)
+    renamed: dict[str, str] = field(default_factory=dict)
+    problems: list[Problem] = field(default_factory=list)
+    conditions: list[bool] = field(default_factory=list)  # for each enclosing `if`, whether it is for tests
+
+    def take(self, command: Command) -> None:
+        """Take one command into account."""
+        name, words = command.name, command.words
+        if name == "if":
+            self.conditions.append(not _TESTING.isdisjoint(words))
+        elif name == "endif" and self.conditions:
+            self.conditions.pop()
+        elif name == "catkin_python_setup":
+            self.uses_setup = True
+        elif name in ("install", "catkin_install_python"):
+            self.programs |= dict(_programs(self.folder, self._known(command, _sources(words))))
+        elif name == "ament_python_install_package" and self._known(command, words[:1]):
+            first, *rest = words
+            place = rest[rest.index("PACKAGE_DIR") + 1] if "PACKAGE_DIR" in rest[:-1] else first
+            self.packages[first] = place
+        elif name in EXECUTABLES or name.startswith("rclcpp_components_register_node"):
+            if not any(self.conditions):
+                self._compiled(command)
+        elif name == "set_target_properties" and "OUTPUT_NAME" in words[:-1]:
+            self.renamed[words[0]] = words[words.index("OUTPUT_NAME") + 1]
+        elif name == "generate_dynamic_reconfigure_options":
+            self.configurations |= {one for one in words if self._exists(command, one)}
+        elif name in _INTERFACES:
+            place = words[words.index("DIRECTORY") + 1] if "DIRECTORY" in words[:-1] else _PLACES.get(name, "")
+            for one in words:
+                if one.endswith((".msg", ".srv", ".action")):
+                    self._exists(command, f"{place}/{one}" if place else one)
+
+    def _compiled(self, command: Command) -> None:
+        words = self._known(command, command.words)
+        if command.name in EXECUTABLES:
+            if words and words[0] == command.words[0] and not {"IMPORTED", "ALIAS"} & set(words):
+                self.compiled.add(words[0])
+            return
+        self.components |= {one for one in words if "::" in one}
+        if "EXECUTABLE" in words[:-1]:
+            self.compiled.add(words[words.index("EXECUTABLE") + 1])
+
+    def _known(self, command: Command, words: Sequence[str]) -> tuple[str, ...]:
+        """Return the words without unknown variables; record a problem for each of the others."""
+        unknown = [one for one in words if _names_unknown(one)]
+        for one in unknown:
+            self.problems.append(
+                Problem(self.path, command.line, f"{command.name}: the value of {one} is not known")
+            )
+        return tuple(one for one in words if one not in unknown)
+
+    def _exists(self, command: Command, file: str) -> bool:
+        """Return whether the package has a declared file; record a problem if it does not."""
+        path = self.folder / file
+        if _VARIABLE.search(file) or not path.is_relative_to(self.folder):
+            return False
+        if not path.is_file():
+            self.problems.append(Problem(self.path, command.line, f"{file} is declared, but does not exist"))
+        return path.is_file()
+
+
+def _names_unknown(word: str) -> bool:
+    """Return whether a word has a variable without a known value; variables of install folders do not count."""
+    return any("DESTINATION" not in one and not one.startswith("CMAKE_INSTALL_") for one in _VARIABLE.findall(word))
+
+
+def _sources(words: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the words of an `install` command that name programs, with the keywords and the place of installation."""
+    if "PROGRAMS" in words or _PROGRAMS.search(" ".join(_after(words, "DESTINATION"))):
+        return words
+    return ()
+
+
+def _after(words: tuple[str, ...], keyword: str) -> tuple[str, ...]:
+    place = words.index(keyword) + 1 if keyword in words else len(words)
+    return words[place : place + 1]
+
+
+def _unclosed(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the lines at which a call, a text or a block begins that does not end."""
+    line, depth, start, last = 1, 0, 0, 0
+    for token in _TOKEN.finditer(text):
+        line += text.count("\n", last, token.start())
+        last = token.start()
+        if token["stray"]:
+            yield line, "a quoted text is not closed"
+            return
+        start = line if token["open"] and not depth else start
+        depth = max(depth + bool(token["open"]) - bool(token["close"]), 0)
+    if depth:
+        yield start, "a parenthesis is not closed"
+    opened: list[Call] = []
+    for call in _calls(text):
+        if call.name in _BLOCKS:
+            opened.append(call)
+        elif opened and call.name == _BLOCKS[opened[-1].name]:
+            opened.pop()
+    yield from ((call.line, f"{call.name}() is not closed") for call in opened[:1])
 
 
 def commands(text: str, folder: Path, package: str) -> Iterator[Command]:
@@ -75,28 +210,31 @@ def commands(text: str, folder: Path, package: str) -> Iterator[Command]:
     here = str(folder)
     variables = {"PROJECT_NAME": [package], "CMAKE_CURRENT_SOURCE_DIR": [here], "PROJECT_SOURCE_DIR": [here],
                  "CMAKE_SOURCE_DIR": [here], "CMAKE_CURRENT_LIST_DIR": [here]}  # fmt: skip
-    for name, replaced in Blocks(_all_replaced, variables).run(list(_calls(text))):
+    for name, replaced, line in Blocks(_all_replaced, variables).run(list(_calls(text))):
         if name == "set" and replaced:
             variables[replaced[0]] = [word[:LONGEST] for word in replaced[1 : MOST + 1]]
         elif name == "file" and len(replaced) > 1 and replaced[0] in ("GLOB", "GLOB_RECURSE"):
             variables[replaced[1]] = list(_globbed(folder, replaced[2:], deep=replaced[0] != "GLOB"))
-        yield Command(name, replaced)
+        yield Command(name, replaced, line)
 
 
-def _calls(text: str) -> Iterator[tuple[str, list[str]]]:
+def _calls(text: str) -> Iterator[Call]:
     name, depth, words = "", 0, list[str]()
+    line, started, last = 1, 1, 0
     for token in _TOKEN.finditer(text):
+        line += text.count("\n", last, token.start())
+        last = token.start()
         if token["open"]:
             depth += 1
         elif token["close"]:
             depth -= 1
             if depth <= 0:
-                yield name.lower(), words
+                yield Call(name.lower(), words, started)
                 depth, words = 0, []
         elif token["word"] and depth:
             words.append(token["word"])
         elif token["word"]:
-            name = token["word"]
+            name, started = token["word"], line
 
 
 def _all_replaced(words: Sequence[str], variables: dict[str, list[str]]) -> tuple[str, ...]:

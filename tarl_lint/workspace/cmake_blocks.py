@@ -4,9 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, NamedTuple
 
-Call = tuple[str, Sequence[str]]  # the name of a command in lower case, and its arguments
+
+class Call(NamedTuple):
+    """A call: the name of the command in lower case, its arguments, and its line."""
+
+    name: str
+    words: Sequence[str]
+    line: int = 0
+
+
+Called = tuple[str, tuple[str, ...], int]  # a call with its variables replaced
 Variables = dict[str, list[str]]
 DEEPEST: Final = 8  # maximum nesting of macros and loops
 MOST: Final = 10_000  # maximum number of calls of commands that are evaluated
@@ -22,11 +31,11 @@ class Blocks:
     macros: dict[str, tuple[tuple[str, ...], list[Call]]] = field(default_factory=dict)
     left: int = MOST
 
-    def run(self, calls: Sequence[Call], depth: int = 0) -> Iterator[tuple[str, tuple[str, ...]]]:
+    def run(self, calls: Sequence[Call], depth: int = 0) -> Iterator[Called]:
         """Yield the calls with variables replaced; the receiver may change variables between two calls."""
         place = 0
         while place < len(calls) and self.left > 0 and depth <= DEEPEST:
-            name, words = calls[place]
+            name, words, line = calls[place]
             self.left -= 1
             end = _closing(calls, place) if name in _ENDS else place
             body = list(calls[place + 1 : end])
@@ -38,12 +47,12 @@ class Blocks:
             elif name in self.macros:
                 yield from self._called(name, given, depth)
             else:
-                yield name, given
+                yield name, given, line
             place = end + 1
 
     def _loop(
         self, words: Sequence[str], body: list[Call], depth: int
-    ) -> Iterator[tuple[str, tuple[str, ...]]]:
+    ) -> Iterator[Called]:
         for item in self._items(words[1:]):
             self.variables[words[0]] = [item]
             yield from self.run(body, depth + 1)
@@ -63,7 +72,7 @@ class Blocks:
                 found += self.variables.get(word, []) if kind == "LISTS" else [word]
         return found
 
-    def _called(self, name: str, given: tuple[str, ...], depth: int) -> Iterator[tuple[str, tuple[str, ...]]]:
+    def _called(self, name: str, given: tuple[str, ...], depth: int) -> Iterator[Called]:
         names, body = self.macros[name]
         before = dict(self.variables)
         self.variables |= {one: [value] for one, value in zip(names, given, strict=False)}

@@ -13,11 +13,15 @@ from tarl_lint.workspace.setup_files import Setup, setup
 
 
 def installed(
-    folder: Path, manifest: Manifest, scripts: list[Path]
+    folder: Path, manifest: Manifest, scripts: list[Path], built: Cmake | None = None
 ) -> tuple[tuple[Executable, ...], tuple[ImportRoot, ...], list[Problem]]:
-    """Return the Python programs and modules of a package. `scripts` are its executable files with a Python shebang."""
+    """Return the Python programs and modules of a package.
+
+    `scripts` are its executable files with a Python shebang, and `built` is what its `CMakeLists.txt` installs.
+    """
     declared = setup(folder)
-    built = Cmake() if manifest.kind == "ament_python" else cmake(folder, manifest.name)
+    if built is None:
+        built = build(folder, manifest)
     programs = {one.name: one for one in _programs(folder, declared, built)}
     # rosrun also starts files in the source folder that have the executable bit
     if manifest.kind == "catkin":
@@ -32,6 +36,11 @@ def installed(
         tuple(modules[name] for name in sorted(modules)),
         problems,
     )
+
+
+def build(folder: Path, manifest: Manifest) -> Cmake:
+    """Return what the `CMakeLists.txt` of a package builds; nothing for a package without CMake."""
+    return Cmake() if manifest.kind == "ament_python" else cmake(folder, manifest.name)
 
 
 def _programs(folder: Path, declared: Setup, built: Cmake) -> Iterator[Executable]:

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
+from tarl_lint.workspace.model import Problem
+
 LIMIT: Final = 20_000  # maximum number of folders of one workspace
 IGNORE: Final = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 MARKERS: Final = (*IGNORE, "pyvenv.cfg", ".catkin")
@@ -15,15 +17,24 @@ _NEVER: Final = frozenset({"__pycache__", "node_modules", "site-packages", "dist
 
 
 def folders(
-    root: Path, kept: frozenset[Path] = frozenset(), ignored: list[Path] | None = None
+    root: Path,
+    kept: frozenset[Path] = frozenset(),
+    ignored: list[Path] | None = None,
+    unread: list[Problem] | None = None,
 ) -> Iterator[tuple[Path, list[str]]]:
     """Yield the source folders with their files, sorted; skip build output.
 
     Also skip a folder with a marker such as COLCON_IGNORE, unless it contains one of the folders in `kept`. Add
-    markers that a person (not a tool) has placed to `ignored`.
+    markers that a person (not a tool) has placed to `ignored`, and folders that cannot be read to `unread`.
     """
-    for looked, (folder, names, files) in enumerate(os.walk(root)):
+    unread = [] if unread is None else unread
+
+    def refused(error: OSError) -> None:
+        unread.append(Problem(Path(error.filename), 0, f"the folder cannot be read: {error.strerror}"))
+
+    for looked, (folder, names, files) in enumerate(os.walk(root, onerror=refused)):
         if looked >= LIMIT:
+            unread.append(Problem(root, 0, f"it has more than {LIMIT:,} folders; the others are not read"))
             return
         markers = [one for one in MARKERS if looked and one in files]
         if markers and not any(one.is_relative_to(folder) for one in kept):

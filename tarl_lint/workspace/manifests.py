@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -19,11 +20,12 @@ _BUILD_TYPES: Final[tuple[Kind, ...]] = ("ament_python", "ament_cmake", "catkin"
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """The contents of `package.xml`."""
+    """The contents of `package.xml`. `plugins` are the files that describe the package's nodelets."""
 
     name: str
     kind: Kind
     dependencies: tuple[str, ...] = ()
+    plugins: tuple[str, ...] = ()
 
 
 def manifest(folder: Path) -> tuple[Manifest, list[Problem]]:
@@ -36,7 +38,23 @@ def manifest(folder: Path) -> tuple[Manifest, list[Problem]]:
     depends = tuple(sorted({tag.text.strip() for tag in root if tag.tag in _DEPENDS and tag.text}))
     stated = (root.findtext("export/build_type") or "").strip()
     problems = [] if name else [Problem(path, 0, "it has no <name>")]
-    return Manifest(name or folder.name, _kind(folder, stated, depends), depends), problems
+    exported = [one.get("plugin", "") for one in root.findall("export/nodelet")]
+    plugins = tuple(one.removeprefix("${prefix}/") for one in exported if one)
+    return Manifest(name or folder.name, _kind(folder, stated, depends), depends, plugins), problems
+
+
+def plugins(folder: Path, files: Sequence[str]) -> tuple[list[str], list[Problem]]:
+    """Return the names of the nodelets that these files of a package describe."""
+    names: list[str] = []
+    problems: list[Problem] = []
+    for file in files:
+        path = folder / file
+        root, problem = _root(path)
+        if root is None:
+            problems.append(Problem(path, 0, problem))
+            continue
+        names += [one.get("name") or one.get("type", "").replace("::", "/") for one in root.iter("class")]
+    return [one for one in names if one], problems
 
 
 def _root(path: Path) -> tuple[ElementTree.Element | None, str]:

@@ -52,7 +52,11 @@ class ImportRoot:
 
 @dataclass(frozen=True, slots=True)
 class Package:
-    """A package: a folder with a `package.xml`."""
+    """A package: a folder with a `package.xml`.
+
+    `compiled` are its C++ programs, and `components` the classes of its nodelets and composable nodes. `others` are
+    files in folders named `launch` that may be launch files, but do not look like them.
+    """
 
     name: str
     folder: Path
@@ -65,6 +69,9 @@ class Package:
     launch_files: tuple[Path, ...] = ()
     parameter_files: tuple[Path, ...] = ()
     problems: tuple[Problem, ...] = ()
+    compiled: tuple[str, ...] = ()
+    components: tuple[str, ...] = ()
+    others: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +89,13 @@ class Workspace:
     A package with a `package.xml` comes before a mere folder of definitions.
 
     `hidden` are further packages. Hidden packages are found by name and by path, but are not among
-    `packages`.
+    `packages`. `unread` are folders that could not be read, and packages whose name another one has.
     """
 
     root: Path
     packages: tuple[Package, ...] = ()
     hidden: tuple[Hidden, ...] = ()
+    unread: tuple[Problem, ...] = ()
 
     def package(self, name: str) -> Package | None:
         """Return the package of that name, a hidden one if there is no other."""
@@ -112,5 +120,6 @@ class Workspace:
 
     def problems(self) -> Iterator[Problem]:
         """Yield everything that could not be read."""
+        yield from self.unread
         for one in self.packages:
             yield from one.problems

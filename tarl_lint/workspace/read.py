@@ -6,10 +6,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
-from tarl_lint.workspace.executables import installed, may_be_started
+from tarl_lint.workspace.executables import build, installed, may_be_started
 from tarl_lint.workspace.folders import folders
 from tarl_lint.workspace.launch_lookup import ENDINGS, TEST, is_launch_name
-from tarl_lint.workspace.manifests import Manifest, manifest
+from tarl_lint.workspace.manifests import Manifest, manifest, plugins
 from tarl_lint.workspace.model import INTERFACES, Hidden, Package, Problem, Workspace
 
 _YAML: Final = (".yaml", ".yml")
@@ -26,6 +26,7 @@ class _Found:
     launch_files: list[Path] = field(default_factory=list)
     parameter_files: list[Path] = field(default_factory=list)
     scripts: list[Path] = field(default_factory=list)
+    others: list[Path] = field(default_factory=list)
 
     def take(self, path: Path) -> None:
         """Classify a file by its name."""
@@ -38,6 +39,8 @@ class _Found:
             self.parameter_files.append(path)
         elif path.suffix in ("", ".py") and may_be_started(path):
             self.scripts.append(path)
+        elif above == "launch" and path.suffix in (".xml", ".py") and path.name != "__init__.py":
+            self.others.append(path)
 
 
 def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
@@ -46,7 +49,8 @@ def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
     Packages below a marker such as COLCON_IGNORE are hidden, unless the marked folder contains one of `kept`.
     """
     markers: list[Path] = []
-    packages = _by_name(_packages(root.resolve(), kept, markers))
+    unread: list[Problem] = []
+    packages = _by_name(_packages(root.resolve(), kept, markers, unread), unread)
     hidden: dict[str, Hidden] = {}
     for marker in markers:  # `_packages` appends the markers below hidden folders to this list
         for package in _packages(marker.parent, kept, markers):
@@ -56,10 +60,11 @@ def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
         root.resolve(),
         tuple(packages[name] for name in sorted(packages)),
         tuple(hidden[name] for name in sorted(hidden)),
+        tuple(unread),
     )
 
 
-def _by_name(found: list[Package]) -> dict[str, Package]:
+def _by_name(found: list[Package], unread: list[Problem]) -> dict[str, Package]:
     """Return the packages by name: the first with a `package.xml`, or else the first folder of definitions.
 
     Further folders of definitions with that name add types that it lacks.
@@ -67,7 +72,10 @@ def _by_name(found: list[Package]) -> dict[str, Package]:
     by_name: dict[str, Package] = {}
     for one in sorted(found, key=lambda one: not _is_declared(one)):
         first = by_name.setdefault(one.name, one)
-        if first is not one and not _is_declared(one):
+        if first is not one and _is_declared(one):
+            reason = f"the package {one.name} in {first.folder.name} has the same name, and is read in its place"
+            unread.append(Problem(one.folder / "package.xml", 0, reason))
+        elif first is not one and not _is_declared(one):
             known = {file.name for file in first.interfaces}
             more = tuple(file for file in one.interfaces if file.name not in known)
             by_name[one.name] = replace(first, interfaces=first.interfaces + more)
@@ -78,10 +86,15 @@ def _is_declared(package: Package) -> bool:
     return (package.folder / "package.xml").is_file()
 
 
-def _packages(root: Path, kept: frozenset[Path], markers: list[Path]) -> list[Package]:
-    """Return the packages below a folder in the order of their folders; add the markers of others to `markers`."""
+def _packages(
+    root: Path, kept: frozenset[Path], markers: list[Path], unread: list[Problem] | None = None
+) -> list[Package]:
+    """Return the packages below a folder in the order of their folders.
+
+    Add the markers of others to `markers`, and folders that cannot be read to `unread`.
+    """
     found: dict[Path, _Found] = {}
-    for folder, files in folders(root, kept, markers):
+    for folder, files in folders(root, kept, markers, unread):
         if "package.xml" in files:
             found[folder] = _Found(folder, declared=True)
         owner = next((found[one] for one in (folder, *folder.parents) if one in found), None)
@@ -103,7 +116,10 @@ def _package(found: _Found) -> Package:
         declared, problems = manifest(found.folder)
     else:  # definitions outside packages get the folder's name as package name
         declared = Manifest(found.folder.name, "unknown")
-    executables, modules, more = installed(found.folder, declared, found.scripts)
+    built = build(found.folder, declared)
+    executables, modules, more = installed(found.folder, declared, found.scripts, built)
+    nodelets, unread = plugins(found.folder, declared.plugins)
+    configurations = (*found.configurations, *(found.folder / one for one in built.configurations))
     return Package(
         name=declared.name,
         folder=found.folder,
@@ -112,10 +128,13 @@ def _package(found: _Found) -> Package:
         executables=executables,
         modules=modules,
         interfaces=tuple(found.interfaces),
-        configurations=tuple(found.configurations),
+        configurations=tuple(dict.fromkeys(configurations)),
         launch_files=tuple(found.launch_files),
         parameter_files=tuple(found.parameter_files),
-        problems=(*problems, *more),
+        problems=(*problems, *more, *unread),
+        compiled=built.compiled,
+        components=tuple(sorted({*built.components, *nodelets})),
+        others=tuple(found.others),
     )
 
 

@@ -109,6 +109,8 @@ def _setup(folder: Path, given: Mapping[str, Any], problems: list[Problem]) -> S
         if isinstance(folders, dict)
         else {}
     )
+    if isinstance(folders, Unknown | Library):
+        problems.append(Problem(path, getattr(folders, "line", 0), "`package_dir` is not constant"))
     packages = given.get("packages", ())
     if isinstance(packages, _Scan):
         if packages.where != ".":
@@ -142,6 +144,9 @@ def _texts(path: Path, what: str, values: Any, problems: list[Problem]) -> tuple
 
 
 def _console(path: Path, entries: Any, problems: list[Problem]) -> list[tuple[str, str, str]]:
+    if isinstance(entries, Unknown | Library):
+        problems.append(Problem(path, getattr(entries, "line", 0), "`entry_points` is not constant"))
+        return []
     if isinstance(entries, dict):
         lines = entries.get("console_scripts", ())
     else:  # the entry points are the text of an INI section

@@ -154,6 +154,7 @@ def test_the_programs_of_a_package_are_console_scripts_scripts_and_installed_fil
         ("run", "run", None, ""),
     ]
     assert [one.reason for one in problems] == [
+        "install: the value of ${X}/c.py is not known",
         "m is installed, but its file arm.no does not exist",
         "gone is installed, but its file gone does not exist",
         "gone.py is installed, but its file nodes/gone.py does not exist",
@@ -171,7 +172,8 @@ def test_the_programs_of_a_package_are_console_scripts_scripts_and_installed_fil
         ("entry_points={'console_scripts': ['a = b']}", [],
          ["the console script `a = b` is not `name = module:function`"]),
         ("entry_points={'console_scripts': names()}", [], ["`console_scripts` is not constant"]),
-        ("entry_points=names()", [], []),
+        ("entry_points=names()", [], ["`entry_points` is not constant"]),
+        ("package_dir=names()", [], ["`package_dir` is not constant"]),
     ],
 )  # fmt: skip
 def test_console_scripts_are_read_from_lists_and_texts(tmp_path, given, console, problems):
@@ -226,7 +228,7 @@ CMAKE = {
         {"nodes/b": "b"}),
     "whole paths": ("install(PROGRAMS ${CMAKE_CURRENT_SOURCE_DIR}/nodes/b DESTINATION bin)", {"nodes/b": "b"}),
     "another name": ("install(PROGRAMS nodes/b DESTINATION bin RENAME c)", {"nodes/b": "c"}),
-    "an unknown variable": ("install(PROGRAMS ${N} DESTINATION bin)", {"${N}": "${N}"}),
+    "an unknown variable": ("install(PROGRAMS ${N} DESTINATION bin)", {}),
     "a list in a variable": ('set(N "nodes/a.py;nodes/b")\ninstall(PROGRAMS ${N}x DESTINATION bin)',
         {"nodes/a.py": "a.py", "nodes/bx": "bx"}),
     "a variable without words": ("set(N)\ninstall(PROGRAMS ${N} nodes/b DESTINATION bin)", {"nodes/b": "b"}),
