@@ -7,15 +7,16 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from pytest_tarl.errors import SettingsError
+from tarl_lint.workspace.examination import Examined, examined
 from tarl_lint.workspace.model import Package, Problem, Workspace
 from tarl_lint.workspace.read import read
 
 FORMAT_VERSION = 1
 WIDEST = 44  # maximum number of characters of a list in the table; the JSON output has the whole list
-HEADINGS = ("package", "kind", "nodes and scripts", "launch files", "not read")
+HEADINGS = ("package", "kind", "nodes and scripts", "C++ nodes", "launch files", "not read")
 
 
-def described(folder: Path) -> Workspace:
+def described(folder: Path) -> Examined:
     """Read the workspace below a folder. Raise SettingsError if there is no folder or no package."""
     if not folder.is_dir():
         raise SettingsError(f"{folder}: no such folder.")
@@ -24,28 +25,49 @@ def described(folder: Path) -> Workspace:
         raise SettingsError(
             f"{folder}: there is no package.xml at or below it. Name the folder of a workspace."
         )
-    return found
+    return examined(found)
 
 
-def table(workspace: Workspace) -> Iterator[str]:
-    """Yield the lines of the table, then the files that could not be read."""
+def table(found: Examined) -> Iterator[str]:
+    """Yield the lines of the table, then what launch files start from elsewhere, and what could not be read."""
+    workspace = found.workspace
     rows = [HEADINGS, *map(_row, workspace.packages)]
-    widths = [max(len(row[column]) for row in rows) for column in range(len(HEADINGS))]
+    used = [column for column in range(len(HEADINGS)) if column != 3 or any(row[column] for row in rows[1:])]
+    widths = {column: max(len(row[column]) for row in rows) for column in used}
     for row in rows:
-        yield "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        yield "  ".join(row[column].ljust(widths[column]) for column in used).rstrip()
+    yield from _elsewhere(found)
     problems = [f"{_place(workspace, one)}: {one.reason}" for one in workspace.problems()]
     problems += [
         f"{_relative(workspace, one.marker)}: hides the package {one.package.name}"
         for one in workspace.hidden
     ]
+    problems += [found.note] if found.note else []
     if problems:
         yield ""
         yield "Not read:"
         yield from (f"  {one}" for one in problems)
 
 
-def document(workspace: Workspace) -> str:
+def _elsewhere(found: Examined) -> Iterator[str]:
+    """Yield what is known by interface only, what is outside the workspace, and what only the robot knows."""
+    compiled = sum(len(one.compiled) + len(one.components) for one in found.workspace.packages)
+    lines = [f"C++ nodes: {compiled} (known by interface only)"] if compiled else []
+    if found.foreign:
+        lines.append(f"Started from packages outside the workspace: {_shortened(found.foreign)}")
+    if found.absent:
+        lines.append(f"Included launch files of packages outside the workspace: {_shortened(found.absent)}")
+    if found.symbolic:
+        count = f"{found.symbolic} value{'' if found.symbolic == 1 else 's'}"
+        lines.append(f"Known on the robot only: {count} in launch files (tarl-lint --launch FILE lists them)")
+    if lines:
+        yield ""
+        yield from lines
+
+
+def document(found: Examined) -> str:
     """Return the whole description as JSON; paths are relative to `root`."""
+    workspace = found.workspace
     packages = [_package(workspace, one) for one in workspace.packages]
     hidden = [
         {"name": one.package.name, "marker": _relative(workspace, one.marker)} for one in workspace.hidden
@@ -55,6 +77,11 @@ def document(workspace: Workspace) -> str:
         "root": str(workspace.root),
         "packages": packages,
         "hidden": hidden,
+        "started_from_elsewhere": list(found.foreign),
+        "included_from_elsewhere": list(found.absent),
+        "known_on_robot_only": found.symbolic,
+        "problems": [_problem(workspace, one) for one in workspace.unread],
+        "note": found.note,
     }
     return json.dumps(whole, indent=2) + "\n"
 
@@ -63,7 +90,8 @@ def _row(package: Package) -> tuple[str, ...]:
     nodes = [one.name for one in package.executables]
     launch = [path.name for path in package.launch_files]
     unread = str(len(package.problems)) if package.problems else ""
-    return package.name, package.kind, _shortened(nodes), _shortened(launch), unread
+    compiled = (*package.compiled, *package.components)
+    return (package.name, package.kind, *map(_shortened, (nodes, compiled, launch)), unread)
 
 
 def _shortened(names: Sequence[str]) -> str:
@@ -81,6 +109,10 @@ def _place(workspace: Workspace, problem: Problem) -> str:
     return f"{path}:{problem.line}" if problem.line else path
 
 
+def _problem(workspace: Workspace, problem: Problem) -> dict[str, object]:
+    return {"file": _relative(workspace, problem.file), "line": problem.line, "reason": problem.reason}
+
+
 def _package(workspace: Workspace, package: Package) -> dict[str, object]:
     def paths(files: Sequence[Path]) -> list[str]:
         return [_relative(workspace, one) for one in files]
@@ -94,15 +126,14 @@ def _package(workspace: Workspace, package: Package) -> dict[str, object]:
             {"name": one.name, "file": one.path and _relative(workspace, one.path), "entry": one.entry}
             for one in package.executables
         ],
+        "compiled_nodes": list(package.compiled),
+        "components": list(package.components),
         "modules": [{"name": one.name, "path": _relative(workspace, one.path)} for one in package.modules],
         "interfaces": paths(package.interfaces),
         "configurations": paths(package.configurations),
         "launch_files": paths(package.launch_files),
         "parameter_files": paths(package.parameter_files),
-        "problems": [
-            {"file": _relative(workspace, one.file), "line": one.line, "reason": one.reason}
-            for one in package.problems
-        ],
+        "problems": [_problem(workspace, one) for one in package.problems],
     }
 
 

@@ -58,8 +58,8 @@ class Command:
 class Cmake:
     """The installed programs (file, installed name) and Python packages (name, folder) of a package.
 
-    `compiled` are its C++ programs without tests, `components` the classes of its composable nodes, and
-    `configurations` the `.cfg` files that it declares.
+    `compiled` are its C++ programs, `tests` those that it builds for tests only, `components` the classes of its
+    composable nodes, and `configurations` the `.cfg` files that it declares.
     """
 
     programs: tuple[tuple[str, str], ...] = ()
@@ -69,6 +69,7 @@ class Cmake:
     compiled: tuple[str, ...] = ()
     components: tuple[str, ...] = ()
     configurations: tuple[str, ...] = ()
+    tests: tuple[str, ...] = ()
 
 
 def cmake(folder: Path, package: str) -> Cmake:
@@ -90,6 +91,7 @@ def cmake(folder: Path, package: str) -> Cmake:
         tuple(sorted({found.renamed.get(one, one) for one in found.compiled})),
         tuple(sorted(found.components)),
         tuple(sorted(found.configurations)),
+        tuple(sorted(found.tests)),
     )
 
 
@@ -103,6 +105,7 @@ class _Build:
     packages: dict[str, str] = field(default_factory=dict)
     uses_setup: bool = False
     compiled: set[str] = field(default_factory=set)
+    tests: set[str] = field(default_factory=set)
     components: set[str] = field(default_factory=set)
     configurations: set[str] = field(default_factory=set)
     renamed: dict[str, str] = field(default_factory=dict)
@@ -125,14 +128,23 @@ class _Build:
             place = rest[rest.index("PACKAGE_DIR") + 1] if "PACKAGE_DIR" in rest[:-1] else first
             self.packages[first] = place
         elif name in EXECUTABLES or name.startswith("rclcpp_components_register_node"):
-            if not any(self.conditions):
-                self._compiled(command)
+            self._compiled(command)
+        elif "gtest" in name or "gmock" in name:
+            self.tests |= set(words[:1])
         elif name == "set_target_properties" and "OUTPUT_NAME" in words[:-1]:
             self.renamed[words[0]] = words[words.index("OUTPUT_NAME") + 1]
-        elif name == "generate_dynamic_reconfigure_options":
+        else:
+            self._declared(command)
+
+    def _declared(self, command: Command) -> None:
+        """Take the files of configurations and interfaces that a command declares into account."""
+        name, words = command.name, command.words
+        if name == "generate_dynamic_reconfigure_options":
             self.configurations |= {one for one in words if self._exists(command, one)}
         elif name in _INTERFACES:
-            place = words[words.index("DIRECTORY") + 1] if "DIRECTORY" in words[:-1] else _PLACES.get(name, "")
+            place = (
+                words[words.index("DIRECTORY") + 1] if "DIRECTORY" in words[:-1] else _PLACES.get(name, "")
+            )
             for one in words:
                 if one.endswith((".msg", ".srv", ".action")):
                     self._exists(command, f"{place}/{one}" if place else one)
@@ -141,7 +153,7 @@ class _Build:
         words = self._known(command, command.words)
         if command.name in EXECUTABLES:
             if words and words[0] == command.words[0] and not {"IMPORTED", "ALIAS"} & set(words):
-                self.compiled.add(words[0])
+                (self.tests if any(self.conditions) else self.compiled).add(words[0])
             return
         self.components |= {one for one in words if "::" in one}
         if "EXECUTABLE" in words[:-1]:
@@ -168,7 +180,9 @@ class _Build:
 
 def _names_unknown(word: str) -> bool:
     """Return whether a word has a variable without a known value; variables of install folders do not count."""
-    return any("DESTINATION" not in one and not one.startswith("CMAKE_INSTALL_") for one in _VARIABLE.findall(word))
+    return any(
+        "DESTINATION" not in one and not one.startswith("CMAKE_INSTALL_") for one in _VARIABLE.findall(word)
+    )
 
 
 def _sources(words: tuple[str, ...]) -> tuple[str, ...]:

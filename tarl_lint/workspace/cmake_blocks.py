@@ -50,9 +50,7 @@ class Blocks:
                 yield name, given, line
             place = end + 1
 
-    def _loop(
-        self, words: Sequence[str], body: list[Call], depth: int
-    ) -> Iterator[Called]:
+    def _loop(self, words: Sequence[str], body: list[Call], depth: int) -> Iterator[Called]:
         for item in self._items(words[1:]):
             self.variables[words[0]] = [item]
             yield from self.run(body, depth + 1)

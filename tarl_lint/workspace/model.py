@@ -25,8 +25,8 @@ class Problem:
     reason: str
     hides: bool = False
     package: str = ""
-    unreadable: bool = False
     given: tuple[str, ...] = ()
+    unreadable: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +54,8 @@ class ImportRoot:
 class Package:
     """A package: a folder with a `package.xml`.
 
-    `compiled` are its C++ programs, and `components` the classes of its nodelets and composable nodes. `others` are
-    files in folders named `launch` that may be launch files, but do not look like them.
+    `compiled` are its C++ programs, `tests` those for tests only, and `components` the classes of its nodelets and
+    composable nodes. `others` are files in folders named `launch` that may be launch files, but do not look like them.
     """
 
     name: str
@@ -72,6 +72,7 @@ class Package:
     compiled: tuple[str, ...] = ()
     components: tuple[str, ...] = ()
     others: tuple[Path, ...] = ()
+    tests: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

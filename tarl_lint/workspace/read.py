@@ -73,7 +73,9 @@ def _by_name(found: list[Package], unread: list[Problem]) -> dict[str, Package]:
     for one in sorted(found, key=lambda one: not _is_declared(one)):
         first = by_name.setdefault(one.name, one)
         if first is not one and _is_declared(one):
-            reason = f"the package {one.name} in {first.folder.name} has the same name, and is read in its place"
+            reason = (
+                f"the package {one.name} in {first.folder.name} has the same name, and is read in its place"
+            )
             unread.append(Problem(one.folder / "package.xml", 0, reason))
         elif first is not one and not _is_declared(one):
             known = {file.name for file in first.interfaces}
@@ -135,6 +137,7 @@ def _package(found: _Found) -> Package:
         compiled=built.compiled,
         components=tuple(sorted({*built.components, *nodelets})),
         others=tuple(found.others),
+        tests=built.tests,
     )
 
 

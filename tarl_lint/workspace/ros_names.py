@@ -5,13 +5,18 @@ from __future__ import annotations
 import re
 from typing import Final
 
-_FOUND: Final = re.compile(r"\$\(find(?:-pkg-share)? ([\w-]+)\)/")
+_FOUND: Final = re.compile(
+    r"\$\(find(?:-pkg-share)? ([\w-]+)\)/|\$\([\w.(\[]*get_package_share_(?:directory|path)\(['\"]([\w-]+)['\"]\)"
+)
 
 
 def package_in(path: str) -> str:
-    """Return the package that an absent path begins with: `robot` for `$(find robot)/launch/arm.launch`; else ""."""
+    """Return the package that an absent path begins with: `robot` for `$(find robot)/launch/arm.launch`; else "".
+
+    In Python, the path may be an expression, such as `$(os.path.join(get_package_share_directory('robot'), 'launch'))`.
+    """
     found = _FOUND.match(path)
-    return found[1] if found else ""
+    return (found[1] or found[2]) if found else ""
 
 
 def joined(namespace: str, name: str) -> str:

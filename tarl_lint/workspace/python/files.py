@@ -17,9 +17,9 @@ def parsed(file: Path, problems: list[Problem]) -> ast.Module | None:
     try:
         return ast.parse(read_bytes(file, LARGEST))
     except UnreadableError as problem:
-        problems.append(Problem(file, 0, str(problem), unreadable=True))
+        problems.append(Problem(file, 0, str(problem), hides=True, unreadable=True))
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = getattr(error, "lineno", 0) or 0
         reason = f"it is not Python 3: {getattr(error, 'msg', error)}"
-        problems.append(Problem(file, line, reason, unreadable=True))
+        problems.append(Problem(file, line, reason, hides=True, unreadable=True))
     return None
