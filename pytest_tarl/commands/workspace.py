@@ -11,13 +11,16 @@ from tarl_lint.workspace.examination import Examined, examined
 from tarl_lint.workspace.model import Package, Problem, Workspace
 from tarl_lint.workspace.read import read
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 1  # new keys do not change the version
 WIDEST = 44  # maximum number of characters of a list in the table; the JSON output has the whole list
+LONGEST = 100  # the same for a list below the table
 HEADINGS = ("package", "kind", "nodes and scripts", "C++ nodes", "launch files", "not read")
 
 
 def described(folder: Path) -> Examined:
     """Read the workspace below a folder. Raise SettingsError if there is no folder or no package."""
+    if folder.is_file():
+        raise SettingsError(f"{folder}: this is a file. Name the folder of a workspace.")
     if not folder.is_dir():
         raise SettingsError(f"{folder}: no such folder.")
     found = read(folder)
@@ -54,9 +57,11 @@ def _elsewhere(found: Examined) -> Iterator[str]:
     compiled = sum(len(one.compiled) + len(one.components) for one in found.workspace.packages)
     lines = [f"C++ nodes: {compiled} (known by interface only)"] if compiled else []
     if found.foreign:
-        lines.append(f"Started from packages outside the workspace: {_shortened(found.foreign)}")
+        lines.append(f"Started from packages outside the workspace: {_shortened(found.foreign, LONGEST)}")
     if found.absent:
-        lines.append(f"Included launch files of packages outside the workspace: {_shortened(found.absent)}")
+        lines.append(
+            f"Included launch files of packages outside the workspace: {_shortened(found.absent, LONGEST)}"
+        )
     if found.symbolic:
         count = f"{found.symbolic} value{'' if found.symbolic == 1 else 's'}"
         lines.append(f"Known on the robot only: {count} in launch files (tarl-lint --launch FILE lists them)")
@@ -94,11 +99,11 @@ def _row(package: Package) -> tuple[str, ...]:
     return (package.name, package.kind, *map(_shortened, (nodes, compiled, launch)), unread)
 
 
-def _shortened(names: Sequence[str]) -> str:
+def _shortened(names: Sequence[str], most: int = WIDEST) -> str:
     """Return as many names as fit, and how many were omitted."""
     shown: list[str] = []
     for name in names:
-        if shown and len(", ".join([*shown, name])) > WIDEST:
+        if shown and len(", ".join([*shown, name])) > most:
             return f"{', '.join(shown)} and {len(names) - len(shown)} more"
         shown.append(name)
     return ", ".join(shown)

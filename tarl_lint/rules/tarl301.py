@@ -18,7 +18,10 @@ A node that was not read, that computes the names of its topics, or that a missi
 other end. Then the rule reports only misspelt names, not different namespaces and abbreviations, and only if no such
 node mentions one of the names in its remappings, parameters, arguments or strings. Such a node counts only if it may
 use the type: a laser driver publishes no `Twist`, the types of well-known packages are known, and C++ programs of the
-workspace use only types that their files name.
+workspace use only types that their files name. The driver of a sensor, which is known by its package or by a word such
+as `lidar` or `gps` in its name, counts only if it may also use one of the names: if it mentions the name, if the name
+is private to it, or if the last part has only words of such drivers, as `/rear/scan` and `/points_raw` do, but
+`/obstacles` does not.
 
 The rule reports nothing if no publisher has a similar name, because sensors, simulators and teleoperation are often
 started elsewhere: of 23 such topics in launch files of which every part is known, one was a mistake. The report of

@@ -8,9 +8,12 @@ Actions are compared in the same way as services. In the root namespace, `dock` 
 the type is not one that many nodes offer, such as `Trigger`.
 
 Beside nodes that were not read, and with missing launch files, the rule reports only misspelt names that no such node
-mentions, as TARL301 does. The rule reports nothing if no server has a similar name, because the server may be started
-elsewhere: with drivers and controllers, it usually is. The report of `--launch` lists these services under "No server
-here", actions under "No action server here", and JSON lists both under `one_sided`; they do not fail the run.
+mentions, as TARL301 does. As there, the driver of a sensor counts only if it may use the type and one of the names: a
+laser driver may offer a `Trigger` named `start_motor`, but none named `release`.
+
+The rule reports nothing if no server has a similar name, because the server may be started elsewhere: with drivers and
+controllers, it usually is. The report of `--launch` lists these services under "No server here", actions under "No
+action server here", and JSON lists both under `one_sided`; they do not fail the run.
 """
 
 from __future__ import annotations
