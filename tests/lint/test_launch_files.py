@@ -250,6 +250,7 @@ def test_python_files_may_use_includes_conditions_functions_and_components(tmp_p
     assert (found.nodes[4].remaps, settings(found, 4)) == ((("image", "/front/image"),), [("~rate", 30)])
     assert [(one.line, one.reason) for one in found.problems] == [
         (34, "the condition `$(var serial)` is known on the robot only"),
+        (34, "the name of a node is known on the robot only: port_$(var serial)"),
         (34, "the parameter model is not constant"),
     ]
 
@@ -341,7 +342,10 @@ def test_ros2_launch_files_in_xml_and_yaml_are_equivalent(tmp_path: Path, name: 
     yaml = "/**:\n  ros__parameters:\n    kp: 2.0\n"
     assert settings(found, 1) == [("~twice", "6"), ("~label", "7"), ("~limits.top", "3"), ("~", yaml)]
     assert found.nodes[4].remaps == (("image", "/image"),)
-    assert [one.reason for one in found.problems] == ["<unknown_action> is not followed"]
+    assert [one.reason for one in found.problems] == [
+        "the name of a node is known on the robot only: watch_$(env SIDE)",
+        "<unknown_action> is not followed",
+    ]
 
 
 def test_names_known_only_on_the_robot_stay_symbolic(tmp_path: Path) -> None:
