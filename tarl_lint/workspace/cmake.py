@@ -30,6 +30,8 @@ EXECUTABLES: Final = (
 )
 # variables of conditions under which tests are built
 _TESTING: Final = frozenset({"BUILD_TESTING", "CATKIN_ENABLE_TESTING"})
+# what a CMake file contains if it builds or installs programs
+_BUILDS: Final = re.compile(rf"\bPROGRAMS\b|catkin_install_python|{'|'.join(EXECUTABLES)}", re.IGNORECASE)
 # folders of the interfaces that commands of ROS 1 declare
 _PLACES: Final = {"add_message_files": "msg", "add_service_files": "srv", "add_action_files": "action"}
 _INTERFACES: Final = frozenset({"rosidl_generate_interfaces", *_PLACES})
@@ -139,7 +141,9 @@ class _Build:
     def _declared(self, command: Command) -> None:
         """Take the files of configurations and interfaces that a command declares into account."""
         name, words = command.name, command.words
-        if name == "generate_dynamic_reconfigure_options":
+        if name in ("add_subdirectory", "include") and words and not any(self.conditions):
+            self._elsewhere(command)
+        elif name == "generate_dynamic_reconfigure_options":
             self.configurations |= {one for one in words if self._exists(command, one)}
         elif name in _INTERFACES:
             place = (
@@ -168,6 +172,20 @@ class _Build:
             )
         return tuple(one for one in words if one not in unknown)
 
+    def _elsewhere(self, command: Command) -> None:
+        """Record a problem if another file of the package builds or installs programs."""
+        path = self.folder / command.words[0]
+        path = path / "CMakeLists.txt" if command.name == "add_subdirectory" else path
+        if not path.is_file() or not path.is_relative_to(self.folder):
+            return
+        try:
+            text = read_text(path, LARGEST)
+        except UnreadableError:
+            text = "PROGRAMS"
+        if _BUILDS.search(text):
+            reason = f"{command.name}: {path.relative_to(self.folder)} is not read"
+            self.problems.append(Problem(self.path, command.line, reason))
+
     def _exists(self, command: Command, file: str) -> bool:
         """Return whether the package has a declared file; record a problem if it does not."""
         path = self.folder / file
@@ -187,6 +205,8 @@ def _names_unknown(word: str) -> bool:
 
 def _sources(words: tuple[str, ...]) -> tuple[str, ...]:
     """Return the words of an `install` command that name programs, with the keywords and the place of installation."""
+    if words[:1] == ("TARGETS",):
+        return ()
     if "PROGRAMS" in words or _PROGRAMS.search(" ".join(_after(words, "DESTINATION"))):
         return words
     return ()
@@ -227,6 +247,9 @@ def commands(text: str, folder: Path, package: str) -> Iterator[Command]:
     for name, replaced, line in Blocks(_all_replaced, variables).run(list(_calls(text))):
         if name == "set" and replaced:
             variables[replaced[0]] = [word[:LONGEST] for word in replaced[1 : MOST + 1]]
+        elif name == "list" and replaced[:1] == ("APPEND",) and len(replaced) > 1:
+            more = [word[:LONGEST] for word in replaced[2:]]
+            variables[replaced[1]] = (variables.get(replaced[1], []) + more)[:MOST]
         elif name == "file" and len(replaced) > 1 and replaced[0] in ("GLOB", "GLOB_RECURSE"):
             variables[replaced[1]] = list(_globbed(folder, replaced[2:], deep=replaced[0] != "GLOB"))
         yield Command(name, replaced, line)

@@ -20,6 +20,6 @@ def parsed(file: Path, problems: list[Problem]) -> ast.Module | None:
         problems.append(Problem(file, 0, str(problem), hides=True, unreadable=True))
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = getattr(error, "lineno", 0) or 0
-        reason = f"it is not Python 3: {getattr(error, 'msg', error)}"
-        problems.append(Problem(file, line, reason, hides=True, unreadable=True))
+        said = getattr(error, "msg", error)
+        problems.append(Problem(file, line, f"it is not Python 3: {said}", hides=True, unreadable=True))
     return None

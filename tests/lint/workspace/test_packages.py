@@ -226,6 +226,8 @@ CMAKE = {
     ),
     "an invalid pattern": ("file(GLOB N nodes/**x/*.py a)\ninstall(PROGRAMS ${N} nodes/b DESTINATION bin)",
         {"nodes/b": "b"}),
+    "an extended list": ("set(N nodes/b)\nlist(APPEND N nodes/a.py)\ninstall(PROGRAMS ${N} DESTINATION bin)",
+        {"nodes/a.py": "a.py", "nodes/b": "b"}),
     "whole paths": ("install(PROGRAMS ${CMAKE_CURRENT_SOURCE_DIR}/nodes/b DESTINATION bin)", {"nodes/b": "b"}),
     "another name": ("install(PROGRAMS nodes/b DESTINATION bin RENAME c)", {"nodes/b": "c"}),
     "an unknown variable": ("install(PROGRAMS ${N} DESTINATION bin)", {}),
@@ -544,3 +546,43 @@ def test_a_message_package_takes_precedence_over_a_copy_of_its_definitions(tmp_p
         "a_first/arm_msgs/msg/Old.msg",
         "arm_msgs/srv/Grip.srv",
     ]
+
+
+@pytest.mark.parametrize(
+    ("text", "problems"),
+    [
+        ("install(PROGRAMS nodes/a.py ${N} DESTINATION bin)", [(1, "install: the value of ${N} is not known")]),
+        ("\ncatkin_install_python(PROGRAMS ${N}/a.py)",
+         [(2, "catkin_install_python: the value of ${N}/a.py is not known")]),
+        ("list(APPEND N nodes/a.py)\ninstall(PROGRAMS ${N} DESTINATION bin)", []),
+        ("add_subdirectory(sub)", [(1, "add_subdirectory: sub/CMakeLists.txt is not read")]),
+        ("include(sub/CMakeLists.txt)", [(1, "include: sub/CMakeLists.txt is not read")]),
+        ("include(empty.cmake)\ninclude(CTest)", []),
+        ("install(DIRECTORY ${N} DESTINATION lib/arm)", [(1, "install: the value of ${N} is not known")]),
+        ("install(DIRECTORY ${N} DESTINATION share/arm)", []),
+        ("install(TARGETS ${N} RUNTIME DESTINATION bin)", []),
+        ("install(PROGRAMS nodes/a.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})", []),
+        ("ament_python_install_package(${N})", [(1, "ament_python_install_package: the value of ${N} is not known")]),
+        ("add_executable(${N} a.cpp)", [(1, "add_executable: the value of ${N} is not known")]),
+        ("add_executable(a ${SOURCES})", [(1, "add_executable: the value of ${SOURCES} is not known")]),
+        ("macro(f N)\nadd_executable(${N} a.cpp)\nendmacro()\nf(servo)", []),
+        ("project(a", [(1, "a parenthesis is not closed")]),
+        ('project("a)\n', [(1, "a quoted text is not closed")]),
+        ("\nif(A)\n  foreach(x a b)\nendforeach()\n", [(2, "if() is not closed")]),
+        ("# if(\n#[[ ( ]]\nproject(a)", []),
+        ("add_message_files(FILES Gone.msg)", [(1, "msg/Gone.msg is declared, but does not exist")]),
+        ("add_service_files(DIRECTORY s FILES Gone.srv)", [(1, "s/Gone.srv is declared, but does not exist")]),
+        ("rosidl_generate_interfaces(arm action/Gone.action)",
+         [(1, "action/Gone.action is declared, but does not exist")]),
+        ("rosidl_generate_interfaces(arm ${FILES})", []),
+        ("generate_dynamic_reconfigure_options(cfg/Gone.cfg)", [(1, "cfg/Gone.cfg is declared, but does not exist")]),
+    ],
+)  # fmt: skip
+def test_parts_of_cmake_that_cannot_be_read_are_named(tmp_path, text, problems):
+    (tmp_path / "nodes").mkdir()
+    (tmp_path / "nodes/a.py").touch()
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub/CMakeLists.txt").write_text("add_executable(more more.cpp)")
+    (tmp_path / "empty.cmake").touch()
+    (tmp_path / "CMakeLists.txt").write_text(text)
+    assert [(one.line, one.reason) for one in cmake(tmp_path, "arm").problems] == problems
