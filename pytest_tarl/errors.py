@@ -67,6 +67,14 @@ class UnsupportedApiError(TarlError):
     """A node uses a part of the ROS API that the in-process ROS does not implement."""
 
 
+class UnsupportedNameError(UnsupportedApiError, AttributeError):
+    """A node reads a name that a ROS module of the in-process ROS lacks, so `hasattr` returns False."""
+
+
+class UnsupportedImportError(UnsupportedApiError, ImportError):
+    """A node imports a name from a ROS module of the in-process ROS that lacks it. The node may catch this error."""
+
+
 class UnsupportedModuleError(UnsupportedApiError, ModuleNotFoundError):
     """A node imports a ROS module that the in-process ROS does not implement. The node may catch this ImportError."""
 

@@ -1,7 +1,8 @@
 """`image_geometry`: project 3-D points to pixels by the CameraInfo of one camera or a stereo pair.
 
 Pinhole model: u = (P00 x + P02 z + P03) / z, with the matrices of sensor_msgs/CameraInfo, adjusted for binning and
-region of interest. Matrices are `numpy.matrix`, as in ROS 1. Rectifying needs OpenCV.
+region of interest. Methods have two names: those of ROS 1 (`fromCameraInfo`), which return a `numpy.matrix`, and those
+of ROS 2 (`from_camera_info`), which return a `numpy.ndarray`. Rectifying needs OpenCV.
 """
 
 # ruff: noqa: N802, N803 (image_geometry's names)
@@ -172,6 +173,46 @@ class PinholeCameraModel:
         """Return the camera's tf frame."""
         return self.tf_frame
 
+    from_camera_info = fromCameraInfo
+    project_3d_to_pixel = project3dToPixel
+    project_pixel_to_3d_ray = projectPixelTo3dRay
+    rectify_image = rectifyImage
+    rectify_point = rectifyPoint
+    get_delta_u = getDeltaU
+    get_delta_v = getDeltaV
+    get_delta_x = getDeltaX
+    get_delta_y = getDeltaY
+    full_resolution = fullResolution
+    tx = Tx
+    ty = Ty
+    fov_x = fovX
+    fov_y = fovY
+    get_tf_frame = tfFrame
+
+    def intrinsic_matrix(self) -> Any:
+        """Return K as an array of 3 × 3, adjusted for binning and region of interest."""
+        return _array(self.K)
+
+    def distortion_coeffs(self) -> Any:
+        """Return D as an array of one column, or None if there is no distortion."""
+        return _array(self.D)
+
+    def rotation_matrix(self) -> Any:
+        """Return R as an array of 3 × 3."""
+        return _array(self.R)
+
+    def projection_matrix(self) -> Any:
+        """Return P as an array of 3 × 4, adjusted for binning and region of interest."""
+        return _array(self.P)
+
+    def full_intrinsic_matrix(self) -> Any:
+        """Return K as an array of 3 × 3, for the full resolution."""
+        return _array(self.full_K)
+
+    def full_projection_matrix(self) -> Any:
+        """Return P as an array of 3 × 4, for the full resolution."""
+        return _array(self.full_P)
+
 
 class StereoCameraModel:
     """Two cameras side by side; points are in the frame of the left one."""
@@ -210,6 +251,21 @@ class StereoCameraModel:
         """Return the left camera's tf frame."""
         return self.left.tfFrame()
 
+    from_camera_info = fromCameraInfo
+    project_3d_to_pixel = project3dToPixel
+    project_pixel_to_3d = projectPixelTo3d
+    get_z = getZ
+    get_disparity = getDisparity
+    get_tf_frame = tfFrame
+
+    def get_left_camera(self) -> PinholeCameraModel:
+        """Return the left camera."""
+        return self.left
+
+    def get_right_camera(self) -> PinholeCameraModel:
+        """Return the right camera."""
+        return self.right
+
 
 def _matrix(numbers: Sequence[float], rows: int, columns: int) -> Any:
     import numpy as np
@@ -219,6 +275,11 @@ def _matrix(numbers: Sequence[float], rows: int, columns: int) -> Any:
             "ignore", PendingDeprecationWarning
         )  # numpy.matrix warns that it is outdated, but image_geometry returns this type
         return np.matrix(np.array(list(numbers), dtype="float64").reshape(rows, columns))
+
+
+def _array(matrix: Any) -> Any:
+    """Return a view of a matrix as an array, or None for None."""
+    return None if matrix is None else matrix.A
 
 
 def _opencv(what: str) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache, lru_cache, partial
 from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
@@ -20,13 +20,12 @@ from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.installed import asked_kind, installed_kind
 from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_package, package_module
 from pytest_tarl.ros.messages.workspace import packages
-from pytest_tarl.ros.missing import unsupported_module
+from pytest_tarl.ros.missing import as_read_by, refuse, unsupported_module
 from pytest_tarl.ros.opencv_windows import windows_discarded
 from pytest_tarl.ros.reexports import is_reexported, reexported
 from pytest_tarl.ros.siblings import generated, has_configurations, is_generated, sibling
 from pytest_tarl.ros.standins import MISSING, STANDALONE, STANDINS, TALKING
 from pytest_tarl.ros.threads import threads_as_tasks
-from pytest_tarl.ros.uninstalled import is_optional
 from pytest_tarl.stale_modules import holders
 
 if TYPE_CHECKING:
@@ -157,16 +156,10 @@ def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -
         return import_module(inner)
     if is_reexported(module, name):
         return reexported(module, name)
-    if otherwise is None or _is_optional_for(sys._getframe(1)):
-        raise AttributeError(f"module {module!r} has no attribute {name!r}")
-    return otherwise(name)
-
-
-def _is_optional_for(frame: FrameType | None) -> bool:
-    """Return whether the code that reads a name handles its absence; ignore the frames of the import system."""
-    while frame is not None and "importlib" in frame.f_code.co_filename:
-        frame = frame.f_back
-    return frame is not None and is_optional(frame.f_code.co_filename, frame.f_lineno)
+    if otherwise is not None:
+        with suppress(AttributeError):
+            return otherwise(name)
+    raise as_read_by(sys._getframe(1), refuse(module, name))
 
 
 @cache

@@ -2,11 +2,27 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
+from difflib import get_close_matches
+from opcode import opmap
+from types import FrameType
 from typing import Final
 
-from pytest_tarl.errors import UnsupportedApiError, UnsupportedModuleError
+from pytest_tarl.errors import (
+    UnsupportedApiError,
+    UnsupportedImportError,
+    UnsupportedModuleError,
+    UnsupportedNameError,
+)
+from pytest_tarl.ros.lacking_names import LACKING
 
+_STAND_IN: Final = (
+    "give the node a small stand-in for it in your test (monkeypatch the call, or put a module of that name into "
+    "sys.modules), or drive the node only through the parts that exist."
+)
+_ALIKE: Final = 0.8  # least similarity of a name that is suggested: one letter of five to ten differs
+_IMPORT_FROM: Final = opmap["IMPORT_FROM"]
 _REPLACE: Final = "put a module of that name into sys.modules in your test"
 _ADVICE: Final[Mapping[str, str]] = {  # package → alternative for the user
     "roslaunch": f"since tarl.launch starts launch files: call it in the test, or {_REPLACE}.",
@@ -19,6 +35,11 @@ def unsupported(api: str) -> UnsupportedApiError:
     return UnsupportedApiError(_sentence(api))
 
 
+def unsupported_name(api: str) -> UnsupportedNameError:
+    """Return the error for an attribute that is not implemented, with advice; it is an AttributeError, too."""
+    return UnsupportedNameError(_sentence(api))
+
+
 def unsupported_module(name: str) -> UnsupportedModuleError:
     """Return the error for a module that is not implemented, with advice; it is a ModuleNotFoundError, too."""
     return UnsupportedModuleError(_sentence(name), name=name)
@@ -28,18 +49,38 @@ def _sentence(api: str) -> str:
     advice = _ADVICE.get(api.partition(".")[0])
     if advice is not None:
         return f"{api} is not in the in-process ROS, {advice}"
-    return (
-        f"{api} is not in the in-process ROS yet: give the node a small stand-in for it in your test (monkeypatch "
-        "the call, or put a module of that name into sys.modules), or drive the node only through the "
-        "parts that exist."
-    )
+    return f"{api} is not in the in-process ROS yet: {_STAND_IN}"
 
 
 def refuse(module: str, name: str) -> Exception:
-    """Return the error for a missing name of a stand-in module; AttributeError for dunder names, as Python expects."""
+    """Return the error for a missing name of a stand-in module; for dunder names, that of Python."""
     if name.startswith("__"):
         return AttributeError(f"module {module!r} has no attribute {name!r}")
-    return unsupported(f"{module}.{name}")
+    return UnsupportedNameError(_of_name(module, name))
+
+
+def _of_name(module: str, name: str) -> str:
+    """Return the sentence about a missing name; it says whether the module of ROS has this name."""
+    api = f"{module}.{name}"
+    if module in LACKING and not name.startswith("_"):
+        if name in LACKING[module].split():
+            return _sentence(api)
+        here = [one for one in vars(sys.modules.get(module, sys)) if not one.startswith("_")]
+        near = get_close_matches(name, here, 1, _ALIKE)
+        guess = f". Did you mean {module}.{near[0]}?" if near else ": check its spelling."
+        return f"{api} is not in the in-process ROS, and ROS has no such name either{guess}"
+    return f"{api} is not in the in-process ROS: check its spelling. If ROS has it, {_STAND_IN}"
+
+
+def as_read_by(frame: FrameType | None, error: Exception) -> Exception:
+    """Return an UnsupportedNameError as an ImportError if the frame runs `from module import name`; else unchanged.
+
+    Python replaces an AttributeError of this statement by an ImportError that has no advice.
+    """
+    if not isinstance(error, UnsupportedNameError) or frame is None:
+        return error
+    imports = frame.f_lasti >= 0 and frame.f_code.co_code[frame.f_lasti] == _IMPORT_FROM
+    return UnsupportedImportError(*error.args) if imports else error
 
 
 def refusing(module: str) -> Callable[[str], object]:

@@ -15,7 +15,6 @@ from pytest_tarl.ros import blame
 from pytest_tarl.ros.absent_names import caught_import, removed_name
 from pytest_tarl.ros.launch_sources import Given, arguments_from, parameter_from
 from pytest_tarl.ros.missing_modules import PYTHON_2, interface_advice, module_advice
-from pytest_tarl.ros.standins import STANDINS
 
 _PYTHON_2_SYNTAX = re.compile(
     r"Missing parentheses in call to '(print|exec)|multiple exception types must be parenthesized|"
@@ -55,7 +54,7 @@ def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str
         return _of_import(error)
     lacking = _LACKING.search(text) if isinstance(error, AttributeError) else None
     if lacking is not None:
-        return _of_name(lacking[1]) if lacking[1] in STANDINS else removed_name(lacking[1], text)
+        return removed_name(lacking[1], text)
     if isinstance(error, NameError):
         own = _of_program(error)
         return caught_import(error, own[-1].tb_frame.f_code.co_filename) if own else ""
@@ -91,15 +90,8 @@ def _of_import(error: ImportError) -> str:
         return module_advice(error, _line_of(error))
     if error.name is None:
         return ""
-    if error.name in STANDINS:
-        return _of_name(error.name)
     # a module without a path is a folder without Python files, or a part of Python itself
     return interface_advice(error.name) or removed_name(error.name, text_of(error))
-
-
-def _of_name(module: str) -> str:
-    """Return advice for a name that a stand-in lacks."""
-    return f"The in-process ROS lacks this name of {module}: put a replacement into the module in the test."
 
 
 def _of_partner(text: str) -> str:

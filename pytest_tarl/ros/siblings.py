@@ -8,7 +8,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from types import ModuleType
 
-from pytest_tarl.errors import UnsupportedApiError
+from pytest_tarl.errors import UnsupportedModuleError
 from pytest_tarl.ros.messages.workspace import on_forget, packages
 from tarl_lint.workspace.cfg_files import Configuration, configurations
 
@@ -35,7 +35,10 @@ def is_generated(name: str) -> bool:
 
 
 def generated(name: str) -> ModuleType:
-    """Create the module `PACKAGE.cfg.NAMEConfig` from its `.cfg` file; without this file, raise UnsupportedApiError."""
+    """Create the module `PACKAGE.cfg.NAMEConfig` from its `.cfg` file.
+
+    Raise UnsupportedModuleError without this file.
+    """
     package, _, rest = name.partition(".")
     module = ModuleType(name, f"Generated from the .cfg files of {package}.")
     wanted = rest.removeprefix("cfg").removeprefix(".")
@@ -45,7 +48,7 @@ def generated(name: str) -> ModuleType:
     found = _of_package(known.configurations).get(wanted.removesuffix("Config"))
     if found is None:
         names = ", ".join(f"{one}Config" for one in sorted(_of_package(known.configurations))) or "none"
-        raise UnsupportedApiError(
+        raise UnsupportedModuleError(
             f"No .cfg file of {package} generates {wanted}; its files generate: {names}. The third argument of "
             "gen.generate has to be a constant."
         )

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from types import ModuleType
 from typing import Any
 
+from pytest_tarl.errors import UnsupportedNameError
 from pytest_tarl.ros.messages import find_class, ros1, unknown_type
 from pytest_tarl.ros.messages.definitions import Kind, contained_packages, type_names
 from pytest_tarl.ros.messages.known import Part
 from pytest_tarl.ros.messages.workspace import workspace_packages
+from pytest_tarl.ros.missing import as_read_by
 
 _ENDINGS = ("_msgs", "_srvs", "_interfaces")
 _OTHERS = {"turtlesim", "rospy_tutorials", "actionlib_tutorials", "beginner_tutorials", "turtle_actionlib",
@@ -49,7 +52,7 @@ class PackagePart(ModuleType):
         if found is None and name in self._modules():
             return import_module(name)
         if found is None:
-            raise unknown_type(self._package, name)
+            raise as_read_by(sys._getframe(1), UnsupportedNameError(*unknown_type(self._package, name).args))
         setattr(self, name, found)
         return found
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from pytest_tarl.ros.messages import class_of
-from pytest_tarl.ros.missing import refusing, unsupported
+from pytest_tarl.ros.missing import refusing, unsupported_name
 from pytest_tarl.ros.moveit_commander.exception import MoveItCommanderException
 from pytest_tarl.ros.moveit_commander.motion import straight
 from pytest_tarl.ros.moveit_commander.targets import Targets, along
@@ -225,4 +225,4 @@ class MoveGroupCommander(Targets):
             return lambda value: settings.__setitem__(setting, value)
         if name.startswith("_"):
             raise AttributeError(name)
-        raise unsupported(f"moveit_commander.MoveGroupCommander.{name}")
+        raise unsupported_name(f"moveit_commander.MoveGroupCommander.{name}")

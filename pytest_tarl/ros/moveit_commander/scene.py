@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from pytest_tarl.ros.messages import class_of
-from pytest_tarl.ros.missing import refusing, unsupported
+from pytest_tarl.ros.missing import refusing, unsupported_name
 from pytest_tarl.ros.rospy.topics import Publisher
 
 __all__ = ["PlanningSceneInterface"]
@@ -114,10 +114,10 @@ class PlanningSceneInterface:
         return {name: one.pose for name, one in self.get_objects(object_ids).items()}
 
     def __getattr__(self, name: str) -> Any:
-        """Raise UnsupportedApiError for other methods."""
+        """Raise UnsupportedNameError for other methods."""
         if name.startswith("_"):
             raise AttributeError(name)
-        raise unsupported(f"moveit_commander.PlanningSceneInterface.{name}")
+        raise unsupported_name(f"moveit_commander.PlanningSceneInterface.{name}")
 
     def _change(self, item: Any, operation: int) -> None:
         item.operation = operation

@@ -9,7 +9,7 @@ from typing import Any
 
 from pytest_tarl.ros import names
 from pytest_tarl.ros.clock import NANOSECONDS
-from pytest_tarl.ros.missing import unsupported
+from pytest_tarl.ros.missing import unsupported, unsupported_name
 from pytest_tarl.ros.rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from pytest_tarl.ros.rclpy.context import this_context
 from pytest_tarl.ros.rclpy.entities import NodeEntities
@@ -279,5 +279,5 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
 
     def __getattr__(self, name: str) -> Any:
         if name in _NOT_YET:
-            raise unsupported(f"Node.{name}")
+            raise unsupported_name(f"Node.{name}")
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")

@@ -189,6 +189,34 @@ def test_a_camera_converts_between_lengths_and_pixels() -> None:
     assert model.rotationMatrix().tolist() == np.identity(3).tolist()
 
 
+def test_a_camera_has_the_names_of_ros2() -> None:
+    info: Any = camera(tx=5.0)
+    info.D = [0.1, 0.2]
+    model = PinholeCameraModel()
+    model.from_camera_info(info)
+    assert model.project_3d_to_pixel((0.5, -0.25, 2.0)) == model.project3dToPixel((0.5, -0.25, 2.0))
+    assert model.project_pixel_to_3d_ray((32, 24)) == (0, 0, 1)
+    assert (model.get_delta_u(0.5, 2.0), model.get_delta_v(0.5, 2.0)) == (25, 30)
+    assert (model.get_delta_x(25, 2.0), model.get_delta_y(30, 2.0)) == (0.5, 0.5)
+    assert (model.full_resolution(), model.get_tf_frame(), model.tx(), model.ty()) == ((64, 48), "lens", 5, 0)
+    assert (model.fov_x(), model.fov_y()) == (model.fovX(), model.fovY())
+    for name, shape in {"intrinsic_matrix": (3, 3), "rotation_matrix": (3, 3), "projection_matrix": (3, 4),
+                        "full_intrinsic_matrix": (3, 3), "full_projection_matrix": (3, 4),
+                        "distortion_coeffs": (2, 1)}.items():  # fmt: skip
+        matrix = getattr(model, name)()
+        assert (type(matrix), matrix.shape) == (np.ndarray, shape), name
+    assert model.projection_matrix()[0].tolist() == [100, 0, 32, 5]
+    model.from_camera_info(camera())
+    assert model.distortion_coeffs() is None
+    pair = StereoCameraModel()
+    pair.from_camera_info(camera(), camera(tx=-20.0))
+    assert (pair.get_left_camera().tx(), pair.get_right_camera().tx()) == (0, -20)
+    assert (pair.get_z(10.0), pair.get_disparity(2.0), pair.get_tf_frame()) == (2, 10, "lens")
+    left, right = pair.project_3d_to_pixel((0.2, 0.24, 2.0))
+    assert left[0] - right[0] == pytest.approx(10)
+    assert pair.project_pixel_to_3d(left, 10.0)[2] == 2
+
+
 @pytest.mark.parametrize("names", [("x_offset",), ("y_offset",), ("width",), ("height",), ()])
 def test_a_region_of_interest_is_the_whole_image_if_all_of_it_is_zero(names: tuple[str, ...]) -> None:
     info: Any = camera()

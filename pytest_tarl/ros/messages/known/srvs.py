@@ -232,6 +232,29 @@ int8 ERROR_UNKNOWN_GOAL_ID=2
 int8 ERROR_GOAL_TERMINATED=3
 int8 return_code
 GoalInfo[] goals_canceling
+== composition_interfaces/ListNodes
+---
+string[] full_node_names
+uint64[] unique_ids
+== composition_interfaces/LoadNode
+string package_name
+string plugin_name
+string node_name
+string node_namespace
+uint8 log_level
+string[] remap_rules
+rcl_interfaces/Parameter[] parameters
+rcl_interfaces/Parameter[] extra_arguments
+---
+bool success
+string error_message
+string full_node_name
+uint64 unique_id
+== composition_interfaces/UnloadNode
+uint64 unique_id
+---
+bool success
+string error_message
 == diagnostic_msgs/SelfTest
 ---
 string id
