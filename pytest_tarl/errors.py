@@ -36,7 +36,11 @@ class SimulatorError(RecordingError):
 
 
 class SimulatorLostError(SimulatorError):
-    """An external simulator died or hung; its episode is run again with a new one."""
+    """An external simulator died or hung; its episode is run again with a new one. `why` is the reason in brief."""
+
+    def __init__(self, text: str, why: str = "") -> None:
+        super().__init__(text)
+        self.why = why or text
 
 
 class RequirementError(AssertionError):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,6 +24,7 @@ from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.spending import Stage
+from pytest_tarl.lost_simulators import LostSimulators, RolloutWith
 from pytest_tarl.modules_of_tests import Digests, digests, remark
 from pytest_tarl.options import Options
 from pytest_tarl.other_recordings import adopted, lost_design, unchecked
@@ -39,7 +40,6 @@ from pytest_tarl.stressing.statements import source
 from pytest_tarl.unrecorded_nodes import silent_files
 from tarl_lint.api import Analysis
 
-RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]
 EARLIER = "# Commit only the recorded utility.\n*\n!.gitignore\n!utility/\n!utility/**\nutility/.*\n"
 IGNORED = (
     "# Commit only the recorded utility and the margins.\n*\n!.gitignore\n"
@@ -80,6 +80,15 @@ class Mission:
 
         Raise TarlError if the test cannot be recorded or compared.
         """
+        lost = LostSimulators()
+        done = self._run(lost.watched(rollout_with))
+        if isinstance(done, Compared):
+            return replace(
+                done, comparison=replace(done.comparison, notes=(*done.comparison.notes, *lost.notes()))
+            )
+        return replace(done, lines=(*done.lines, *(f"  {note}" for note in lost.notes())))
+
+    def _run(self, rollout_with: RolloutWith) -> Account | Compared:
         fixture = None if self.options.mode == "record" else self._fixture()
         if fixture is not None and self.options.mode == "stress":
             return self._stress(rollout_with, fixture)

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from types import FrameType
 from typing import Any
 
@@ -45,10 +45,19 @@ class ItemRollout:
 
         Raise TarlError if the test cannot run as planned, pytest's Exit on Ctrl-C.
         """
-        for _ in range(SIMULATORS - 1):
-            with suppress(SimulatorLostError):
-                return self._once(plan)
-        return self._once(plan)
+        lost: list[str] = []
+        while isinstance(run := self._tried(plan), SimulatorLostError):
+            lost.append(run.why)
+            if len(lost) == SIMULATORS:
+                raise SimulatorLostError(_given_up(run, plan, lost)) from run
+        return replace(run, lost=tuple(lost))
+
+    def _tried(self, plan: EpisodePlan) -> EpisodeRun | SimulatorLostError:
+        """Run one episode once; return the error if its simulator is lost."""
+        try:
+            return self._once(plan)
+        except SimulatorLostError as problem:
+            return problem
 
     def _once(self, plan: EpisodePlan) -> EpisodeRun:
         episode = Episode(plan, self.designation, self.instruments if plan.record else NOTHING)
@@ -62,6 +71,15 @@ class ItemRollout:
         finally:
             del self.item.stash[EPISODE]
         return _outcome(episode, reports)
+
+
+def _given_up(problem: SimulatorLostError, plan: EpisodePlan, lost: Sequence[str]) -> str:
+    """Return the message about an episode whose simulator was lost in every run."""
+    earlier = "; ".join(dict.fromkeys(lost[:-1]))
+    return (
+        f"{problem} TARL ran the episode with seed {plan.seed} {len(lost)} times, each time with a new simulator, and "
+        f"gave up. Before: {earlier}."
+    )
 
 
 def _forget_instance(item: pytest.Function) -> None:

@@ -51,6 +51,9 @@ class EpisodeRun:
 
     `simulator` is true if an external simulator was the world; then the same plan may give another result.
 
+    `lost` has, for each run of the episode whose simulator died or hung, the reason in brief; the result is that of the
+    last run.
+
     `broken` is the text of an error outside the mission, such as one in the test's own code.
     """
 
@@ -68,6 +71,7 @@ class EpisodeRun:
     older: tuple[Path, ...] = ()
     simulator: bool = False
     outputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    lost: tuple[str, ...] = ()
 
 
 class Pending(Protocol):

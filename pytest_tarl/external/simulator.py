@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import queue
+import signal
 from collections.abc import Callable, Sequence
 from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any
@@ -137,8 +138,10 @@ class Simulator:
         try:
             self._client.do("subscribe", topics=list(self._topics))
             self._call(reset)
-        except SimulatorError:
+        except SimulatorError as problem:
             self._current = False
+            why = problem.why if isinstance(problem, SimulatorLostError) else str(problem)
+            self._ros.note(f"The simulator could not be reset, so a new one was started: {why}.")
             return False
         self._forget()
         return True
@@ -237,7 +240,10 @@ class Simulator:
         self._wait(lambda: number in self._answers, self.setup.patience, lambda: self._unanswered(call))
         answer = self._answers.pop(number)
         if "error" in answer:
-            raise SimulatorLostError(f"The simulator's service {call.service} failed: {answer['error']}")
+            raise self._lost(
+                f"The simulator's service {call.service} failed: {answer['error']}",
+                f"its service {call.service} failed",
+            )
         return int(answer["asked"])
 
     def _wait(self, done: Callable[[], bool], limit: float, late: Callable[[], SimulatorError]) -> None:
@@ -264,9 +270,10 @@ class Simulator:
 
     def _on_clock(self, event: Event) -> None:
         if self._clock is not None and event["time"] < self._clock and self._waiting is None:
-            raise SimulatorLostError(
+            raise self._lost(
                 f"{self.setup.clock} went back from {self.clock:g} s to {seconds(event['time']):g} s during an "
-                "episode: something else reset the simulator."
+                "episode: something else reset the simulator.",
+                f"{self.setup.clock} went back",
             )
         self._clock = event["time"]
         if self._waiting is None:
@@ -298,15 +305,19 @@ class Simulator:
         )
 
     def _on_ended(self, event: Event) -> None:
-        early = not self._ready()
-        kind = SimulatorError if early else SimulatorLostError
-        when = "before it was ready" if early else f"at {self.clock:g} s of its time"
-        raise kind(
-            f"The simulator {self.setup.shown} ended with status {event['status']} {when}{self._words()}."
-        )
+        how = _ending(event["status"])
+        if not self._ready():
+            raise SimulatorError(
+                f"The simulator {self.setup.shown} {how} before it was ready{self._words()}."
+            )
+        text = f"The simulator {self.setup.shown} {how} at {self.clock:g} s of its time{self._words()}."
+        raise self._lost(text, f"it {how}")
 
     def _on_gone(self, _: Event) -> None:
-        raise SimulatorLostError(f"The process that keeps the simulator has ended{self._words()}.")
+        raise self._lost(
+            f"The process that keeps the simulator has ended{self._words()}.",
+            "the process that keeps it ended",
+        )
 
     def _unready(self) -> SimulatorError:
         missing = [one for one in self.setup.ready if one not in {*self._graph["subscribed"], *self._heard}]
@@ -318,19 +329,36 @@ class Simulator:
         )
 
     def _hung(self) -> SimulatorError:
-        return SimulatorLostError(
+        return self._lost(
             f"The simulator {self.setup.shown} hung at {self.clock:g} s of simulated time: nothing new came "
-            f"within {self.setup.patience:g} s{self._words()}."
+            f"within {self.setup.patience:g} s{self._words()}.",
+            "it hung",
         )
 
     def _unanswered(self, call: Call) -> SimulatorError:
-        return SimulatorLostError(
-            f"The simulator did not answer on {call.service} within {self.setup.patience:g} s{self._words()}."
+        return self._lost(
+            f"The simulator did not answer on {call.service} within {self.setup.patience:g} s{self._words()}.",
+            f"it did not answer on {call.service}",
         )
+
+    def _lost(self, text: str, why: str) -> SimulatorLostError:
+        """Return an error whose reason in brief contains the last line of the simulator's output."""
+        last = self._client.last_words().rpartition(" | ")[2]
+        return SimulatorLostError(text, f"{why} (last output: {last})" if last else why)
 
     def _words(self) -> str:
         words = self._client.last_words()
         return f"; its last output: {words}" if words else ""
+
+
+def _ending(status: int) -> str:
+    """Return how a process ended, by its exit status; a negative status is the number of a signal."""
+    if status >= 0:
+        return f"ended with status {status}"
+    try:
+        return f"was killed by {signal.Signals(-status).name}"
+    except ValueError:  # a real-time signal, which has no name
+        return f"was killed by signal {-status}"
 
 
 def _print(of: Setup, output: str, when: str = "") -> None:

@@ -88,6 +88,7 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
         "culprits": [_culprit(culprit) for culprit in comparison.culprits],
         "repair": _repair(repair) if repair else None,
         **({"formulas": [_formula(row) for row in comparison.formulas]} if comparison.formulas else {}),
+        **({"notes": list(comparison.notes)} if comparison.notes else {}),
         **({"sizes": _sizes(comparison)} if comparison.sizes else {}),
     }
 

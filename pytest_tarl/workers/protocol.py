@@ -81,6 +81,7 @@ def run_message(run: EpisodeRun) -> bytes:
         "simulator": run.simulator,
         "outputs": {topic: tuple(sums) for topic, sums in run.outputs.items()},
         "notes": run.notes,
+        "lost": run.lost,
         "older": [str(path) for path in run.older],
         "values": dict(run.values),
         "judged": run.judged,
@@ -103,7 +104,7 @@ def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
         parts=parts,
         thread=arrays.get("thread"),
     )
-    told = {name: head[name] for name in TOLD} | {"notes": tuple(head["notes"])}
+    told = {name: head[name] for name in TOLD} | {name: tuple(head[name]) for name in ("notes", "lost")}
     told["older"] = tuple(map(Path, head["older"]))
     told["judged"] = tuple(Judged(*one) for one in head["judged"])
     return EpisodeRun(plan=plan, trace=trace, **told)

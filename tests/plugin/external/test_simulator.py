@@ -88,7 +88,7 @@ def test_a_simulator_that_ends_early_is_reported(
 def test_the_error_for_a_simulator_that_ended_states_the_simulated_time(guardian: Guardian, ros: Ros) -> None:
     made = begun(SETUP, guardian, ros)
     guardian.events.put({"kind": "ended", "status": -9})
-    with pytest.raises(SimulatorLostError, match="ended with status -9 at 2 s of its time"):
+    with pytest.raises(SimulatorLostError, match="was killed by SIGKILL at 2 s of its time"):
         made.advance(1.0)
     made.end()
     assert [what for what, _ in guardian.done][-1] == "stop"
