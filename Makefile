@@ -63,7 +63,7 @@ ROS1_VENV ?= .venv-ros1
 ROS1_PACKAGES := python3-rospy python3-rosmaster python3-std-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-rosgraph-msgs python3-diagnostic-msgs
 ROS2_VENV ?= .venv-ros2
 ROS2_WHEELS := 'ros-rclpy[fastrtps]==9.1.2' ros-geometry-msgs==5.5.1 ros-nav-msgs==5.5.1 ros-sensor-msgs==5.5.1 ros-diagnostic-msgs==5.5.1 ros-std-srvs==5.5.1
-ROS_TOOLS := --editable ".[ros,report]" pymunk hypothesis pytest-xdist
+ROS_TOOLS := pymunk hypothesis pytest-xdist
 # Sockets that rospy leaves to the garbage collector are no failure of a test
 ROS_LEAVES := -W "ignore:Exception ignored in:pytest.PytestUnraisableExceptionWarning" \
 	-W "ignore:unclosed <socket:ResourceWarning"
@@ -85,13 +85,13 @@ $(ROS1_VENV)/.installed: pyproject.toml
 	@$(ROS1_PYTHON) -c 'import rospy, rosmaster, nav_msgs, diagnostic_msgs' || \
 		{ echo "$(ROS1_PYTHON) has no rospy; on Debian: apt-get install $(ROS1_PACKAGES)"; exit 1; }
 	@$(ROS1_PYTHON) -m venv --system-site-packages $(ROS1_VENV)
-	$(ROS1_VENV)/bin/python $(PIP_INSTALL) $(ROS_TOOLS)
+	$(ROS1_VENV)/bin/python $(PIP_INSTALL) --editable ".[ros,report]" $(ROS_TOOLS)
 	@touch $@
 
 $(ROS2_VENV)/.installed: pyproject.toml
 	@$(PYTHON) -m venv $(ROS2_VENV)
 	$(ROS2_VENV)/bin/python $(PIP_INSTALL) $(ROS2_WHEELS)
-	$(ROS2_VENV)/bin/python $(PIP_INSTALL) $(ROS_TOOLS)
+	$(ROS2_VENV)/bin/python $(PIP_INSTALL) --editable ".[mujoco,ros,report]" $(ROS_TOOLS)
 	@touch $@
 
 # Small faults sown into a package, ten in each of its packages: how many do the tests catch? Nightly

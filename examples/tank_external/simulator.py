@@ -27,15 +27,15 @@ class Tank(Node):
         self.create_subscription(Float64, "/valve", self.on_valve, 10)
         self.create_service(Trigger, "/step", self.on_step)
         self.create_timer(0.05, self.show)
-        self.level, self.inflow, self.steps = float(os.environ["START"]), 0.0, 1
+        self.level, self.inflow, self.steps = float(os.environ["START"]), None, 1
 
     def on_valve(self, message):
         """Keep the newest command."""
         self.inflow = message.data
 
     def show(self):
-        """Publish the initial state until the first step, so that whoever comes later has it, too."""
-        if self.steps == 1:
+        """Publish the initial state until the first command, so that whoever comes later has it, too."""
+        if self.inflow is None:
             self.publish()
 
     def publish(self):
@@ -47,7 +47,7 @@ class Tank(Node):
 
     def on_step(self, _, response):
         """Advance by DT."""
-        self.level += DT * float(os.environ["PUMP"]) * self.inflow
+        self.level += DT * float(os.environ["PUMP"]) * (self.inflow or 0.0)
         self.steps += 1
         self.publish()
         response.success = True

@@ -9,14 +9,23 @@ _LINK = (
     r"\n(?:During handling of the above exception, another exception occurred"
     r"|The above exception was the direct cause of the following exception):\n\n"
 )
-_INTERRUPTS = r"(?:[\w.]+\.)?(?:KeyboardInterrupt|ExternalShutdownException|ROSInterruptException)"
+_INTERRUPTS = (
+    r"(?:KeyboardInterrupt|ExternalShutdownException|ROSInterruptException|NotInitializedException)(?::.*)?"
+)
+# rclpy and rospy shut down in another thread on SIGINT; a program that uses them at that moment, or shuts them down
+# once more, gets one of these errors
+_SHUT_DOWN = (
+    r"\w+: .*(?:context is (?:not valid|invalid)|rcl_shutdown already called"
+    r"|Context must be initialized before it can be shutdown|destruction was requested|publish\(\) to a closed topic).*"
+)
 _INTERRUPTED = re.compile(
-    rf"^(?:{_FRAMES}[\w.]+(?::.*)?\n{_LINK})*{_FRAMES}{_INTERRUPTS}(?::.*)?(?:\n(?!{_LINK})|\Z)", re.MULTILINE
+    rf"^(?:{_FRAMES}[\w.]+(?::.*)?\n{_LINK})*{_FRAMES}(?:[\w.]+\.)?(?:{_INTERRUPTS}|{_SHUT_DOWN})(?:\n(?!{_LINK})|\Z)",
+    re.MULTILINE,
 )
 
 
 def without_interrupts(output: str) -> str:
-    """Remove each Python traceback whose last exception shows that the process was interrupted.
+    """Remove each Python traceback whose last exception shows that the process, or its ROS, was interrupted.
 
     Other tracebacks remain, even if an interrupt caused their exception or occurred while it was being handled.
     """

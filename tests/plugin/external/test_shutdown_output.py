@@ -33,6 +33,15 @@ INTERRUPTED = {
     + UP
     + "    time.sleep(600)\nexcept KeyboardInterrupt:\n    raise ExternalShutdownException() from None",
 }
+SHUT_DOWN = (  # of rclpy and rospy, as they are printed
+    "rclpy._rclpy_pybind11.RCLError: failed to initialize wait set: the given context is not valid, …",
+    "rclpy._rclpy_pybind11.RCLError: Failed to publish: publisher's context is invalid, at ./src/rcl/publisher.c:423",
+    "rclpy._rclpy_pybind11.RCLError: failed to shutdown: rcl_shutdown already called on the given context",
+    "RuntimeError: Context must be initialized before it can be shutdown",
+    "rclpy.exceptions.NotInitializedException: rclpy.init() has not been called. msg:cannot create node",
+    "rclpy._rclpy_pybind11.InvalidHandle: cannot use Destroyable because destruction was requested",
+    "rospy.exceptions.ROSException: publish() to a closed topic",
+)
 FAULTY = {
     "an error at the end": (
         "import time\ntry:\n    " + UP + "    time.sleep(600)\nfinally:\n    1 / 0",
@@ -64,6 +73,18 @@ def test_the_traceback_of_an_interrupt_is_left_out_of_the_output(kind: str) -> N
     assert "Traceback" in output
     assert without_interrupts(output) == ""
     assert without_interrupts(f"saved\n{output}done\n") == "saved\ndone\n"
+
+
+@pytest.mark.parametrize("last", SHUT_DOWN)
+def test_errors_of_a_ros_that_was_shut_down_are_left_out_of_the_output(last: str) -> None:
+    frames = (
+        'Traceback (most recent call last):\n  File "sim.py", line 1, in <module>\n    rclpy.spin(node)\n'
+    )
+    link = "\nDuring handling of the above exception, another exception occurred:\n\n"
+    for output in (f"{frames}{last}\n", f"{frames}KeyboardInterrupt\n{link}{frames}{last}\n"):
+        assert without_interrupts(f"saved\n{output}done\n") == "saved\ndone\n"
+    own = f"{frames}rclpy._rclpy_pybind11.RCLError: failed to create node\n"
+    assert without_interrupts(own) == own
 
 
 @pytest.mark.parametrize("kind", FAULTY)

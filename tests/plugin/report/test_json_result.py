@@ -59,7 +59,9 @@ def test_the_document_has_its_keys_in_the_documented_order(shuttle, tmp_path):
         "sites",
         "culprits",
         "repair",
+        "notes",
     ]
+    assert found["notes"] == list(shuttle.notes)
     assert found["format"] == 1
     assert found["episodes"] == EPISODES
     assert found["verdict"] == {
