@@ -16,10 +16,10 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.files import existing
 from pytest_tarl.ros.launch_sources import Given
 from pytest_tarl.ros.launched import WITH_TEXTS, parameters, python_files
-from pytest_tarl.ros.messages.workspace import on_forget, search, workspace_around
+from pytest_tarl.ros.messages.workspace import on_forget, prefer, search, workspace_around
 from tarl_lint.node_names import node_name
 from tarl_lint.workspace.conditions import exclusive
-from tarl_lint.workspace.folders import workspace_root
+from tarl_lint.workspace.folders import has_packages, workspace_root
 from tarl_lint.workspace.hidden_packages import problems as hidden
 from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file, unknown_argument
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
@@ -85,6 +85,10 @@ class LaunchPlan:
             for name in names:
                 self._check(argument, name)
         wanted = [one for one in self.nodes if only is None or named(one, (*only, *replaced))]
+        if only is not None and not wanted:
+            raise SettingsError(
+                f"tarl.launch: only=[] leaves no node of {self.file.name} to start: leave it out to start all."
+            )
         for one in wanted:
             if named(one, replaced):
                 continue
@@ -138,9 +142,15 @@ def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
     if path is not None and path.is_file():
         return path
     root = workspace_root(folder.resolve())
-    if root is None:
+    if root is None and has_packages(folder):
+        root = (
+            folder.resolve()
+        )  # the packages are beside the test, as in examples/workspace outside a repository
+        prefer(root)
+    elif root is None:
         raise SettingsError(f"{where}: {file}: no such file in {folder}, which is not in a ROS workspace.")
-    search(folder)
+    else:
+        search(folder)
     try:
         return launch_file(file, workspace_around(folder.resolve()) or Workspace(root), str(root))
     except NoLaunchFileError as problem:

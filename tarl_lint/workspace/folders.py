@@ -74,11 +74,11 @@ def workspace_root(path: Path) -> Path | None:
             return folder
     packages = [folder for folder in around if (folder / "package.xml").is_file()]
     if not packages:
-        return next((folder for folder in around if _has_packages(folder / "src")), None)
+        return next((folder for folder in around if has_packages(folder / "src")), None)
     above = packages[-1].parent
     return above if above != Path(above.anchor) else packages[-1]
 
 
-def _has_packages(folder: Path) -> bool:
+def has_packages(folder: Path) -> bool:
     """Return whether a folder contains packages, directly or in repositories."""
     return any(next(folder.glob(pattern), None) for pattern in ("*/package.xml", "*/*/package.xml"))

@@ -16,6 +16,7 @@ from pytest_tarl.errors import NodeError, SettingsError
 from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.ros import message_type
+from pytest_tarl.ros.launch_plan import launch_path
 from pytest_tarl.ros.launched import texts_replaced
 from pytest_tarl.ros.messages import workspace
 from tests.lint.test_system import MANIFEST
@@ -293,6 +294,7 @@ def test_edited_parameter_files_are_read_anew(tarl: Tarl, tmp_path: Path) -> Non
          r"Did you mean 'first'\? It starts /r1/first, /r1/second, /r1/laser\.")),
         ("robot.launch", {"replace": {"lidar": print}}, r"replace names 'lidar', but robot\.launch starts no such"),
         ("robot.launch", {"only": ["laser"]}, r"only names /r1/laser, which is not a Python node of the workspace \("),
+        ("robot.launch", {"only": []}, r"only=\[\] leaves no node of robot\.launch to start"),
         ("robot.launch", {"only": "first"}, r'only takes a list of node names, such as only=\["first"\]'),
         ("robot.launch", {"replace": {"laser": 5}}, "replace takes a function for each node, but laser has 5"),
         ("robot.launch", {"arguments": ["camera"]}, r"arguments takes a mapping, not \['camera'\]"),
@@ -320,6 +322,24 @@ def test_an_import_without_a_package_is_reported_in_one_sentence(tarl: Tarl, tmp
         NodeError, match=r"No package of the workspace .* installs nonesuch, and it is not installed"
     ):
         tarl.launch("lost.launch.xml")
+
+
+def test_a_launch_file_is_found_by_its_name_if_the_packages_are_beside_the_test(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    launch = '<launch><node pkg="bot" exec="relay"/></launch>'
+    write(
+        tmp_path,
+        {"bot/package.xml": MANIFEST.format("bot", "ament_python"), "bot/launch/go.launch.xml": launch},
+    )
+    for name in ("go.launch.xml", "bot/go.launch.xml"):
+        assert launch_path(name, tmp_path) == tmp_path / "bot" / "launch" / "go.launch.xml"
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(
+        SettingsError, match=r"go\.launch: no such file in .*, which is not in a ROS workspace"
+    ):
+        launch_path("go.launch", tmp_path / "empty")
 
 
 def test_a_marker_may_name_a_launch_file(tarl: Tarl, tmp_path: Path) -> None:
