@@ -104,7 +104,9 @@ def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
         parts=parts,
         thread=arrays.get("thread"),
     )
-    told = {name: head[name] for name in TOLD} | {name: tuple(head[name]) for name in ("notes", "lost")}
+    told = {name: head[name] for name in TOLD} | {
+        name: tuple(head.get(name, ())) for name in ("notes", "lost")
+    }
     told["older"] = tuple(map(Path, head["older"]))
     told["judged"] = tuple(Judged(*one) for one in head["judged"])
     return EpisodeRun(plan=plan, trace=trace, **told)
