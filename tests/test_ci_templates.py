@@ -117,6 +117,7 @@ def test_the_github_action_annotates_and_writes_sarif(project: Path) -> None:
 
 def launch_file(project: Path) -> None:
     """Make the project a package whose launch file has a remapping that matches nothing (TARL308)."""
+    (project / ".git").mkdir()  # without it, packages in the folders of other tests belong to the workspace
     (project / "package.xml").write_text(
         "<package><name>arm</name><export><build_type>catkin</build_type></export></package>"
     )

@@ -48,7 +48,8 @@ def _one_sided(system: System) -> Iterator[OneSided]:
         found: dict[str, list[tuple[str, str, bool]]] = {}
         for name, who, end in system.ends(role):
             if name not in offered and "$(" not in name:
-                found.setdefault(name, []).append((end.type, who.name, system.complete(end)))
+                certain = not any(system.able(end)) and not system.hides(end, name)
+                found.setdefault(name, []).append((end.type, who.name, certain))
         for name, uses in sorted(found.items()):
             yield OneSided(
                 name,
