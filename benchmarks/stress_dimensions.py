@@ -8,7 +8,7 @@
 
 The worlds of stress_worlds.py and stress_worlds_2.py are formulas; those of stress_worlds_3.py and stress_worlds_4.py
 are small simulations, written without knowledge of the search; so are those of stress_worlds_5.py to
-stress_worlds_13.py, whose drifts have units and whose nominal values are not always in the middle or at an end of the
+stress_worlds_14.py, whose drifts have units and whose nominal values are not always in the middle or at an end of the
 range. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the task,
 and three faults of the topic of its first numeric sensor (bias, latency, dropout), of the same relative size in every
 task. Each method may run BUDGET episodes. A peer receives a cost for each drift that it proposes. If the guarantee
@@ -58,6 +58,7 @@ from stress_worlds_10 import TENTH_MACHINES  # noqa: E402
 from stress_worlds_11 import ELEVENTH_MACHINES  # noqa: E402
 from stress_worlds_12 import TWELFTH_MACHINES, TWELFTH_QUIET  # noqa: E402
 from stress_worlds_13 import THIRTEENTH_MACHINES, THIRTEENTH_QUIET  # noqa: E402
+from stress_worlds_14 import FOURTEENTH_MACHINES  # noqa: E402
 
 from pytest_tarl import faults  # noqa: E402
 from pytest_tarl.designation import Designation  # noqa: E402
@@ -83,6 +84,7 @@ MACHINES = {
     **ELEVENTH_MACHINES,
     **TWELFTH_MACHINES,
     **THIRTEENTH_MACHINES,
+    **FOURTEENTH_MACHINES,
 }
 HARMLESS: Mapping[str, World | Machine] = {  # worlds in which no point of the space breaks the guarantee
     "harmless": harmless,
