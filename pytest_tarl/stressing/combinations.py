@@ -16,9 +16,10 @@ from pytest_tarl.stressing.boundary import COARSE, bisect
 from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, Evaluator
 from pytest_tarl.stressing.findings import APART, Curve, Failure, MarginMap, confirmed, contains, failure
 from pytest_tarl.stressing.guarantee import Part, recorded_mean
-from pytest_tarl.stressing.nearest import EXPECTED, LARGEST, ROUNDS, Nearest
+from pytest_tarl.stressing.nearest import AGAIN, EXPECTED, LARGEST, ROUNDS, Nearest
 from pytest_tarl.stressing.rate_tests import RateTests
 from pytest_tarl.stressing.rays import Ray, distance, joined
+from pytest_tarl.stressing.trimming import broken, trimmed
 
 # pairs of directions are tested at this share of the distance to each boundary, where each direction alone holds
 INSIDE = 0.9
@@ -30,6 +31,9 @@ CONFIRMED = 0.85
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 ALONE = 3  # number of rounds of the search with nominal options before other options are searched
 REFINED = 0.08  # share of the budget for the search that runs between the first two chains of tests
+TRIMMED = 0.1  # maximum share of the budget for moving single directions of a confirmed drift
+FURTHER = 6  # maximum number of searches, each followed by a chain, after the chains towards nominal
+EXPLORED = 0.06  # maximum share of the budget for each of these searches
 ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first chain that confirms a drift
 RECORDED = 0.05  # share of the whole risk for the bound of the recorded mean reward
 # shares of the whole risk for the first chains; each further chain gets half of the rest
@@ -185,6 +189,7 @@ class Combined:
 
     def __init__(self, evaluator: Evaluator, together: Together) -> None:
         self.evaluator, self.together = evaluator, together
+        self._trimmed: list[Point] = []  # confirmed drifts at a jump whose directions were moved
         risk = together.risk * _share(1)
         self.nearest = Nearest(evaluator, together.curves, risk=risk)
         self.options = [
@@ -207,10 +212,12 @@ class Combined:
             if not any(self._confirm(chains.FIRST) for _ in range(ATTEMPTS)):
                 self._test(chains.clear(self._leading))
         with self.evaluator.limited(CONFIRMED):
+            self._trim()
             with self.evaluator.limited(self.evaluator.spent / self.evaluator.budget + REFINED):
                 self._leading.refine()
             if not self._continue():
                 self._approach_confirmed()
+            self._search_on()
 
     def end(self) -> None:
         """Search for nearer failing drifts, test pairs, and confirm the results. Raise BudgetSpentError."""
@@ -236,7 +243,11 @@ class Combined:
             self.nearest.approach()
             return
         self.nearest.approach(ALONE)
-        for _ in range(ROUNDS):
+        self._explore(ROUNDS)
+
+    def _explore(self, rounds: int) -> None:
+        """Explore with nominal options, and with the others as long as they may be nearer. Raise BudgetSpentError."""
+        for _ in range(rounds):
             best = self._leading.best
             limit = LARGEST if best is None else self.nearest.distance(best)
             nearer = [
@@ -296,6 +307,42 @@ class Combined:
             if not self._run(chain, chains.part_of(self._leading, chain[:1])):
                 return
 
+    def _trim(self) -> None:
+        """Move single directions of the nearest confirmed drift to nominal if it is at a jump, and test the result.
+
+        It may not be at a jump if a chain is interrupted, because the next drift of the chain may fail, too. Raise
+        BudgetSpentError.
+        """
+        evaluator, known = self.evaluator, self.together.confirmed
+        if not known or self.together.interrupted is not None:
+            return
+        near = min(known, key=lambda one: (one.distance, one.names)).point
+        part = broken(near, evaluator, self._leading.model().shown)
+        if part is None or near in self._trimmed:
+            return
+        self._trimmed.append(near)
+        last = near
+        with evaluator.limited(evaluator.spent / evaluator.budget + TRIMMED):
+            for nearer in trimmed(near, evaluator, self.nearest.tried):
+                last = nearer
+        if last != near:
+            self._run([between(near, last), last], part)
+
+    def _search_on(self) -> None:
+        """Explore and test further chains in turn, while episodes are left. Raise BudgetSpentError.
+
+        The chains before end early if no nearer drift is expected to fail. Another region may have one.
+        """
+        evaluator = self.evaluator
+        for _ in range(FURTHER):
+            spent = evaluator.spent
+            self._trim()
+            with evaluator.limited(evaluator.spent / evaluator.budget + EXPLORED):
+                self._explore(AGAIN)
+            if evaluator.spent == spent:
+                return
+            self._confirm(chains.NEXT)
+
     def _test(self, chain: Sequence[Point]) -> bool:
         """Test a chain with further drifts on the ray through its near end. Raise BudgetSpentError."""
         leading = self._leading
@@ -310,6 +357,11 @@ class Combined:
         finally:
             for one in (self.nearest, *self.options):
                 one.tested = self.together.tested
+
+
+def between(one: Point, other: Point) -> Point:
+    """Return the point in the middle of two points with the same options."""
+    return {name: (number + other[name]) / 2 for name, number in one.items()}
 
 
 def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> None:

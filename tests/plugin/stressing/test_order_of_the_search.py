@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -355,6 +356,9 @@ class Leading:
     def expected(self, steps: Any) -> list[Point]:
         return [] if self.best is None else [self.best]
 
+    def model(self) -> Any:
+        return SimpleNamespace(shown=Shown(0.2, 0.15))
+
     def map(self) -> str:
         return "map"
 
@@ -479,6 +483,60 @@ def test_an_interrupted_chain_goes_on_if_its_next_drift_is_still_expected_to_fai
     with both.evaluator.limited(1.0):
         both.begin()
     assert happened[3:] == order  # after two first chains and one of clear failures
+
+
+def test_a_confirmed_drift_at_a_jump_is_moved_and_the_result_and_a_drift_halfway_are_tested_once(
+    leading: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    far, near = drift(a=0.9, b=0.9), drift(a=0.6, b=0.6)
+    moved, budgets, chains = [drift(a=0.6, b=0.4), drift(a=0.6, b=0.2)], list[int](), list[Any]()
+    both = made(CUBE)
+
+    def trimmed(point: Point, evaluator: Any, tried: list[Point]) -> Iterator[Point]:
+        assert point == near
+        assert tried is both.nearest.tried
+        budgets.append(evaluator.budget)
+        yield from moved
+        raise BudgetSpentError  # the drifts before are kept
+
+    monkeypatch.setattr(combinations, "trimmed", trimmed)
+    monkeypatch.setattr(combinations, "broken", lambda *_: "rate")
+    monkeypatch.setattr(Combined, "_run", lambda self, chain, part: chains.append((chain, part)))
+    both._trim()
+    assert chains == []  # nothing is confirmed
+    both.together.every += [failure(CUBE, far), failure(CUBE, near)]
+    both.together.interrupted = Chain([far], both.evaluator, "chain 0", 0.01, "loss")
+    both._trim()
+    assert chains == []  # the next drift of the interrupted chain may fail as well
+    both.together.interrupted = None
+    both._trim()
+    both._trim()
+    assert budgets == [100]  # of 1000 episodes
+    assert chains == [([drift(a=0.6, b=0.4), moved[-1]], "rate")]
+
+
+def test_chains_follow_further_searches_until_the_budget_is_spent(
+    leading: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    both = made(CUBE, budget=20)
+    budgets: list[int] = []
+    plans: list[Any] = []
+
+    def explore(rounds: int) -> None:
+        budgets.append(both.evaluator.budget)
+        both.evaluator.common(drift(a=0.1 * len(budgets)), most)
+
+    monkeypatch.setattr(combinations, "AGAIN", 1)
+    monkeypatch.setattr(combinations, "EXPLORED", 0.25)
+    monkeypatch.setattr(both.nearest, "explore", explore)
+    monkeypatch.setattr(Combined, "_confirm", lambda self, plan: plans.append(plan))
+    most = 4
+    both._search_on()
+    assert budgets == [5, 9, 13, 17, 20, 20]  # a quarter of 20 episodes each
+    assert plans == [NEXT] * 5  # the last search cannot run its episodes
+    both.evaluator.budget, most = 1000, 1
+    both._search_on()
+    assert plans == [NEXT] * 11  # at most six searches
 
 
 def test_the_end_of_a_search_improves_tests_pairs_and_confirms_from_far_to_near(
