@@ -113,7 +113,19 @@ class Combining:
                 rest.sort(key=lambda one: not search.gains.moves(one))
                 joining = search.joining({})
                 for joint, _ in held(Joint(((unit, factor),), guard), rest, joining):
+                    before = len(joining.settled.held)
                     yield from joining.candidates_of(joint)
+                    if len(joining.settled.held) > before:
+                        yield from self._instead(joint, rest)
+
+    def _instead(self, refused: Joint, rest: Sequence[Unit]) -> Iterator[Candidate]:
+        """Keep the constant that made a change sufficient, and try others in place of the change that it was added to.
+
+        The combination restores the drifted world but was refused, for example because the designed world gets worse.
+        """
+        unit, factor = refused.parts[-1]
+        others = [one for one in rest if not set(one.operands) & set(unit.operands)]
+        yield from unmasked(Joint(((unit, factor),), refused.guard), others, self.search.joining({}))
 
     def sharpened(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
         """Adjust the best unit under each guard in small steps, before it is combined with others."""

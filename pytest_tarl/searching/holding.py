@@ -14,43 +14,64 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.forward_selection import STEPS, ForwardSelection, Joint
 from pytest_tarl.searching.search import Pair
 from pytest_tarl.searching.units import NEAR, Unit
+from tarl_lint.model import Operand
 
 GAINED = 0.3  # minimum gain of the change that is held, as a share of the wanted gain
 SEEDS = 2  # minimum number of seeds on which it must have run: a gain on one seed may be luck
 EPISODES = 20  # maximum number of tries of other constants
+MOVED = 2  # maximum number of combinations that are moved further
 
 
 def held(base: Joint, rest: Sequence[Unit], selection: ForwardSelection) -> Iterator[tuple[Joint, Outcome]]:
     """Run the constants of `rest` under a change on the mission that it restores least; yield what earns more.
 
-    Each constant is increased, then decreased; the best one is then moved further. Nothing runs if the change gains too
+    Each constant is increased, then decreased; the best ones are then moved further, also if they earn about the same:
+    the best one with a large step need not be the best one with its right value. Nothing runs if the change gains too
     little on average, or if it restores all missions that it ran. Raise BudgetSpentError.
     """
     pair = _hardest(base, selection)
     if pair is None:
         return
     alone = selection.trials(base.candidate(selection.mutate), pair.seed)
-    best, most, begun = base, alone, selection.trials.spent
+    found, begun = list[tuple[Outcome, Joint]](), selection.trials.spent
     for factor in NEAR:
         for unit in rest:
             if selection.trials.spent - begun >= EPISODES:
                 break
             wider = base.with_part(unit, factor)
             outcome = _ran(wider, pair, selection)
-            if outcome is not None and outcome.total > most.total + selection.slack:
-                best, most = wider, outcome
+            if outcome is not None and outcome.total > alone.total + selection.slack:
+                found.append((outcome, wider))
                 if selection.goal.reached(outcome, pair.seed):
-                    yield best, most
-    if best == base or selection.goal.reached(most, pair.seed):
+                    yield wider, outcome
+    found.sort(key=lambda one: -one[0].total)
+    if not found or selection.goal.reached(found[0][0], pair.seed):
         return
-    (unit, factor), start = best.parts[-1], most
+    for outcome, wider in _apart(found)[:MOVED]:
+        yield _moved(wider, outcome, pair, selection)
+
+
+def _apart(found: Sequence[tuple[Outcome, Joint]]) -> list[tuple[Outcome, Joint]]:
+    """Return the combinations of which none adds a constant that an earlier one adds."""
+    kept: list[tuple[Outcome, Joint]] = []
+    taken: set[Operand] = set()
+    for outcome, joint in found:
+        added = joint.parts[-1][0].operands
+        if taken.isdisjoint(added):
+            kept.append((outcome, joint))
+        taken.update(added)
+    return kept
+
+
+def _moved(joint: Joint, outcome: Outcome, pair: Pair, selection: ForwardSelection) -> tuple[Joint, Outcome]:
+    """Move the last constant of a combination a little; return the better combination with its outcome."""
+    unit, factor = joint.parts[-1]
     for step in STEPS:
-        moved = best.with_part(unit, round(factor * step, 3))
-        outcome = _ran(moved, pair, selection)
-        if outcome is not None and outcome.total > start.total:
-            best, start = moved, outcome
-            break
-    yield best, start
+        moved = joint.with_part(unit, round(factor * step, 3))
+        other = _ran(moved, pair, selection)
+        if other is not None and other.total > outcome.total:
+            return moved, other
+    return joint, outcome
 
 
 def _hardest(base: Joint, selection: ForwardSelection) -> Pair | None:

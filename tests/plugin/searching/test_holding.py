@@ -59,6 +59,23 @@ def test_a_constant_that_helps_but_not_enough_is_moved_further() -> None:
     assert found == [({"GAIN": 2.2, "DAMPING": 3.3}, 6.6)]
 
 
+def test_constants_that_help_about_as_much_are_all_moved_further_best_first() -> None:
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        by = {one.operand: float(one.value) for one in candidate.mutations}
+        if seed == EASY:
+            return Outcome(10.0, True)
+        (other, value), *_ = [*((one, at) for one, at in by.items() if one != GAIN), (GAIN, 1.0)]
+        # `A` helps first, and a little less than DAMPING, whose best value lies inside its first step
+        helps = {
+            REST[0]: 5.0 if value > 2.0 else 2.0,
+            DAMPING: 9.5 if 0.5 < value < 0.9 else 5.2 if value < 0.5 else 2.0,
+        }
+        return Outcome(helps.get(other, 2.0), False)
+
+    found = [(factors(joint), one.total) for joint, one in held(BASE, OTHERS, selection(Trials(run, 300)))]
+    assert found == [({"GAIN": 2.2, "DAMPING": 0.6}, 9.5), ({"GAIN": 2.2, "A": 2.2}, 5.0)]
+
+
 @pytest.mark.parametrize(
     ("easy", "hard", "spent"),
     [
@@ -95,3 +112,18 @@ def test_the_sweep_holds_the_change_before_it_tries_larger_steps() -> None:
     found = next(Sweep((*REST, DAMPING, GAIN), mutations, (ALWAYS,), trials, GOAL).candidates())
     assert {one.operand for one in found.mutations} == {GAIN, DAMPING}
     assert trials.spent < 60
+
+
+def test_other_constants_replace_the_first_change_of_a_refused_combination() -> None:
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        by = {one.operand: float(one.value) for one in candidate.mutations}
+        if by.get(REST[0], 1.0) >= 1.4 and by.get(DAMPING, 1.0) >= 2.0:
+            return Outcome(10.0, True, steps=10)
+        return swings(candidate, seed)
+
+    sweep = Sweep((*REST, DAMPING, GAIN), mutations, (ALWAYS,), trials := Trials(run, 300), GOAL).candidates()
+    assert {one.operand for one in next(sweep).mutations} == {GAIN, DAMPING}
+    refused = trials.spent
+    found = next(one for one in sweep if GAIN not in {each.operand for each in one.mutations})
+    assert {one.operand for one in found.mutations} == {REST[0], DAMPING}
+    assert trials.spent - refused < 60
