@@ -22,10 +22,10 @@ from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.plainness import Oddness, writing
 from pytest_tarl.searching.polishing import ALMOST, EPISODES, FINE_STEPS, KNOWN
 from pytest_tarl.searching.preferring import Preferences
-from pytest_tarl.searching.refining import bracket
+from pytest_tarl.searching.refining import between_neighbours, bracket
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.twins import twin_of
-from pytest_tarl.searching.units import Scope, Unit, everywhere
+from pytest_tarl.searching.units import Scope, Unit, everywhere, runs_once
 from pytest_tarl.searching.uses import Uses
 from tarl_lint.model import Operand
 
@@ -40,6 +40,7 @@ EASY = 3  # maximum number of easy pairs; changes run on their seeds until one g
 # a gain below this share of the wanted gain is hollow if it comes from missions that fail sooner
 PARTLY = 0.3
 NARROW = 1.6  # maximum ratio of the values on both sides of a constant that is adjusted in small steps
+CLOSE = 1.21  # the same if these values earn nearly as much, so that the constant gets no larger steps
 LOST = 0.5  # a pair can be easy if its loss is at least this share of the wanted gain
 
 
@@ -173,6 +174,7 @@ class Attempts:
             self.uses.learn(unit, guard, factor, pair)
             yield candidate
             yield from self.preferences.after()
+            yield from self._later(unit, guard, factor, pair)
         elif near:
             yield from self._nearly(unit, candidate, factor, pair)
             yield from self._following(unit, candidate, factor, pair)
@@ -180,11 +182,26 @@ class Attempts:
         if holds or (near and self.trials.loses(candidate)):
             self.refused.add((unit, guard))
 
+    def _later(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        """Change a value where it is used if its change where it is defined was refused.
+
+        A module runs its tables before any sensor has a value, so that no condition can be written there.
+        """
+        if self.proposed or not runs_once(unit):
+            return
+        for other in self.gains.acting_alike(unit, guard, self.units):
+            if not runs_once(other):
+                candidate = self.holding(other, factor, guard, pair)
+                if candidate is not None:
+                    yield candidate
+                    return
+
     def _nearly(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
         """Adjust the value of a change that passes its missions and earns nearly enough, before others are tried.
 
         Such a change is of the right kind, and only its value is not exact. A constant is adjusted in such small steps
-        only between two close values that earn much less; otherwise the larger steps of `adjusting` reach farther.
+        only between two close values that earn much less, or so close to its neighbours that `adjusting` does not try
+        any value between them; otherwise the larger steps of `adjusting` reach farther.
         """
         goal, key = self.goal, (unit, candidate.guard)
         ran, totals = self.trials.ran(candidate, goal.pairs), self.trials.totals_of(candidate, goal.pairs)
@@ -192,7 +209,8 @@ class Attempts:
             return
         tried = self.gains.of(unit, candidate.guard)
         peak = max(tried, key=tried.__getitem__)
-        if not self.proposed and not (peak == factor and 1.0 < bracket(tried) <= NARROW):
+        narrow = 1.0 < bracket(tried) <= NARROW or 1.0 < between_neighbours(tried) <= CLOSE
+        if not self.proposed and not (peak == factor and narrow):
             return
         if not self.proposed and writing(unit.operands[0]) is Oddness.OFFSET:
             return  # an offset on a literal zero is hardly ever the repair that a maintainer would write

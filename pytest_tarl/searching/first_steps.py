@@ -16,7 +16,7 @@ from pytest_tarl.searching.forward_selection import Joint
 from pytest_tarl.searching.further_on import Entered, further_on
 from pytest_tarl.searching.laws import Proportional, laws
 from pytest_tarl.searching.limits_in_turn import LimitsInTurn, Reached
-from pytest_tarl.searching.plainness import named
+from pytest_tarl.searching.plainness import Oddness, kind, named
 from pytest_tarl.searching.refining import FURTHER
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.twins import assigned_alone
@@ -30,8 +30,9 @@ LEADING = 3  # number of best units that are tried with larger steps before the 
 HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
-# steps for named constants that clearly lose with each of the steps before: their good values are close to the old one
+# steps for constants that clearly lose with each of the steps before: their good values are close to the old one
 SENSITIVE = ((1.1, 0.91), (1.05, 0.95), (1.025, 0.975))
+FEW = 3  # maximum number of constants without a name that get `SENSITIVE` steps
 # if a change gains at least this share of the wanted gain, other constants get no `FINER` steps
 HALF = 0.5
 LONGEST = 2  # maximum number of changes that made missions last longer under which limits are relaxed
@@ -266,7 +267,7 @@ class FirstSteps:
         still = [] if promising else gains.lost_both_ways(guard, lost, BETWEEN)
         for factor in FINER if still else ():
             yield from tries.sweep(factor, guard, still)
-        before, sensitive = FINER, named(still)
+        before, sensitive = FINER, self._few(guard, still)
         for steps in SENSITIVE if not tries.proposed else ():
             sensitive = gains.clearly_lost(guard, sensitive, before)
             if not sensitive or gains.anything(HALF * tries.goal.wanted):
@@ -274,3 +275,10 @@ class FirstSteps:
             for factor in steps:
                 yield from tries.sweep(factor, guard, sensitive)
             before = steps
+
+    def _few(self, guard: Guard, among: Sequence[Unit]) -> list[Unit]:
+        """Return the named constants, or else the few others that clearly lose with all steps so far."""
+        lost = self.attempts.gains.clearly_lost(guard, among, FINER)
+        lost = [unit for unit in lost if unit.chart is None and kind(unit) < Oddness.OFFSET]
+        others = named(lost) or lost
+        return others if others == named(lost) or len(others) <= FEW else []

@@ -11,6 +11,8 @@ from tarl_lint.model import SiteId
 
 SEEN = 6  # minimum number of units that must have been tried under a guard to call it idle
 IDLE = 0.25  # a guard is idle if at most this share of the units tried under it changed an episode
+# minimum number of factors that clearly changed the reward by the same amount for two units to act alike
+ALIKE = 3
 
 Key = tuple[Unit, Guard]
 Part = tuple[Unit, float]  # a unit, and the factor by which it is changed
@@ -145,6 +147,19 @@ class Gains:
             if factor != 1.0 and factor in gains
         ]
         return len(pairs) >= len(NEAR) and all(gain == its for its, gain in pairs)
+
+    def acting_alike(self, unit: Unit, guard: Guard, among: Sequence[Unit]) -> list[Unit]:
+        """Return the other units that had the same effects under a guard with at least `ALIKE` factors."""
+        mine = self.of(unit, guard)
+        found = []
+        for other in among if self.moves(unit) else ():
+            its = self.of(other, guard)
+            both = [factor for factor in mine if factor != 1.0 and factor in its]
+            same = sum(mine[one] == its[one] and abs(mine[one]) > self.slack for one in both)
+            apart = any(abs(mine[one] - its[one]) > self.slack for one in both)  # steps may be rounded
+            if other != unit and same >= ALIKE and not apart:
+                found.append(other)
+        return found
 
     def lost_both_ways(self, guard: Guard, among: Sequence[Unit], factors: Sequence[float]) -> list[Unit]:
         """Return the units that lost more than `slack` with each of these factors.

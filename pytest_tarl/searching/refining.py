@@ -22,14 +22,28 @@ SHARP = 0.5  # a peak is sharp if both neighbouring factors gain at most this sh
 
 def bracket(by_factor: Mapping[float, float]) -> float:
     """Return the ratio of the factors on both sides of a sharp peak (see `SHARP`), or 1 if there is none."""
+    beside = _beside_peak(by_factor)
+    if beside is None:
+        return 1.0
+    below, above = beside
+    sharp = max(by_factor[below], by_factor[above]) <= SHARP * max(by_factor.values())
+    return above / below if sharp else 1.0
+
+
+def between_neighbours(by_factor: Mapping[float, float]) -> float:
+    """Return the ratio of the factors on both sides of the best one, or 1 if it has none on one side or no gain."""
+    beside = _beside_peak(by_factor)
+    return beside[1] / beside[0] if beside is not None else 1.0
+
+
+def _beside_peak(by_factor: Mapping[float, float]) -> tuple[float, float] | None:
+    """Return the factors on both sides of the best one, or None if it has none on one side or gains nothing."""
     factor = max(by_factor, key=by_factor.__getitem__)
     ordered = sorted(one for one in by_factor if one > 0.0)
     if factor not in ordered[1:-1] or by_factor[factor] <= 0.0:
-        return 1.0
+        return None
     place = ordered.index(factor)
-    below, above = ordered[place - 1], ordered[place + 1]
-    sharp = max(by_factor[below], by_factor[above]) <= SHARP * by_factor[factor]
-    return above / below if sharp else 1.0
+    return ordered[place - 1], ordered[place + 1]
 
 
 def amid(by_factor: Mapping[float, float], slack: float) -> list[float]:

@@ -15,6 +15,7 @@ from tarl_lint.model import Operand
 NEAR = (2.2, 0.4)  # the first factors to try on every unit
 # if one use gains at least this share of the gain of all uses together, it is credited with all of it
 ENOUGH = 0.9
+SET_UP = ("", "__init__")  # names of code that runs once, before any message: a module and a constructor
 
 Scope = Callable[[Operand], str]
 
@@ -118,6 +119,11 @@ def _same_constant(unit: Unit, other: Unit, scope: Scope) -> bool:
         return False
     here = one.span.path == two.span.path and unit.chart == other.chart
     return here and one.code == two.code and one.definition == two.definition and scope(one) == scope(two)
+
+
+def runs_once(unit: Unit) -> bool:
+    """Return whether a unit is changed only in statements that a module or a constructor runs once."""
+    return all(one.site.qualname.rpartition(".")[2] in SET_UP for one in unit.operands)
 
 
 def best_effects(

@@ -461,3 +461,22 @@ def test_a_hollow_gain_may_be_refined_but_is_no_progress() -> None:
     assert not found.anything()
     found.enter((A, ALWAYS), 0.4, 2.0, True)  # a further seed showed progress
     assert found.best() == 2.0
+
+
+@pytest.mark.parametrize(
+    ("its", "alike"),
+    [
+        ({2.2: 4.0, 0.4: -3.0, 5.0: 5.0}, True),
+        ({2.2: 4.0, 0.4: -3.0, 5.0: 5.0, 1.5: 0.2}, True),  # a factor that only the other one was tried with
+        ({2.2: 4.0, 0.4: -3.0}, False),  # too few
+        ({2.2: 4.0, 0.4: -3.0, 5.0: 4.0}, False),
+        ({}, False),
+    ],
+)
+def test_units_act_alike_if_several_factors_change_the_reward_by_the_same_amount(
+    its: dict[float, float], alike: bool
+) -> None:
+    found, other = gains(), Unit((constant(9, "D"),))
+    for factor, gain in its.items():
+        found.enter((other, ALWAYS), factor, gain)
+    assert found.acting_alike(A, ALWAYS, [A, B, C, other]) == ([other] if alike else [])

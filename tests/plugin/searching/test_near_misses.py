@@ -72,6 +72,7 @@ def test_a_unit_is_adjusted_once() -> None:
         ({1.9: 0.0, 2.6: 0.0}, True),
         ({1.9: 0.0, 5.0: 0.0}, False),  # larger steps reach the values up to 5
         ({1.9: 0.0, 2.6: 13.0}, False),  # 2.6 is about as good
+        ({2.1: 13.0, 2.3: 13.0}, True),  # no other step lies between these
     ],
 )
 def test_a_constant_is_adjusted_only_between_two_close_values_that_earn_less(

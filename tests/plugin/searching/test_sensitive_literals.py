@@ -1,0 +1,61 @@
+"""Constants without a name whose good values are close to the old one, and tables that are read before any message."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.first_steps import FEW
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.sweep import Sweep
+from pytest_tarl.searching.units import Unit, runs_once
+from tarl_lint.model import Operand
+from tests.plugin.searching.test_search import operand
+
+GOAL = Goal(tuple(Pair(seed, 0.0) for seed in range(8)), near=9.0, enough=9.5, online=0.0, passing=True)
+NARROW = operand(3, "1.05", 1.05)
+OTHERS = tuple(operand(4 + n, f"{n}.5", n + 0.5) for n in range(6))
+
+
+def factor(candidate: Candidate, of: Operand) -> float:
+    return next(
+        (float(one.value) / float(of.value or 1) for one in candidate.mutations if one.operand == of), 1.0
+    )
+
+
+@pytest.mark.parametrize(("rivals", "early"), [(0, True), (FEW - 1, True), (FEW, False)])
+def test_a_few_literals_that_lose_with_all_other_steps_get_small_ones(rivals: int, early: bool) -> None:
+    sensitive = OTHERS[:rivals]
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        off = abs(factor(candidate, NARROW) - 1.07) / 0.07
+        lost = 3.0 * sum(factor(candidate, one) != 1.0 for one in sensitive)
+        total = (10.0 - off**2 / 10.0 if off < 0.7 else -2.0 * off if off > 1.001 else 0.0) - lost
+        return Outcome(total, total > 8.0)
+
+    trials = Trials(run, 300)
+    found = next(Sweep((NARROW, *OTHERS), mutations, (ALWAYS,), trials, GOAL).candidates())
+    assert [one.operand for one in found.mutations] == [NARROW]
+    assert (trials.spent < 45) is early
+
+
+def test_a_value_of_a_table_is_changed_where_it_is_used_if_the_change_of_the_table_is_refused() -> None:
+    table = replace(NARROW, site=replace(NARROW.site, qualname=""))
+    use = replace(operand(9, "factor", 1.0), value=None, definition=None)
+    assert [runs_once(Unit((one,))) for one in (table, use)] == [True, False]
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        by = factor(candidate, table) * next(
+            (float(one.value) for one in candidate.mutations if one.operand == use), 1.0
+        )
+        good = 2.0 < by < 2.5
+        return Outcome(10.0 if good else -5.0 * abs(by - 2.2), good)
+
+    trials = Trials(run, 300)
+    found = Sweep((table, use), mutations, (ALWAYS,), trials, GOAL).candidates()
+    assert [[one.operand for one in next(found).mutations] for _ in range(2)] == [[table], [use]]
+    assert trials.spent < 30
