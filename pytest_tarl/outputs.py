@@ -12,14 +12,17 @@ from pytest_tarl.instrumentation.magnitude import magnitude
 
 
 class Outputs:
-    """Sum the sizes of all messages by topic: plainly, and weighted by their number, which tells their order."""
+    """Sum the sizes of all messages by topic: plainly, and weighted by their number, which tells their order.
+
+    The third number is the largest size.
+    """
 
     def __init__(self) -> None:
-        self.sums: dict[str, tuple[float, float]] = {}
+        self.sums: dict[str, tuple[float, float, float]] = {}
         self._count = 0
 
     def __call__(self, topic: str, message: Any) -> None:
         """Add a message."""
         self._count += 1
-        size, (plain, weighted) = magnitude(message), self.sums.get(topic, (0.0, 0.0))
-        self.sums[topic] = (plain + size, weighted + size * self._count)
+        size, (plain, weighted, most) = magnitude(message), self.sums.get(topic, (0.0, 0.0, 0.0))
+        self.sums[topic] = (plain + size, weighted + size * self._count, max(most, size))

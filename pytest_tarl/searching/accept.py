@@ -39,8 +39,9 @@ SHARE = 2 / 3
 class Outcome:
     """The outcome of an episode: total reward, whether the test passed, formula verdicts, steps, rewards by step.
 
-    `outputs` holds sums over the messages that the nodes published, by topic; empty if unknown. `failure` says why the
-    test failed, without the numbers of this mission; it is empty if that is unknown.
+    `outputs` holds two sums over the messages that the nodes published and the largest message, by topic; it is empty
+    if they are unknown. `failure` says why the test failed, without the numbers of this mission; it is empty if that
+    is unknown.
     """
 
     total: float

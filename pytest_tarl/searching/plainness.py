@@ -8,10 +8,13 @@ from math import inf, isclose, isfinite, pi
 
 from pytest_tarl.model import Guard
 from pytest_tarl.name_words import words
+from pytest_tarl.patching.charts import step_to
 from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
+INSTEAD = 3  # maximum number of other constants that may take over an offset
 UNTRIED = 2  # maximum number of untried named constants to try in place of a changed literal
 # values of the acceleration of gravity in programs, in m/s²
 GRAVITY = (9.8, 9.81, 9.82, 9.807, 9.8066, 9.80665)
@@ -61,6 +64,46 @@ def plainer(
     if odd < Oddness.VARIABLE:
         others = others[:UNTRIED]
     return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *others]
+
+
+def instead_of_offset(found: Candidate, units: Sequence[Unit]) -> list[tuple[Unit, float]]:
+    """Return other constants of the statement in which a candidate adds an offset, moved by as much, either way.
+
+    `x + 0.2 > LIMIT` means the same as `x > LIMIT - 0.2`, and an offset belongs into a named zero if there is one.
+    Named zeros come first, then other named constants.
+    """
+    if len(found.mutations) != 1:
+        return []
+    (mutation,) = found.mutations
+    operand, value = mutation.operand, mutation.value
+    if operand.value != 0 or mutation.form is not None or isinstance(value, bool):
+        return []
+    others = [one for one in units if one.chart is None or one.operands[0].value == 0]
+    others = [
+        one for one in others if one.operands[0].site == operand.site and _may_take(one.operands[0], operand)
+    ]
+    others.sort(key=lambda one: (one.operands[0].literal, one.operands[0].value != 0))
+    return [
+        (unit, step)
+        for unit in others[:INSTEAD]
+        for by in (value, -value)
+        if (step := _moved_by(unit, float(by))) is not None
+    ]
+
+
+def _may_take(other: Operand, operand: Operand) -> bool:
+    """Return whether a constant may take over the offset of another one: a number that is no other literal zero."""
+    numeric = other.value is not None and not isinstance(other.value, bool)
+    return other != operand and numeric and not (other.literal and other.value == 0)
+
+
+def _moved_by(unit: Unit, offset: float) -> float | None:
+    """Return the step that adds an offset to the constant of a unit, or None if that changes its sign."""
+    value = float(unit.operands[0].value or 0.0)
+    if value == 0.0:
+        return step_to(offset if unit.chart is None else offset / unit.chart.size)
+    factor = (value + offset) / value
+    return factor if factor > 0.0 else None
 
 
 def named(units: Iterable[Unit]) -> list[Unit]:

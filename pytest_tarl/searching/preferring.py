@@ -21,7 +21,7 @@ from pytest_tarl.searching.forward_selection import Joint
 from pytest_tarl.searching.gains import Part
 from pytest_tarl.searching.gentler import another_way, gentler
 from pytest_tarl.searching.moderate import MODERATE, extreme, moderate
-from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer
+from pytest_tarl.searching.plainness import Oddness, instead_of_offset, kind, named, oddness, plainer
 from pytest_tarl.searching.preference_search import Search
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING
 from pytest_tarl.searching.search import Candidate
@@ -52,6 +52,7 @@ class Preferences:
         self.search = search
         self._compared: set[tuple[str, str]] = set()  # functions whose constants were compared
         self._moderated = False  # whether moderate changes were already tried before an extreme one
+        self._exceeded = False  # whether other constants were already tried before unusual commands
         self._reduced = False  # whether smaller changes of other constants were already tried
         self._replaced: set[Unit] = set()  # units that were already compared with milder changes
         # confirmed changes that are set aside because another candidate is preferred; they follow if that candidate
@@ -67,6 +68,7 @@ class Preferences:
             unit, factor, found = nearer
         if holds:
             yield from self._moderate(found, unit, factor, pair)
+            yield from self._usual(found, unit, factor, pair)
             yield from self._plainer(found, unit, pair)
             yield from self._called(found, unit, factor)
         if holds or (near and oddness(found.mutations) is Oddness.NATURE):
@@ -102,6 +104,35 @@ class Preferences:
                 return
             yield from self.search.attempt(other, found.guard, step, pair)
 
+    def _usual(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
+        """If a change exceeds the usual commands, first try the same step on other constants, once.
+
+        A simulator may obey a command that no motor or heater can follow.
+        """
+        search = self.search
+        if search.proposed or self._exceeded or not self._exceeds(found, pair):
+            return
+        self._exceeded, begun = True, search.trials.spent
+        others = sorted(
+            (one for one in search.gains.moving(search.units) if kind(one) < Oddness.OFFSET), key=kind
+        )
+        for other in others:
+            if search.trials.spent - begun >= PLAINER:
+                return
+            if set(other.operands) & set(unit.operands):
+                continue
+            candidate = search.holding(other, factor, found.guard, pair)
+            if candidate is not None and not self._exceeds(candidate, pair):
+                yield candidate
+                search.refused.add((other, found.guard))
+
+    def _exceeds(self, candidate: Candidate, pair: int) -> bool:
+        """Return whether a candidate that ran publishes larger commands than a designed mission; False if unknown."""
+        try:
+            return self.search.trials.exceeds(candidate, self.search.goal.pairs[pair].seed)
+        except RepairError:
+            return False
+
     def _hardest(self, pair: int) -> int:
         """Return the index of the pair on whose seed most candidates fell short, by default `pair`.
 
@@ -127,9 +158,11 @@ class Preferences:
         """Spend a few episodes on changes that a maintainer would prefer to the candidate found.
 
         If the candidate changes a literal, named constants also get larger steps, because small steps may have no
-        effect.
+        effect. An offset first moves the other constants of its statement by as much.
         """
         odd, guard, begun = oddness(found.mutations), found.guard, self.search.trials.spent
+        for other, factor in instead_of_offset(found, self.search.units) if odd is Oddness.OFFSET else ():
+            yield from self.search.attempt(other, guard, factor, pair)
         # If the candidate is an offset, also refine units that were refused before.
         before = set(self.search.refused if odd is Oddness.OFFSET else ())
         others = [one for one in self.search.units if one != unit]

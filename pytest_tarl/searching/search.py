@@ -26,6 +26,7 @@ Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 # factors for a constant, in the order in which they are tried
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)
 FAR = 0.6  # minimum gain of a candidate that releases the reserve of episodes, as a share of the wanted gain
+USUAL = 1.5  # maximum ratio of the largest published message to the designed one that counts as usual
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
 # A mission is compared with the designed one of its seed if it lacks at most this share of what separates the drifted
 # missions from `near`.
@@ -187,6 +188,18 @@ class Trials:
         designed = [self._as_designed(seed, design) for seed in seeds]
         return fmean(deviation(one.rewards, other.rewards) for one, other in zip(ran, designed, strict=True))
 
+    def exceeds(self, candidate: Candidate, seed: int) -> bool:
+        """Return whether a candidate publishes larger messages than the designed mission of a seed, by `USUAL`.
+
+        Return False if that is unknown. A designed mission that runs is charged to the budget once. Raise
+        BudgetSpentError and RepairError.
+        """
+        found, design = self(candidate, seed).outputs, self.design
+        if design is None or not found:
+            return False
+        usual = {topic: largest for topic, (_, _, largest) in self._as_designed(seed, design).outputs}
+        return any(largest > USUAL * usual[topic] > 0.0 for topic, (_, _, largest) in found if topic in usual)
+
     def lost(self, candidate: Candidate, seeds: Sequence[int]) -> float | None:
         """Return by how much a candidate earns less than the designed missions of the same seeds, on average.
 
@@ -278,6 +291,14 @@ class Trials:
             for (one, seed), run in self._known.items()
             if one.guard == guard and one.changes == changes
         }
+
+    def alike(self, candidate: Candidate) -> dict[Candidate, dict[int, Outcome]]:
+        """Return the outcomes, by seed, of all candidates that change the same constants under the same guard."""
+        mine, found = {one.operand for one in candidate.mutations}, dict[Candidate, dict[int, Outcome]]()
+        for (other, seed), outcome in self._known.items():
+            if other.guard == candidate.guard and {one.operand for one in other.mutations} == mine:
+                found.setdefault(other, {})[seed] = outcome
+        return found
 
     def fell_short(self, candidate: Candidate, pairs: Iterable[Pair]) -> None:
         """Store a candidate that was near the goal on every seed but earned too little on average."""

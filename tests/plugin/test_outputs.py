@@ -12,7 +12,7 @@ class Number:
     data: float
 
 
-def sums(*messages: tuple[str, float]) -> dict[str, tuple[float, float]]:
+def sums(*messages: tuple[str, float]) -> dict[str, tuple[float, float, float]]:
     found = Outputs()
     for topic, value in messages:
         found(topic, Number(value))
@@ -20,6 +20,6 @@ def sums(*messages: tuple[str, float]) -> dict[str, tuple[float, float]]:
 
 
 def test_the_checksum_of_outputs_depends_on_values_and_topics_and_order() -> None:
-    assert sums(("/a", 2.0), ("/b", 3.0), ("/a", 1.0)) == {"/a": (3.0, 5.0), "/b": (3.0, 6.0)}
+    assert sums(("/a", 2.0), ("/b", 3.0), ("/a", 1.0)) == {"/a": (3.0, 5.0, 2.0), "/b": (3.0, 6.0, 3.0)}
     assert sums(("/a", 1.0), ("/b", 3.0), ("/a", 2.0)) != sums(("/a", 2.0), ("/b", 3.0), ("/a", 1.0))
     assert sums() == {}

@@ -12,12 +12,15 @@ from hypothesis import strategies as st
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.charts import SHARE, offset
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.attempts import Attempts
 from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.plainness import Oddness, edges, is_sign, oddness, writing
+from pytest_tarl.searching.plainness import Oddness, edges, instead_of_offset, is_sign, oddness, writing
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
+from pytest_tarl.searching.units import Unit
 from pytest_tarl.sensors import Sensor
 from tarl_lint.model import Operand
 from tests.plugin.searching.test_search import operand
@@ -166,3 +169,57 @@ def test_named_constants_are_tried_before_literals_and_zeros_last() -> None:
     flag = operand(8, "False", False)
     ordered = sorted([OFFSET, INNER, named_zero, flag, NAMED, unknown], key=writing)
     assert ordered == [NAMED, INNER, named_zero, flag, unknown, OFFSET]
+
+
+def beside(code: str, value: float, name: str = "") -> Unit:
+    """Return a constant of the statement that contains OFFSET; with a `name`, a named one."""
+    made = replace(operand(3, code, value), site=OFFSET.site)
+    return Unit((replace(made, code=name, definition=operand(1, code, value).span) if name else made,))
+
+
+LIMIT, TRIM, FACTOR = beside("24.0", 24.0), beside("0.0", 0.0, "TRIM"), beside("3.0", 3.0, "FACTOR")
+CHARTED = Unit(TRIM.operands, offset(0.5))
+
+
+@pytest.mark.parametrize(
+    ("units", "expected"),
+    [
+        ((LIMIT,), [(LIMIT, 1.5), (LIMIT, 0.5)]),
+        ((LIMIT, FACTOR, TRIM), [(TRIM, 13.0), (TRIM, 1 / 13), (FACTOR, 5.0), (LIMIT, 1.5), (LIMIT, 0.5)]),
+        ((CHARTED,), [(CHARTED, 25.0), (CHARTED, 1 / 25)]),
+        ((Unit((OFFSET,)), beside("0", 0), Unit((INNER,)), beside("True", True)), []),
+        ((Unit(LIMIT.operands, SHARE),), []),
+    ],
+)
+def test_an_offset_moves_other_constants_of_its_statement_named_zeros_first(
+    units: tuple[Unit, ...], expected: list[tuple[Unit, float]]
+) -> None:
+    found = instead_of_offset(Candidate((Mutation(OFFSET, 12.0),), ALWAYS), units)
+    assert [unit for unit, _ in found] == [unit for unit, _ in expected]
+    assert [step for _, step in found] == pytest.approx([step for _, step in expected])
+
+
+def test_only_a_single_offset_is_moved_to_other_constants() -> None:
+    both = Candidate((Mutation(OFFSET, 12.0), Mutation(INNER, 5.0)), ALWAYS)
+    assert instead_of_offset(both, [LIMIT]) == []
+    assert instead_of_offset(Candidate((Mutation(INNER, 5.0),), ALWAYS), [LIMIT]) == []
+
+
+def test_a_threshold_moves_by_the_offset_that_has_the_same_effect() -> None:
+    limit, since = (
+        operand(3, "24.0", 24.0),
+        replace(operand(3, "since", 0.0), definition=operand(1, "0.0", 0.0).span),
+    )
+    units = replace(limit, site=since.site), since
+
+    def run(candidate: Candidate, _: int) -> Outcome:
+        by = {one.operand: float(one.value) for one in candidate.mutations}
+        least = by.get(units[0], 24.0) + by.get(since, 0.0)
+        return Outcome(10.0 if 28.0 < least < 40.0 else 0.0, 28.0 < least < 40.0, steps=round(least))
+
+    goal = Goal(
+        tuple(Pair(seed, 0.0, 24) for seed in range(8)), near=9.0, enough=9.5, online=0.0, passing=True
+    )
+    attempts = Attempts((Unit((units[0],)), Unit((since,))), mutations, (ALWAYS,), Trials(run, 100), goal)
+    found = next(attempts.attempt(Unit((since,)), ALWAYS, 12.6, 0))
+    assert [one.operand for one in found.mutations] == [units[0]]
