@@ -11,7 +11,8 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import STRONG, WEAK, further
 from pytest_tarl.repairing.centring import centred
-from pytest_tarl.repairing.known_missions import firing, known_to_fail
+from pytest_tarl.repairing.good_range import GoodRange
+from pytest_tarl.repairing.known_missions import firing, harms_again, known_to_fail
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.missed import Missed
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
@@ -61,6 +62,7 @@ class Examiner:
         self.waiting: list[Candidate] = []
         self._missed = Missed()
         self.others = Others(mutants, self.ledger, self._missed)
+        self.good_range = GoodRange(mutants.mutate)
         self.tested = 0
         self._ran = 0  # number of episodes run in the current test
         self.turns = 1  # number of searches so far; each may spend `MOST` tests
@@ -176,6 +178,8 @@ class Examiner:
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
         """Examine a candidate on known seeds, then on fresh seeds, unless a similar candidate was examined before."""
         chosen = candidate in self.others.chosen
+        if self._harms_again(candidate, trials):
+            return self.ledger.enter(Tried(candidate, WORSE, ()))
         value = candidate if chosen else self._centred(candidate, trials)
         if isinstance(value, Tried):
             return value
@@ -206,6 +210,17 @@ class Examiner:
                 return examined
         return self._on_fresh_seeds(candidate)
 
+    def _harms_again(self, candidate: Candidate, trials: Trials) -> bool:
+        """Return whether one designed mission shows that a candidate that reaches the goal does harm."""
+        goal, missed = self.order.goal, self._missed
+        if operands(candidate) not in missed.harmed or self._known(candidate) is not None:
+            return False
+        try:
+            reached = trials.reaches(candidate, goal.pairs[0].seed, goal)
+            return reached and harms_again(self.mutants, candidate, trials, missed)
+        except RepairError:
+            return False
+
     def _centred(self, candidate: Candidate, trials: Trials) -> Candidate | Tried:
         """Return the best candidate with a value nearby, or a known result that makes an examination unnecessary."""
         known = self._known(candidate)
@@ -218,7 +233,10 @@ class Examiner:
             return self.ledger.enter(Tried(candidate, same.reason, ()))
         if self._missed.again(candidate, trials, self.order.goal):
             return candidate  # no neighbour is worth its missions before those that rejected values lost
-        better = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
+        goal, reference = self.order.goal, self.order.reference
+        better = self.good_range.amid(candidate, trials, goal, reference)
+        if better == candidate:
+            better = centred(candidate, trials, self.mutants.mutate, goal, reference)
         # if the centred value was examined before, examine the value that was not centred
         return candidate if self.ledger.alike(better) else better
 

@@ -20,18 +20,22 @@ WEAK: tuple[Reason, ...] = (
     "not over the whole range",
 )
 STRONG: tuple[Reason, ...] = ("nominal gets worse", "breaks other missions")
+WEAKEST = 0.25  # smallest share of the parameter of a structural change that is tried
 FINEST = 1.05  # the bisection stops when the ratio of the two factors is below this
 
 
 class Between:
-    """A bisection of all operands of a candidate together, on a log scale; a boolean or a change of sign ends it."""
+    """A bisection of all operands of a candidate together, on a log scale; a boolean or a change of sign ends it.
+
+    Parameters of structural changes have no original value, so they are bisected down to `WEAKEST` times their value.
+    """
 
     def __init__(self, candidate: Candidate, mutate: Callable[[Operand, float], Mutation | None]) -> None:
         self.candidate = candidate
         self.mutate = mutate
         self.weak, self.strong = 0.0, 1.0  # exponents of the candidate's factors
         self.steps = 0
-        self._factors = [factor(mutation) for mutation in candidate.mutations]
+        self._scales = [_scale(mutation) for mutation in candidate.mutations]
 
     def beyond(self, known: Candidate) -> None:
         """Start from a candidate of the same operands that is known to gain too little."""
@@ -42,11 +46,11 @@ class Between:
 
     def middle(self) -> Candidate | None:
         """Return the candidate halfway between the weak and the strong exponent, or None when the bisection is over."""
-        factors = [one for one in self._factors if one is not None]
-        if self.steps >= STEPS or len(factors) < len(self._factors):
+        scales = [one for one in self._scales if one is not None]
+        if self.steps >= STEPS or len(scales) < len(self._scales):
             return None
         span = self.strong - self.weak
-        if all(max(one, 1 / one) ** span < FINEST for one in factors):
+        if all(max(by, 1 / by) ** span < FINEST for _, by in scales):
             return None
         self.steps += 1
         return self.at(self.share)
@@ -58,10 +62,10 @@ class Between:
 
     def at(self, share: float) -> Candidate | None:
         """Return the candidate whose factors are raised to an exponent, or None if that changes nothing."""
-        factors = [one for one in self._factors if one is not None]
+        scales = [one for one in self._scales if one is not None]
         tried = (
-            to_step(mutation, one**share, self.mutate)
-            for mutation, one in zip(self.candidate.mutations, factors, strict=True)
+            to_step(mutation, weakest * by**share, self.mutate)
+            for mutation, (weakest, by) in zip(self.candidate.mutations, scales, strict=True)
         )
         moved = tuple(mutation for mutation in tried if mutation is not None)
         return replace(self.candidate, mutations=moved) if moved else None
@@ -76,6 +80,15 @@ class Between:
         else:
             return False
         return True
+
+
+def _scale(mutation: Mutation) -> tuple[float, float] | None:
+    """Return the weakest step of a mutation and the ratio of its own step to it, or None if it cannot be bisected."""
+    if mutation.form is not None:
+        step = None if on_grid(mutation) else searched_step(mutation)
+        return (step * WEAKEST, 1.0 / WEAKEST) if step else None
+    by = factor(mutation)
+    return (1.0, by) if by is not None else None
 
 
 def stronger(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pytest_tarl.model import Reason
+from pytest_tarl.repairing.ledger import operands
 from pytest_tarl.repairing.missed import Missed
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.request import Order
@@ -19,9 +20,7 @@ def known_to_fail(mutants: Mutants, candidate: Candidate, trials: Trials, missed
     which the guard holds. Raise BudgetSpentError and RepairError.
     """
     order = mutants.order
-    goal, offline = order.goal, order.fixture.sample
-    known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))
-    slack = order.reference.mean - goal.near
+    goal, slack = order.goal, order.reference.mean - order.goal.near
     trials.expect((candidate, pair.seed) for pair in goal.pairs[:QUICK])
     for pair in goal.pairs[:QUICK]:
         if not trials.reaches(candidate, pair.seed, goal):
@@ -34,12 +33,35 @@ def known_to_fail(mutants: Mutants, candidate: Candidate, trials: Trials, missed
         if outcome.total < pair.total - slack or goal.lost(outcome):
             return "breaks other missions"
     seeds = firing(order, candidate)[:QUICK]
-    mutants.foresee([(candidate, seed) for seed in seeds], None)
+    mutants.foresee([(candidate, seed) for seed in seeds if (candidate, seed) not in missed.designed], None)
     for seed in seeds:
-        trials.charge()
-        if mutants.run(candidate, seed, None).total < known[seed] - slack:
+        if _harms(mutants, candidate, seed, trials, missed):
+            missed.harmed.setdefault(operands(candidate), seed)
             return "nominal gets worse"
     return ""
+
+
+def harms_again(mutants: Mutants, candidate: Candidate, trials: Trials, missed: Missed) -> bool:
+    """Return whether a candidate makes the same recorded mission worse as the same constants did before.
+
+    One mission then shows that another value or condition is as harmful. Raise BudgetSpentError and RepairError.
+    """
+    seed = missed.harmed.get(operands(candidate))
+    if seed is None or seed not in firing(mutants.order, candidate):
+        return False
+    return _harms(mutants, candidate, seed, trials, missed)
+
+
+def _harms(mutants: Mutants, candidate: Candidate, seed: int, trials: Trials, missed: Missed) -> bool:
+    """Return whether a candidate earns clearly less in a recorded mission, which runs and is charged once."""
+    order = mutants.order
+    if (candidate, seed) not in missed.designed:
+        trials.charge()
+        missed.designed[candidate, seed] = mutants.run(candidate, seed, None).total
+    offline = order.fixture.sample
+    known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))
+    least: float = known[seed] - (order.reference.mean - order.goal.near)
+    return missed.designed[candidate, seed] < least
 
 
 def firing(order: Order, candidate: Candidate) -> tuple[int, ...]:

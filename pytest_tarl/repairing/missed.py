@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pytest_tarl.learning.drift import PASS_RATE_LOSS
 from pytest_tarl.searching.accept import Acceptance, Reference
 from pytest_tarl.searching.search import Candidate, Goal, Trials
+from tarl_lint.model import Operand
 
 LATEST = 3
 FEW = 0.25  # a candidate's value counts as nearly right if at most this share of its missions loses reward
@@ -34,7 +35,8 @@ class Missed:
     `few` holds these seeds for candidates that lost reward in at most `FEW` of their missions. `poor` holds the
     candidates that failed hardly any mission but earned too little. For each of these, `spread` holds missions of its
     test, from the smallest to the largest loss. `costly` holds the candidates that may lose too much in the designed
-    world, and hardly any mission under the drift.
+    world, and hardly any mission under the drift. `harmed` holds, for the constants of a candidate, a recorded mission
+    that it made worse, and `designed` what candidates earned in recorded missions.
     """
 
     seeds: list[tuple[int, float]] = field(default_factory=list)
@@ -42,6 +44,8 @@ class Missed:
     poor: set[Candidate] = field(default_factory=set)
     spread: dict[Candidate, list[Lost]] = field(default_factory=dict)
     costly: set[Candidate] = field(default_factory=set)
+    harmed: dict[frozenset[Operand], int] = field(default_factory=dict)
+    designed: dict[tuple[Candidate, int], float] = field(default_factory=dict)
 
     def learn(self, candidate: Candidate, found: Acceptance, goal: Goal, reference: Reference) -> None:
         """Store the missions in which a refused candidate lost reward."""

@@ -266,6 +266,23 @@ def test_a_narrower_guard_is_skipped_if_the_reward_is_too_low_under_the_wider_on
     assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
 
 
+def test_one_mission_shows_that_a_change_is_as_harmful_under_another_condition(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    always, wet, dark, _ = GUARDS
+    ran: list[tuple[Guard, bool]] = []
+
+    class Counted(Guarded):
+        def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+            ran.append((candidate.guard, drift is not None))
+            return super().run(candidate, seed, drift)
+
+    monkeypatch.setattr(f"{__name__}.Guarded", Counted)
+    kinds = {always: "bad as designed", wet: "bad as designed", dark: "good"}
+    assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
+    assert [drifted for guard, drifted in ran if guard == wet] == [True, False]
+
+
 class Window(Field):
     """One operand: below one factor it gains too little, above another it breaks the designed world."""
 

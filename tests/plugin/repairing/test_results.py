@@ -18,8 +18,10 @@ from pytest_tarl.learning.bounds import mean_of
 from pytest_tarl.model import Band, Conjunct, Guard, Reason, Sizes
 from pytest_tarl.patching.charts import SHARE
 from pytest_tarl.patching.mutate import Mutation, mutations, stepped
+from pytest_tarl.patching.structures import Form
+from pytest_tarl.patching.templates import SHIPPED, template
 from pytest_tarl.repairing import partial, ranges, telling_sensors
-from pytest_tarl.repairing.between import Between, factor, further, stronger
+from pytest_tarl.repairing.between import WEAKEST, Between, factor, further, stronger
 from pytest_tarl.repairing.centring import centred, moved, neighbours
 from pytest_tarl.repairing.incumbent import Watch
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, of_fresh_seeds
@@ -184,6 +186,19 @@ def test_a_change_of_sign_and_a_small_step_are_not_bisected() -> None:
     assert Between(scaled(1.04), mutations).middle() is None
     assert Between(scaled(1 / 1.04), mutations).middle() is None
     assert Between(scaled(1.06), mutations).middle() is not None
+
+
+def test_the_parameter_of_a_structural_change_is_bisected_down_to_a_share_of_its_value() -> None:
+    made = template(SHIPPED / "low_pass.toml")
+    form = Form(made, made.parameters[0].name)
+    between = Between(
+        Candidate((replace(scaled(2.0).mutations[0], value=-0.8, form=form),), ALWAYS), mutations
+    )
+    assert [one.value for one in (between.middle() or scaled(2.0)).mutations] == [pytest.approx(-0.4)]
+    assert between.told("gain too small")
+    middle = between.middle()
+    assert middle is not None
+    assert middle.mutations[0].value == pytest.approx(-0.8 * WEAKEST**0.25)
 
 
 def test_a_stronger_candidate_has_its_factors_raised_to_a_power() -> None:
