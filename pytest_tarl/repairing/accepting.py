@@ -168,11 +168,18 @@ class Examiner:
     def _conditionally(self, examined: Tried, trials: Trials) -> Accepted | Tried:
         """If a value passes in the drifted world but not in the designed one, examine it under every condition."""
         candidate, found = examined.candidate, examined
+        weak: list[Guard] = []
         for guard in self.guards if not candidate.guard.conjuncts else ():
+            if any(_narrower(guard, known) for known in weak):
+                continue
             with_guard = self._examined(replace(candidate, guard=guard, mutations=candidate.changes), trials)
             if isinstance(with_guard, Accepted) or self._exhausted():
                 return with_guard
             found = with_guard
+            if found.reason in (*TOO_LITTLE, *WEAK):
+                weak.append(guard)
+                if guard == candidates.ALWAYS:
+                    break  # no condition can gain more
         return found
 
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:

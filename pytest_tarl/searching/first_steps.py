@@ -27,12 +27,15 @@ from tarl_lint.model import Operand
 Hint = tuple[tuple[Operand, float], ...]  # constants that change together, each with its factor
 
 LEADING = 3  # number of best units that are tried with larger steps before the next guard is tried
-HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
+HINT = (
+    0.005  # minimum gain of the `LEADING` units and of units that get a smaller step, as a share of the loss
+)
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
 # steps for constants that clearly lose with each of the steps before: their good values are close to the old one
 SENSITIVE = ((1.1, 0.91), (1.05, 0.95), (1.025, 0.975))
-FEW = 3  # maximum number of constants without a name that get `SENSITIVE` steps
+# maximum number of constants without a name that get `SENSITIVE` steps, and of named ones that get `FINER` steps first
+FEW = 3
 # if a change gains at least this share of the wanted gain, other constants get no `FINER` steps
 HALF = 0.5
 LONGEST = 2  # maximum number of changes that made missions last longer under which limits are relaxed
@@ -152,8 +155,26 @@ class FirstSteps:
             yield from tries.sweep(NEAR[1], guard, among)
             yield from self._laws(self._unconditional(guard))
             yield from self.crossing.across(guard, plateau.STEPS[:2])
+            yield from self._closely(guard, among)
         if among and not idle and not tries.gains.anything(HALF * tries.goal.wanted):
             yield from self._limits(self._unconditional(guard))
+
+    def _closely(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """If nothing gained clearly, try a smaller step on the few named constants of which the smallest is the best.
+
+        This costs less than the first steps on all literals.
+        """
+        tries = self.attempts
+        for factor, before in zip(FINER, BETWEEN, strict=True):
+            peaked = [unit for unit in among if self._best_is(before, unit, guard)]
+            if peaked and len(peaked) <= FEW and not tries.gains.anything():
+                yield from tries.sweep(factor, guard, peaked)
+
+    def _best_is(self, factor: float, unit: Unit, guard: Guard) -> bool:
+        """Return whether a factor of a unit gains a little, and more than its other factors."""
+        gains = self.attempts.gains.of(unit, guard)
+        most = max(gains.values(), default=0.0)
+        return most > HINT * self.attempts.goal.wanted and gains.get(factor) == most
 
     def _laws(self, guard: Guard) -> Iterator[Candidate]:
         """If nothing gained, let the named constants that clearly lost in both directions follow what varies, once."""

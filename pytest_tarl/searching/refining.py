@@ -13,6 +13,7 @@ APART = 2.0  # minimum ratio of two factors between which another is tried altho
 FINEST = 1.1  # ratio of two factors below which no factor between them is tried
 # minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
 ALMOST = 0.9
+FLAT = 2.0  # maximum ratio of two factors with equal gains between which no factor is tried
 NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
 # minimum gain of a promising factor, as a share of the wanted gain; a sharp peak (see SHARP) that exceeds 0 or a
 # neighbour by this share is also refined down to `NARROWEST`
@@ -66,6 +67,8 @@ def amid(by_factor: Mapping[float, float], slack: float) -> list[float]:
 def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:
     """Return at most two factors to try next, with the sign of the best factor; none if no factor gains.
 
+    None follow either if both neighbours of the best factor are close and gain as much, but too little: something else
+    is wrong.
     `by_factor` maps each tried factor to its gain; `wanted` is the gain that restores the designed reward.
     """
     factor = max(by_factor, key=by_factor.__getitem__)
@@ -77,6 +80,9 @@ def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:
     ordered = [min(gains) / OUTWARD**2, *sorted(gains), max(gains) * OUTWARD**2]
     place = ordered.index(factor)
     neighbours = (ordered[place - 1], ordered[place + 1])
+    flat = all(one in gains and gains[one] == gains[factor] for one in neighbours)
+    if flat and gains[factor] < ALMOST * wanted and neighbours[1] <= FLAT * neighbours[0]:
+        return []
     finest = NARROWEST if _narrow(gains, factor, neighbours, wanted) else FINEST
     around = [one for one in neighbours if max(factor, one) > finest * min(factor, one)]
     return [sign * round(sqrt(factor * one), 3) for one in around]

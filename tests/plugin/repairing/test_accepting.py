@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.repairing.accepting import Accepted, Examiner, _narrower
-from pytest_tarl.repairing.ledger import Refused, furthest
+from pytest_tarl.repairing.ledger import Refused, Tried, furthest
 from pytest_tarl.repairing.mutants import ORIGINAL
 from pytest_tarl.searching.accept import Acceptance, Outcome, Reference
 from pytest_tarl.searching.candidates import ALWAYS
@@ -281,6 +281,22 @@ def test_one_mission_shows_that_a_change_is_as_harmful_under_another_condition(
     kinds = {always: "bad as designed", wet: "bad as designed", dark: "good"}
     assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
     assert [drifted for guard, drifted in ran if guard == wet] == [True, False]
+
+
+def test_no_condition_is_tried_on_another_value_that_gains_too_little_without_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    always, wet, dark, both = GUARDS
+    kinds = {always: "lucky on known seeds", wet: "good", dark: "good", both: "good"}
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    field: Any = Guarded(kinds)
+    examiner, (candidate,) = Examiner(field, GUARDS), field.candidates
+    trials = Trials(lambda one, seed: field.run(one, seed, "mud"), 300)
+    harmful = Tried(candidate, "nominal gets worse", (10.0,), fresh=True)
+    assert isinstance(examiner._conditionally(harmful, trials), Tried)
+    assert [one.candidate.guard for one in examiner.tried] == [always]
 
 
 class Window(Field):

@@ -184,7 +184,7 @@ def test_refining_ends_if_the_gain_stays_the_same_between_two_values() -> None:
     found, search = adjusted(much, {one / 1000: 5.0 for one in range(1, 60000)})
     for _ in range(5):
         assert list(found.refine(0)) == []
-    assert len(search.tried) == REFINED
+    assert len(search.tried) == REFINED // 2  # after two values on each side, the neighbours are close
 
 
 def test_a_named_constant_with_a_sharp_peak_is_refined_until_its_neighbours_are_close() -> None:

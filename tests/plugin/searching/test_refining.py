@@ -28,6 +28,9 @@ from tests.plugin.searching.test_search import operand
         ({1.0: 0.0, 1.1: 9.5, 1.05: 9.0, 1.16: 9.0}, [1.075, 1.13]),  # nearly there
         ({1.0: 0.0, 1.05: 2.0, 1.1: -3.0}, [1.025, 1.075]),  # a small gain beside a large loss
         ({1.0: 0.0, 1.14: 5.0, 1.13: 0.0, 1.15: 0.0}, []),  # 2 % are the limit
+        ({1.0: 0.0, 2.2: 5.0, 1.5: 5.0, 3.0: 5.0}, []),  # as good on both sides, and still too little
+        ({1.0: 0.0, 2.2: 5.0, 1.5: 5.0, 3.1: 5.0}, [1.817, 2.612]),  # the neighbours are far apart
+        ({1.0: 0.0, 2.2: 9.0, 1.5: 9.0, 3.0: 9.0}, [1.817, 2.569]),  # nearly there
         ({1.0: 0.0, -1.0: 5.0, 2.2: 1.0}, [-0.435, -2.3]),  # the sign stays
     ],
 )

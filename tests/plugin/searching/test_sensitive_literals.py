@@ -43,6 +43,25 @@ def test_a_few_literals_that_lose_with_all_other_steps_get_small_ones(rivals: in
     assert (trials.spent < 45) is early
 
 
+@pytest.mark.parametrize(("slope", "early"), [(0.3, True), (0.0, False)])
+def test_a_named_constant_gets_a_smaller_step_before_literals_if_its_smallest_step_gained_a_little(
+    slope: float, early: bool
+) -> None:
+    named = replace(operand(30, "STEPS", 1600.0), definition=operand(1, "1600.0", 1600.0).span)
+
+    def run(candidate: Candidate, _: int) -> Outcome:
+        by = next((float(one.value) for one in candidate.mutations if one.operand == named), 1.0)
+        if 1.25 < by < 1.4:
+            return Outcome(10.0, True)
+        near = slope if by < 1.7 else -1.0
+        return Outcome(2.5 if 1.15 < by < 1.5 else 0.0 if by == 1.0 else near, False)
+
+    trials = Trials(run, 300)
+    found = next(Sweep((*OTHERS, named), mutations, (ALWAYS,), trials, GOAL).candidates())
+    assert [one.operand for one in found.mutations] == [named]
+    assert (trials.spent <= 14) is early
+
+
 def test_a_value_of_a_table_is_changed_where_it_is_used_if_the_change_of_the_table_is_refused() -> None:
     table = replace(NARROW, site=replace(NARROW.site, qualname=""))
     use = replace(operand(9, "factor", 1.0), value=None, definition=None)
