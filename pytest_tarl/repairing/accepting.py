@@ -12,7 +12,7 @@ from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import STRONG, WEAK, further
 from pytest_tarl.repairing.centring import centred
 from pytest_tarl.repairing.good_range import GoodRange
-from pytest_tarl.repairing.known_missions import firing, harms_again, known_to_fail
+from pytest_tarl.repairing.known_missions import Harms, firing, harmed, harms_again, known_to_fail
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.missed import Missed
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
@@ -185,16 +185,19 @@ class Examiner:
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
         """Examine a candidate on known seeds, then on fresh seeds, unless a similar candidate was examined before."""
         chosen = candidate in self.others.chosen
-        if self._harms_again(candidate, trials):
-            return self.ledger.enter(Tried(candidate, WORSE, ()))
+        if operands(candidate) in self._missed.harmed and self._harms(candidate, trials, harms_again):
+            return self._as_harmful(candidate)
         value = candidate if chosen else self._centred(candidate, trials)
         if isinstance(value, Tried):
             return value
         candidate = value
+        if self._harms(candidate, trials, harmed):
+            return self._as_harmful(candidate)
         placed = self.placing(candidate, trials)
         if placed is None:
             self._refuse(Refused(candidate, "not at its definition"))
             return self.ledger.enter(Tried(candidate, "not at its definition", ()))
+        self._missed.equate(candidate, placed)
         candidate = placed
         try:
             problem = known_to_fail(self.mutants, candidate, trials, self._missed)
@@ -217,16 +220,21 @@ class Examiner:
                 return examined
         return self._on_fresh_seeds(candidate)
 
-    def _harms_again(self, candidate: Candidate, trials: Trials) -> bool:
-        """Return whether one designed mission shows that a candidate that reaches the goal does harm."""
-        goal, missed = self.order.goal, self._missed
-        if operands(candidate) not in missed.harmed or self._known(candidate) is not None:
-            return False
+    def _harms(self, candidate: Candidate, trials: Trials, harms: Harms) -> bool:
+        """Return whether designed missions show that a new candidate that reaches the goal does harm."""
         try:
-            reached = trials.reaches(candidate, goal.pairs[0].seed, goal)
-            return reached and harms_again(self.mutants, candidate, trials, missed)
+            return (
+                self._known(candidate) is None
+                and trials.reaches(candidate, self.order.goal.pairs[0].seed, self.order.goal)
+                and harms(self.mutants, candidate, trials, self._missed)
+            )
         except RepairError:
             return False
+
+    def _as_harmful(self, candidate: Candidate) -> Tried:
+        """Refuse a candidate because the designed world gets worse."""
+        self._refuse(Refused(candidate, WORSE))
+        return self.ledger.enter(Tried(candidate, WORSE, ()))
 
     def _centred(self, candidate: Candidate, trials: Trials) -> Candidate | Tried:
         """Return the best candidate with a value nearby, or a known result that makes an examination unnecessary."""

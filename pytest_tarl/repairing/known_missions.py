@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from pytest_tarl.model import Reason
 from pytest_tarl.repairing.ledger import operands
 from pytest_tarl.repairing.missed import Missed
@@ -9,6 +11,8 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.search import Candidate, Trials
+
+Harms = Callable[[Mutants, Candidate, Trials, Missed], bool]
 
 QUICK = 3  # number of known seeds on which a guard is tried, in each world
 
@@ -32,13 +36,18 @@ def known_to_fail(mutants: Mutants, candidate: Candidate, trials: Trials, missed
         outcome = trials(candidate, pair.seed)
         if outcome.total < pair.total - slack or goal.lost(outcome):
             return "breaks other missions"
-    seeds = firing(order, candidate)[:QUICK]
+    return "nominal gets worse" if harmed(mutants, candidate, trials, missed) else ""
+
+
+def harmed(mutants: Mutants, candidate: Candidate, trials: Trials, missed: Missed) -> bool:
+    """Return whether a candidate makes a recorded mission worse. Raise BudgetSpentError and RepairError."""
+    seeds = firing(mutants.order, candidate)[:QUICK]
     mutants.foresee([(candidate, seed) for seed in seeds if (candidate, seed) not in missed.designed], None)
     for seed in seeds:
         if _harms(mutants, candidate, seed, trials, missed):
             missed.harmed.setdefault(operands(candidate), seed)
-            return "nominal gets worse"
-    return ""
+            return True
+    return False
 
 
 def harms_again(mutants: Mutants, candidate: Candidate, trials: Trials, missed: Missed) -> bool:

@@ -68,6 +68,12 @@ class Missed:
         """Return whether a refused candidate's missions succeeded, so that its value may only have to be improved."""
         return candidate in self.costly or candidate in self.spread
 
+    def equate(self, candidate: Candidate, other: Candidate) -> None:
+        """Use the results of a candidate in recorded missions for another one that acts alike."""
+        for (one, seed), total in list(self.designed.items()):
+            if one == candidate:
+                self.designed.setdefault((other, seed), total)
+
     def again(self, candidate: Candidate, trials: Trials, goal: Goal) -> bool:
         """Return whether a candidate loses reward in most of the missions stored last. Raise BudgetSpentError."""
         lost, asked = 0, self.seeds[-LATEST:]
