@@ -12,7 +12,7 @@ from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import STRONG, WEAK, further
 from pytest_tarl.repairing.centring import centred
 from pytest_tarl.repairing.good_range import GoodRange
-from pytest_tarl.repairing.known_missions import Harms, firing, harmed, harms_again, known_to_fail
+from pytest_tarl.repairing.known_missions import firing, harmed, harms_again, known_to_fail
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.missed import Missed
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
@@ -79,6 +79,7 @@ class Examiner:
     def first(self, confirmed: Iterator[Candidate], trials: Trials) -> Accepted | None:
         """Examine candidates until one is accepted, the tests are used up or the budget is spent."""
         trials.loses = lambda candidate: self._missed.again(candidate, trials, self.order.goal)
+        trials.harms = lambda candidate: operands(candidate) in self._missed.harmed
         try:
             for candidate in confirmed:
                 with trials.granting(EXAMINED):
@@ -185,27 +186,22 @@ class Examiner:
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
         """Examine a candidate on known seeds, then on fresh seeds, unless a similar candidate was examined before."""
         chosen = candidate in self.others.chosen
-        if operands(candidate) in self._missed.harmed and self._harms(candidate, trials, harms_again):
-            return self._as_harmful(candidate)
+        if self._harms_again(candidate, trials):
+            return self._refused(candidate, WORSE)
         value = candidate if chosen else self._centred(candidate, trials)
         if isinstance(value, Tried):
             return value
-        candidate = value
-        if self._harms(candidate, trials, harmed):
-            return self._as_harmful(candidate)
-        placed = self.placing(candidate, trials)
+        problem = self._failing_at_once(value, trials)
+        placed = None if problem else self.placing(value, trials)
         if placed is None:
-            self._refuse(Refused(candidate, "not at its definition"))
-            return self.ledger.enter(Tried(candidate, "not at its definition", ()))
-        self._missed.equate(candidate, placed)
-        candidate = placed
+            return self._refused(value, problem or "not at its definition")
+        self._missed.equate(value, candidate := placed)
         try:
             problem = known_to_fail(self.mutants, candidate, trials, self._missed)
         except RepairError:
             problem = "cannot be written"
         if problem:
-            self._refuse(Refused(candidate, problem))
-            return self.ledger.enter(Tried(candidate, problem, ()))
+            return self._refused(candidate, problem)
         for nicer in smoothed(self.order, candidate):
             examined = self._examined(nicer, trials)
             if isinstance(examined, Accepted):
@@ -220,21 +216,32 @@ class Examiner:
                 return examined
         return self._on_fresh_seeds(candidate)
 
-    def _harms(self, candidate: Candidate, trials: Trials, harms: Harms) -> bool:
-        """Return whether designed missions show that a new candidate that reaches the goal does harm."""
+    def _harms_again(self, candidate: Candidate, trials: Trials) -> bool:
+        """Return whether one designed mission shows that a new candidate that reaches the goal does harm."""
+        if operands(candidate) not in self._missed.harmed or self._known(candidate) is not None:
+            return False
         try:
-            return (
-                self._known(candidate) is None
-                and trials.reaches(candidate, self.order.goal.pairs[0].seed, self.order.goal)
-                and harms(self.mutants, candidate, trials, self._missed)
-            )
+            near = trials.reaches(candidate, self.order.goal.pairs[0].seed, self.order.goal)
+            return near and harms_again(self.mutants, candidate, trials, self._missed)
         except RepairError:
             return False
 
-    def _as_harmful(self, candidate: Candidate) -> Tried:
-        """Refuse a candidate because the designed world gets worse."""
-        self._refuse(Refused(candidate, WORSE))
-        return self.ledger.enter(Tried(candidate, WORSE, ()))
+    def _failing_at_once(self, candidate: Candidate, trials: Trials) -> Reason:
+        """Return why a candidate fails on the first seed or in the designed world, or ""; it is not placed yet."""
+        goal = self.order.goal
+        first = goal.pairs[0].seed
+        try:
+            if not trials.reaches(candidate, first, goal):
+                trials.misses[first] += 1
+                return "gain too small"
+            return WORSE if harmed(self.mutants, candidate, trials, self._missed) else ""
+        except RepairError:
+            return ""
+
+    def _refused(self, candidate: Candidate, reason: Reason) -> Tried:
+        """Store that a candidate fails on known missions."""
+        self._refuse(Refused(candidate, reason))
+        return self.ledger.enter(Tried(candidate, reason, ()))
 
     def _centred(self, candidate: Candidate, trials: Trials) -> Candidate | Tried:
         """Return the best candidate with a value nearby, or a known result that makes an examination unnecessary."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from pytest_tarl.model import Reason
 from pytest_tarl.repairing.ledger import operands
 from pytest_tarl.repairing.missed import Missed
@@ -11,8 +9,6 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.search import Candidate, Trials
-
-Harms = Callable[[Mutants, Candidate, Trials, Missed], bool]
 
 QUICK = 3  # number of known seeds on which a guard is tried, in each world
 

@@ -240,7 +240,10 @@ class ForwardSelection:
                 if one == fewer and len(least.parts) == 1:
                     yield from self.preferred(one, *least.parts[0])
                 yield one
-                if self.trials.gain(one, self.goal.pairs) > AMPLE * self.goal.wanted:
+                if (
+                    self.trials.harms(one)
+                    or self.trials.gain(one, self.goal.pairs) > AMPLE * self.goal.wanted
+                ):
                     return  # the combination was refused although it earns enough, so refining it does not help
                 break
         yield from self._polished(least)

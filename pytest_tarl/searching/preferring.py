@@ -208,7 +208,8 @@ class Preferences:
     def _truer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
         """Yield a rival constant first if its missions are much closer to the designed ones.
 
-        Such a constant is more likely to be the cause.
+        Such a constant is more likely to be the cause. The parameter of a structural change has no rivals; a value
+        whose missions are much closer is examined first.
         """
         seeds, site = self._compared_on(pair), unit.operands[0].site
         function = (site.module, site.qualname)
@@ -218,7 +219,8 @@ class Preferences:
             return
         self._compared.add(function)
         step, least = exactest(unit, factor, found.guard, seeds[0], self.search.mutate, self.search.trials)
-        exact = self.search.holding(unit, step, found.guard, pair) if least <= EXACT else None
+        closer = self.search.proposed and least <= CLOSER * self._deviation(found, seeds[:1])
+        exact = self.search.holding(unit, step, found.guard, pair) if closer or least <= EXACT else None
         if exact is not None:
             yield exact
             return

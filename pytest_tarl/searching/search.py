@@ -139,6 +139,8 @@ class Trials:
     worth: Goal | None = None  # `reserve` is released after a gain of FAR times the wanted gain of this goal
     # returns whether a candidate loses missions that were lost by rejected candidates
     loses: Callable[[Candidate], bool] = lost_nothing
+    # returns whether the constants of a candidate made the designed world worse
+    harms: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world
     unchanged: Callable[[int], Outcome] | None = None  # runs the unchanged program in the drifted world
     in_time: Callable[[], object] = never_late  # raises BudgetSpentError when the time is up

@@ -299,6 +299,30 @@ def test_no_condition_is_tried_on_another_value_that_gains_too_little_without_on
     assert [one.candidate.guard for one in examiner.tried] == [always]
 
 
+@pytest.mark.parametrize(("kind", "drifted", "designed"), [("bad at once", 1, 0), ("bad as designed", 5, 1)])
+def test_a_candidate_that_fails_at_once_is_not_placed(
+    kind: str, drifted: int, designed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    field: Any = Field([kind])
+    ran: list[bool] = []
+    run = field.run
+
+    def recorded(one: Candidate, seed: int, drift: str | None) -> Outcome:
+        ran.append(drift is not None)
+        found: Outcome = run(one, seed, drift)
+        return found
+
+    field.run = recorded
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    examiner = Examiner(field, (ALWAYS,))
+    monkeypatch.setattr(examiner, "placing", lambda *_: pytest.fail("placed"))
+    trials = Trials(lambda one, seed: field.run(one, seed, "mud"), 300)
+    assert examiner.first(iter(field.candidates), trials) is None
+    assert (sum(ran), len(ran) - sum(ran)) == (drifted, designed)
+
+
 class Window(Field):
     """One operand: below one factor it gains too little, above another it breaks the designed world."""
 

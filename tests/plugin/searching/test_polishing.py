@@ -93,6 +93,12 @@ def test_a_pair_that_barely_earns_enough_is_adjusted_after_its_refusal() -> None
     assert better.mutations[0].value == pytest.approx(0.6, rel=0.08)
 
 
+def test_a_pair_that_harms_the_designed_world_is_not_adjusted_after_its_refusal() -> None:
+    search = selection()
+    search.trials.harms = lambda candidate: len(candidate.mutations) == 2
+    assert len(list(search.gain(Joint(((GRIP, 0.66), (ANGLE, 1.5)), ALWAYS)))) == 1
+
+
 def test_two_constants_that_gain_more_than_needed_are_not_adjusted_when_refused() -> None:
     assert len(list(selection().gain(Joint(((GRIP, 0.61), (ANGLE, 1.5)), ALWAYS)))) == 1
 
