@@ -28,6 +28,7 @@ from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, re
 from pytest_tarl.repairing.ranking_confidence import ranking_confidence
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.reviewing import remarks
+from pytest_tarl.repairing.scaled_commands import scaled_command
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.repairing.unsearched_modules import unnamed_modules
 from pytest_tarl.searching import candidates
@@ -181,7 +182,10 @@ def _restructure(
     examiner.turns += 1
     changes = structures.candidates()
     if found.constants is not None:
-        changes = constants_first(changes, found.constants, trials, mutants.order.goal)
+        analysis, goal = mutants.order.analysis, mutants.order.goal
+        changes = constants_first(
+            changes, found.constants, trials, goal, lambda one: scaled_command(analysis, one)
+        )
     try:
         found.accepted = examiner.first(changes, trials)
     except KeyboardInterrupt:
@@ -311,8 +315,8 @@ def _notes(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch)
     )
     if found.structure:
         yield (
-            f"no single constant sufficed, so {found.structure} of the search's {found.episodes} episodes tried "
-            "structural changes"
+            f"no constant that was tried in {found.episodes - found.structure} episodes sufficed, so "
+            f"{found.structure} further episodes tried structural changes"
         )
     if found.late:
         yield (

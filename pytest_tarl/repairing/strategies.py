@@ -12,6 +12,7 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.name_scopes import name_scope
 from pytest_tarl.repairing.products import one_of_each
 from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.scaled_commands import scaled_command
 from pytest_tarl.repairing.scales import charts
 from pytest_tarl.repairing.table_entries import entry_uses
 from pytest_tarl.searching import candidates
@@ -76,6 +77,7 @@ def strategy(
             reached=lambda candidate: reached(mutants, candidate),
             entered=lambda candidate: entered(mutants, candidate),
             proportional=proportional,
+            scaled=lambda candidate: scaled_command(order.analysis, candidate),
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

@@ -126,12 +126,19 @@ class Structures:
         yield from self._briefly(groups, most)
 
     def _briefly(self, groups: Sequence[_Group], most: int) -> Iterator[Candidate]:
-        """Search groups within `most` further episodes, then restore the budget of the trials."""
+        """Search groups within `most` further episodes, then restore the budget of the trials.
+
+        What the caller spends on a candidate that is yielded does not count.
+        """
         trials = self.trials
         budget, reserve, worth = trials.budget, trials.reserve, trials.worth
         trials.budget = min(trials.spent + most, budget)
         try:
-            yield from self._searched([group for group in groups if group.operands], brief=True)
+            for candidate in self._searched([group for group in groups if group.operands], brief=True):
+                limit, spent = trials.budget, trials.spent
+                trials.budget, trials.reserve, trials.worth = budget, reserve, worth
+                yield candidate
+                trials.budget, trials.reserve = min(limit + trials.spent - spent, budget), 0
         except BudgetSpentError:
             pass
         finally:

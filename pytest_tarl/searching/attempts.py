@@ -15,7 +15,7 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.acting import Acting
 from pytest_tarl.searching.adjusting import Adjusting
 from pytest_tarl.searching.combining import Combining
-from pytest_tarl.searching.constants_first import constants_first
+from pytest_tarl.searching.constants_first import Scaled, constants_first
 from pytest_tarl.searching.divided import divided, stronger_and_weaker
 from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
 from pytest_tarl.searching.gains import Gains
@@ -70,6 +70,7 @@ class Attempts:
         scope: Scope = everywhere,
         interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
         corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
+        scaled: Callable[[Candidate], Scaled | None] = lambda _: None,
     ) -> None:
         self.units = units
         self.mutate = mutate
@@ -85,6 +86,7 @@ class Attempts:
         self.following = following
         self.scope = scope
         self._structures = interlude
+        self._scaled = scaled
         self.corrections = corrections
         self.slack = SLACK * goal.wanted
         self.turn = 0
@@ -108,7 +110,7 @@ class Attempts:
 
     def interlude(self, gain: float) -> Iterator[Candidate]:
         """Yield structural changes, but first the constants that gained; `gain` is the largest gain so far."""
-        yield from constants_first(self._structures(gain), self, self.trials, self.goal)
+        yield from constants_first(self._structures(gain), self, self.trials, self.goal, self._scaled)
 
     @property
     def pair(self) -> int:

@@ -1,12 +1,14 @@
-"""Before a structural change is yielded, refine the constants that gained: a maintainer prefers to change a constant.
+"""Before a structural change is yielded, try constants in its place: a maintainer prefers to change a constant.
 
 A template that uses a sensor can fit the few values that the sensor has in both worlds by chance. The constant that is
-wrong often gained a little at one factor, while the factors on both sides of it gained nothing.
+wrong often gained a little at one factor, while the factors on both sides of it gained nothing. If a change scales a
+whole command, the same factor on a constant of the command may do the same.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Protocol
 
 from pytest_tarl.errors import RepairError
@@ -20,11 +22,35 @@ from pytest_tarl.searching.units import Unit
 
 CONSTANTS = 2  # maximum number of constants that are refined before the first structural change
 EPISODES = 8  # maximum number of episodes for each of them, without confirmations
+MADE_OF = 8  # maximum number of constants that are tried in place of a factor on a command
+
+Lines = tuple[str, int, int]  # path, first and last line of a statement
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """A factor on a command, and the statements that compute the command, nearest to it first."""
+
+    factor: float
+    statements: tuple[Lines, ...]
+
+    def place(self, unit: Unit) -> int | None:
+        """Return the index of the statement that uses all of a unit's constants, or None."""
+        spans = [operand.span for operand in unit.operands]
+        return next(
+            (
+                at
+                for at, (path, first, last) in enumerate(self.statements)
+                if all(span.path == path and first <= span.line <= last for span in spans)
+            ),
+            None,
+        )
 
 
 class Search(Protocol):
     """The parts of the search of constants that `constants_first` uses."""
 
+    units: tuple[Unit, ...]
     mutate: Mutate
     gains: Gains
     slack: float
@@ -35,16 +61,42 @@ class Search(Protocol):
 
 
 def constants_first(
-    structures: Iterator[Candidate], search: Search, trials: Trials, goal: Goal
+    structures: Iterator[Candidate],
+    search: Search,
+    trials: Trials,
+    goal: Goal,
+    scaled: Callable[[Candidate], Scaled | None] = lambda _: None,
 ) -> Iterator[Candidate]:
     """Yield structural changes; before the first one, yield refined constants that are confirmed.
 
-    Raise BudgetSpentError.
+    If a change scales a command (`scaled`), constants of the command that are confirmed with the same factor come
+    before the change. Raise BudgetSpentError.
     """
     for number, structure in enumerate(structures):
         if not number:
             yield from _refined(search, trials, goal)
+        command = scaled(structure)
+        if command is not None:
+            yield from _of_the_command(command, structure.guard, search, trials, goal)
         yield structure
+
+
+def _of_the_command(
+    command: Scaled, guard: Guard, search: Search, trials: Trials, goal: Goal
+) -> Iterator[Candidate]:
+    """Yield the constants of a command that are confirmed with its factor, nearest to the command first."""
+    placed = [(at, unit) for unit in search.units if (at := command.place(unit)) is not None]
+    for _, unit in sorted(placed, key=lambda one: one[0])[:MADE_OF]:
+        value = unit.operands[0].value
+        if (unit, guard) in search.refused or unit.chart is not None or value == 0 or isinstance(value, bool):
+            continue
+        candidate = Candidate(unit.mutations(search.mutate, command.factor), guard)
+        try:
+            reached = bool(candidate.mutations) and trials.reaches(candidate, goal.pairs[0].seed, goal)
+            if reached and confirmed(candidate, trials, goal, 0):
+                yield candidate
+        except RepairError:
+            continue
 
 
 def _refined(search: Search, trials: Trials, goal: Goal) -> Iterator[Candidate]:

@@ -16,6 +16,7 @@ from pytest_tarl.patching.charts import Chart
 from pytest_tarl.searching import plateau
 from pytest_tarl.searching.attempts import FLIP, Attempts
 from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.constants_first import Scaled
 from pytest_tarl.searching.crossing import Crossing
 from pytest_tarl.searching.families import families
 from pytest_tarl.searching.first_steps import BETWEEN, FINER, HALF, FirstSteps, Hint
@@ -64,7 +65,8 @@ class Sweep:
     `proportional` constants that follow what varies (see `FirstSteps`), and `corrections` confirmed corrections of
     sensor readings, which come before extreme changes. `finer` is called with an operand that nearly earned enough, so
     that `mutate` may allow values between those of its grid. `following` returns, for a changed constant, candidates in
-    which the constant follows a sensor or a variable instead.
+    which the constant follows a sensor or a variable instead. `scaled` says whether a change of another search scales a
+    command (see `constants_first`).
     """
 
     def __init__(
@@ -93,6 +95,7 @@ class Sweep:
         reached: Reached = lambda _: (),
         entered: Entered = lambda _: (),
         proportional: Proportional = lambda _: iter(()),
+        scaled: Callable[[Candidate], Scaled | None] = lambda _: None,
     ) -> None:
         self.structure_follows = structure_follows
         self.brief = brief
@@ -119,6 +122,7 @@ class Sweep:
             scope=scope,
             interlude=interlude,
             corrections=corrections,
+            scaled=scaled,
         )
         self.crossing = Crossing(self.attempts)
         self.first_steps = FirstSteps(

@@ -289,6 +289,29 @@ def test_early_changes_spend_at_most_twice_their_episodes_and_restore_the_budget
     assert (trials.budget, trials.reserve, trials.worth) == (300, 9, of.order.goal)
 
 
+def test_what_the_caller_spends_on_an_early_change_does_not_count_as_its_episodes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    of = structures(order_of(tmp_path), 300)
+    trials = of.trials
+    budgets: list[int] = []
+
+    def searched(groups: Any, brief: bool = False) -> Iterator[Candidate]:
+        for _ in range(2):
+            budgets.append(trials.budget)
+            yield Candidate((), ALWAYS)
+
+    of._searched = searched  # type: ignore[method-assign]
+    monkeypatch.setattr(of, "_evident", lambda *_: [operand(1, "1.5", 1.5)])
+    monkeypatch.setattr(of, "_once", lambda *_: _Group([]))
+    for _ in of.early(20):
+        assert trials.budget == 300
+        for _ in range(50):
+            trials.charge()
+    assert budgets == [40, 90]
+    assert trials.budget == 300
+
+
 def test_early_changes_by_a_sensor_need_one_that_varies_or_a_range_of_sizes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

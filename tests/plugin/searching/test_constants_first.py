@@ -9,7 +9,7 @@ from typing import Any
 from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.constants_first import CONSTANTS, EPISODES, constants_first
+from pytest_tarl.searching.constants_first import CONSTANTS, EPISODES, MADE_OF, Scaled, constants_first
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.units import Unit
@@ -39,7 +39,7 @@ def found(
         for factor, gain in by_factor.items():
             gains.enter((unit, ALWAYS), factor, gain)
     search: Any = SimpleNamespace(
-        mutate=mutations, gains=gains, slack=1.0, refused=set(), ran_on=lambda *_: 3
+        units=(), mutate=mutations, gains=gains, slack=1.0, refused=set(), ran_on=lambda *_: 3
     )
     trials = Trials(run, 100)
     yielded = [
@@ -76,3 +76,46 @@ def test_a_value_that_is_good_on_one_seed_only_is_not_yielded() -> None:
 def test_literals_and_constants_without_a_gain_are_left_out() -> None:
     yielded, ran = found({LITERAL: NARROW, A: {2.2: 0.5}}, (1.0, 9.0))
     assert (yielded, ran) == (["structure", "structure"], [])
+
+
+SMALLEST = Unit((operand(4, "0.1", 0.1),))
+OTHERS = tuple(Unit((operand(line, f"{line}.0", float(line)),)) for line in (2, 3, *range(5, 15)))
+COMMAND = Scaled(2.0, tuple(("node.py", line, line) for line in (4, 2, *range(5, 15))))
+
+
+def in_place_of_a_factor(good: float, refused: bool = False) -> tuple[list[str], list[str]]:
+    """Return what is yielded and what ran if the literal 0.1 of a scaled command earns 10 at one value."""
+    ran: list[str] = []
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        (mutation,) = candidate.mutations
+        changed = f"{mutation.operand.code} → {mutation.value:g}"
+        ran.append(changed)
+        held = changed == f"0.1 → {good:g}"
+        return Outcome(10.0 if held else 0.0, held)
+
+    search: Any = SimpleNamespace(
+        units=(*OTHERS, SMALLEST),
+        mutate=mutations,
+        gains=Gains(1.0),
+        slack=1.0,
+        refused={(SMALLEST, ALWAYS)} if refused else set(),
+    )
+    yielded = [
+        "structure" if not one.mutations else one.mutations[0].operand.code
+        for one in constants_first(iter(STRUCTURES[:1]), search, Trials(run, 100), GOAL, lambda _: COMMAND)
+    ]
+    return yielded, list(dict.fromkeys(ran))
+
+
+def test_a_constant_of_a_scaled_command_comes_before_the_factor() -> None:
+    yielded, ran = in_place_of_a_factor(0.2)
+    assert yielded == ["0.1", "structure"]
+    assert ran[:2] == ["0.1 → 0.2", "2.0 → 4"]  # the statement that is nearest to the command comes first
+    assert len(ran) == MADE_OF
+    assert not any(one.startswith("3.0") for one in ran)  # another command
+
+
+def test_a_factor_on_a_command_stays_if_no_constant_of_it_suffices() -> None:
+    assert in_place_of_a_factor(0.3)[0] == ["structure"]
+    assert in_place_of_a_factor(0.2, refused=True)[0] == ["structure"]

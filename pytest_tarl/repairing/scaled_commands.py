@@ -1,0 +1,37 @@
+"""Constants whose change has the same effect as a factor on a whole command.
+
+A factor before the publish call can hide which number of the command is too small: on carpet, only the smallest turning
+speed is. A maintainer changes this number.
+"""
+
+from __future__ import annotations
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.document import document
+from pytest_tarl.patching.mutate import form_values
+from pytest_tarl.patching.written_by import writers
+from pytest_tarl.searching.constants_first import Scaled
+from pytest_tarl.searching.search import Candidate
+from tarl_lint.api import Analysis
+
+GAIN = "gain"  # name of the only parameter of the templates that scale a command
+
+
+def scaled_command(analysis: Analysis, candidate: Candidate) -> Scaled | None:
+    """Return the factor and the statements that compute the command, nearest first; None for all other changes."""
+    if len(candidate.mutations) != 1:
+        return None
+    (mutation,) = candidate.mutations
+    form, span = mutation.form, mutation.operand.span
+    if form is None or form.template.state or [one.name for one in form.template.parameters] != [GAIN]:
+        return None
+    try:
+        source = document(span.path, analysis.sources[span.path])
+        node = source.find(span)
+    except (RepairError, KeyError):
+        return None
+    statements = writers(source, node, form.target(source.source(node)))
+    lines = [(span.path, one.lineno, one.end_lineno or one.lineno) for one in statements]
+    own = source.statement(node)
+    lines.insert(0, (span.path, own.lineno, own.end_lineno or own.lineno))
+    return Scaled(form_values(mutation)[GAIN], tuple(dict.fromkeys(lines)))
