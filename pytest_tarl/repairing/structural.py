@@ -10,20 +10,23 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 from types import MappingProxyType
 
+from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import FIELD, OF_SENSORS, Template, templates
 from pytest_tarl.repairing.evident import STRONG, evident
 from pytest_tarl.repairing.mission_pairs import NO_SIGNS, Signs
+from pytest_tarl.repairing.plainer_templates import factors
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.telling_sensors import OVERLAP, telling, varies
 from pytest_tarl.repairing.template_forms import fixed, forms
 from pytest_tarl.repairing.template_places import Spot, spots
+from pytest_tarl.searching.confirming import confirmed
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.sensors import Sensor
-from tarl_lint.model import Operand
+from tarl_lint.model import Operand, Span
 
 COMMANDED = ("stored", "sent", FIELD)  # kinds of expressions that go into a published message
 # a statement responds if one of its constants gains at least this share of the wanted gain
@@ -80,6 +83,9 @@ class Structures:
         self.trials = trials
         self._sweeps: list[Sweep] = []
         self._found: dict[Operand, Form] = {}
+        self._scaled: set[Span] = (
+            set()
+        )  # expressions at which factors were tried in place of a template with state
         self._fine: set[Operand] = (
             set()
         )  # operands whose values nearly earned enough, so that their grid is finer
@@ -183,13 +189,33 @@ class Structures:
                 self.trials.budget, self.trials.reserve = whole, 0
 
     def _beyond_its_share(self, candidate: Candidate, whole: int) -> Iterator[Candidate]:
-        """Yield a candidate; its examination may spend more than its templates' share of the episodes."""
+        """Yield a candidate, but first a factor that does the same as a candidate with state.
+
+        Their examination may spend more than the share of the candidate's templates.
+        """
         trials = self.trials
         budget, reserve, spent = trials.budget, trials.reserve, trials.spent
         trials.budget, trials.reserve = whole, 0
+        yield from self._by_a_factor(candidate)
         yield candidate
         trials.budget = min(budget + trials.spent - spent, whole)
         trials.reserve = min(reserve, whole - trials.budget)
+
+    def _by_a_factor(self, candidate: Candidate) -> Iterator[Candidate]:
+        """Yield the smallest factor that is confirmed in place of a candidate with state."""
+        goal = self.order.goal
+        for plain in factors(self.order, candidate):
+            if plain.mutations[0].operand.span in self._scaled:
+                return
+            try:
+                if self.trials.reaches(plain, goal.pairs[0].seed, goal) and confirmed(
+                    plain, self.trials, goal, 0
+                ):
+                    yield plain
+                    break
+            except RepairError:
+                continue
+        self._scaled |= {one.operand.span for one in candidate.mutations}
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return the gains of the best values of each template, for each site."""

@@ -1,0 +1,38 @@
+"""A factor in place of a template with state: a maintainer prefers `3.0 * turn` to an integral of `turn`.
+
+An integral also overcomes friction or a weak actuator, and its symptom, an offset that stays, is the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.structures import Form
+from pytest_tarl.patching.templates import templates
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.searching.search import Candidate
+
+FACTORS = (2.0, 3.0, 5.0)  # factors that are tried, smallest change first
+GAIN = "gain"  # name of the template that multiplies any number by a factor, and of its parameter
+REPLACED = ("value", "number")  # kinds of templates whose expression can have a factor instead
+
+
+def factors(order: Order, candidate: Candidate) -> Iterator[Candidate]:
+    """Yield the candidates with a factor at the expression at which a candidate keeps state; nothing for others."""
+    found = {one.form and replace(one.form, parameter="") for one in candidate.mutations}
+    form = found.pop() if len(found) == 1 else None
+    gain = next((one for one in templates(order.root) if one.name == GAIN), None)
+    if form is None or gain is None or not form.template.state or form.template.on not in REPLACED:
+        return
+    operand = candidate.mutations[0].operand
+    if {one.operand.span for one in candidate.mutations} != {operand.span}:
+        return
+    defaults = tuple((one.name, one.default) for one in gain.parameters)
+    start = dict(defaults)[GAIN]
+    _, _, code = operand.code.partition(" of ")
+    scaled = replace(operand, code=f"{GAIN} of {code.rpartition(',')[0] or code}, {GAIN}", value=start)
+    bare = Form(gain, GAIN, defaults, partner=form.partner, field=form.field)
+    for factor in FACTORS:
+        yield Candidate((Mutation(scaled, factor / start, form=bare),), candidate.guard)
