@@ -2,9 +2,10 @@
 
 A factor on a member of an enumeration raises an error. A factor on `self.done` in `if not self.done` changes nothing.
 Other constants follow from notation and were not chosen by the author: the exponents in `(x**2 + y**2) ** 0.5` are
-geometry, the `1e-9` in `stamp.nanosec * 1e-9` converts a unit (see `unit_factors`), and the `1.0` in `1.0 - alpha` is
-the sum of two shares. Others are needed by ROS only (see `bookkeeping`). Booleans and zeros are not labels, because a
-search can change them from false to true.
+geometry, and so is the `1` in `array([x, y, z, 1])`, the last of homogeneous coordinates; the `1e-9` in
+`stamp.nanosec * 1e-9` converts a unit (see `unit_factors`), and the `1.0` in `1.0 - alpha` is the sum of two shares.
+Others are needed by ROS only (see `bookkeeping`). Booleans and zeros are not labels, because a search can change them
+from false to true.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from tarl_lint.api import Analysis
 from tarl_lint.model import Operand
 
 GEOMETRIC = (0.5, 2, 3)  # exponents of roots, areas and volumes
+HOMOGENEOUS = 4  # number of homogeneous coordinates in space
 _ENUMERATIONS = frozenset({"Enum", "Flag", "IntEnum", "IntFlag", "StrEnum"})
 
 
@@ -56,7 +58,9 @@ def _is_label(analysis: Analysis, operand: Operand) -> bool:
         return True
     if is_bookkeeping(analysis, source, node):
         return True
-    if _is_exponent(source, node) or converts_unit(source, node) or _is_whole(source, node):
+    if _is_exponent(source, node) or _is_homogeneous(node, source.parents.get(node)):
+        return True
+    if converts_unit(source, node) or _is_whole(source, node):
         return True
     changeable = isinstance(operand.value, bool) or operand.value == 0
     return not changeable and _only_truth(source, node)
@@ -67,6 +71,15 @@ def _is_exponent(source: Document, node: ast.expr) -> bool:
     around = source.parents.get(node)
     power = isinstance(around, ast.BinOp) and isinstance(around.op, ast.Pow) and around.right is node
     return power and isinstance(node, ast.Constant) and node.value in GEOMETRIC
+
+
+def _is_homogeneous(node: ast.expr, around: ast.AST | None) -> bool:
+    """Return whether an expression is the last of four coordinates of a point or a direction in space."""
+    if not isinstance(around, ast.List | ast.Tuple) or len(around.elts) != HOMOGENEOUS:
+        return False
+    computed = any(not isinstance(one, ast.Constant | ast.UnaryOp) for one in around.elts)
+    last = isinstance(node, ast.Constant) and around.elts[-1] is node
+    return computed and last and isinstance(node, ast.Constant) and node.value == 1
 
 
 def _is_whole(source: Document, node: ast.expr) -> bool:
