@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytest_tarl.errors import RepairError
+from pytest_tarl.instrumentation.datafiles import is_data
 from pytest_tarl.patching.merge import combined_diff, conflicts, constants
 from pytest_tarl.patching.patch import apply_command, write
 from pytest_tarl.patching.reading import Patch, read
@@ -72,7 +73,7 @@ def _combined(patches: Sequence[Patch]) -> Path:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            for file in read(path).files:
+            for file in (one for one in read(path).files if not is_data(Path(one.name))):
                 compile(file.applied(originals[file.name]), file.name, "exec", dont_inherit=True)
     except (SyntaxError, ValueError) as problem:
         path.unlink()

@@ -145,6 +145,18 @@ def test_patches_that_do_not_compile_together_are_not_merged(robot: Path) -> Non
 
 
 @pytest.mark.usefixtures("quick_acceptance")
+def test_patches_of_a_parameter_file_are_merged(robot: Path) -> None:
+    text = "keeper:\n  gain: 2.0\n  high: 1\n  wide: 2\n  far: 3\n  offset: 0.0\n"
+    (robot / "params.yaml").write_text(text)
+    git("add", "-A", cwd=robot)
+    git("commit", "-qm", "parameters", cwd=robot)
+    changes = (("gain: 2.0", "gain: 3.0", "mud"), ("offset: 0.0", "offset: 0.1", "wind"))
+    patches = [repair(robot, {"params.yaml": text.replace(old, new)}, drift) for old, new, drift in changes]
+    (command,) = joined(patches, robot).commands
+    git(*command.split()[1:], cwd=robot)
+    assert (robot / "params.yaml").read_text() == text.replace("2.0", "3.0").replace("0.0", "0.1")
+
+
 def test_the_output_of_a_run_with_one_change_ends_with_one_command(tank: pytest.Pytester) -> None:
     test = (tank.path / "test_tank.py").read_text()
     (tank.path / "test_twin.py").write_text(
