@@ -117,6 +117,11 @@ class Tarl:
         return self.ros.bus
 
     @property
+    def parameters_read(self) -> Mapping[str, bool | int | float]:
+        """The numbers that nodes have read as parameters, by absolute name; empty under the real ROS."""
+        return dict(getattr(self._ros, "parameters_read", {}))
+
+    @property
     def judged(self) -> tuple[Judged, ...]:
         """The results of the formulas; available after `conclude`."""
         return self._formulas.judged

@@ -62,6 +62,7 @@ class Episode:
     older: tuple[Path, ...] = ()  # files of the overlay for which the episode ran the old text
     simulator: bool = False  # whether an external simulator was the episode's world
     outputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    parameters: Mapping[str, bool | int | float] = field(default_factory=dict)
 
 
 EPISODE = pytest.StashKey[Episode]()
@@ -129,7 +130,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
             episode.trace = tarl.rewarded(recorder.finish(signed=episode.plan.signed))
             episode.judged = tarl.judged
             episode.topics, episode.values = dict(tarl.topics), tarl.values
-            episode.outputs = outputs.sums
+            episode.outputs, episode.parameters = outputs.sums, tarl.parameters_read
             episode.problem = tarl.problem()
             episode.replayed = replay is not None and replay.done
             episode.simulator = tarl.simulator is not None

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from math import isfinite
 from pathlib import Path
 
@@ -65,6 +65,8 @@ class Recorded:
     learner: str = "sarsa"
     notes: tuple[str, ...] = ()
     simulator: bool = False  # whether the world was an external simulator
+    # the numbers that nodes got as parameters in the first episode, by absolute name
+    parameters: Mapping[str, bool | int | float] = field(default_factory=dict)
 
     @property
     def success(self) -> float:
@@ -219,6 +221,7 @@ def run_episodes(
     learners = tuple(LEARNERS[learner](len(chosen)) for chosen in members)
     first: Trace | None = None
     simulator = False
+    parameters: Mapping[str, bool | int | float] = {}
     samples: list[Sample] = []
     failures: list[str] = []
     notes: dict[str, None] = {}
@@ -227,7 +230,9 @@ def run_episodes(
     for done, (seed, episode) in enumerate(zip(seeds, in_order(rollout, plans), strict=True)):
         progress(done, len(seeds), drift or "episodes")
         run = sound(episode.result())
-        first, simulator = first or run.trace, run.simulator
+        if first is None:
+            first, parameters = run.trace, run.parameters
+        simulator = run.simulator
         counted = sample(run.trace, seed, run.passed, members)
         samples.append(replace(counted, judgements=judgements(run.judged)))
         footprint.add(samples[-1])
@@ -243,7 +248,7 @@ def run_episodes(
         raise RecordingError("There is nothing to learn from: 0 episodes were requested.")
     notes |= dict.fromkeys([footprint.warning] if footprint.warning else [])
     return Recorded(
-        first, merge(samples), learners, topics, tuple(failures), learner, tuple(notes), simulator
+        first, merge(samples), learners, topics, tuple(failures), learner, tuple(notes), simulator, parameters
     )
 
 

@@ -195,6 +195,7 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         older=episode.older,
         simulator=episode.simulator,
         outputs=episode.outputs,
+        parameters=episode.parameters,
     )
 
 

@@ -49,6 +49,9 @@ class EpisodeRun:
     `outputs` holds, for each topic, sums over the messages that the nodes published, if the plan asks for them and the
     nodes run in this process.
 
+    `parameters` holds, by absolute name, the numbers that nodes in this process get as parameters from outside, such as
+    launch files or the test.
+
     `simulator` is true if an external simulator was the world; then the same plan may give another result.
 
     `lost` has, for each run of the episode whose simulator died or hung, the reason in brief; the result is that of the
@@ -72,6 +75,7 @@ class EpisodeRun:
     simulator: bool = False
     outputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
     lost: tuple[str, ...] = ()
+    parameters: Mapping[str, bool | int | float] = field(default_factory=dict)
 
 
 class Pending(Protocol):

@@ -48,6 +48,17 @@ class Place:
     share: float = 1.0
 
 
+@dataclass(frozen=True, slots=True)
+class ParameterInFile(Operand):
+    """A parameter that is searched where a file sets it, because its uses stand for several parameters.
+
+    `span` is a use of the parameter. `size` is the usual size of such a parameter if its value is 0, or 0 if unknown.
+    """
+
+    place: Place | None = None
+    size: float = 0.0
+
+
 def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
     """Return the definitions of an operand's constants; empty unless all are numbers away from the use.
 
@@ -143,7 +154,7 @@ def package_files(root: Path, node: Path) -> Mapping[str, str]:
 
 def configured(name: str, files: Mapping[str, str]) -> Iterator[Place]:
     """Yield the numbers that configuration files assign to the parameter `name`."""
-    key = re.split(r"[/.~]", name)[-1]
+    key = _last(name)
     for path, text in files.items():
         if _kind(Path(path)) == "launch.py":
             yield from _launched(path, key, text)
@@ -179,7 +190,7 @@ def _target(source: Document, node: ast.expr) -> str:
 
 def computed_at(name: str, files: Mapping[str, str]) -> str:
     """Return where a Python launch file computes a parameter in a way that cannot be changed, as a string, or ""."""
-    key = re.split(r"[/.~]", name)[-1]
+    key = _last(name)
     for path, text in files.items():
         source = _python(path, text) if _kind(Path(path)) == "launch.py" else None
         node = next(computed(key, source.tree), None) if source is not None else None
@@ -255,15 +266,20 @@ def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
     """Return the other places that use the constant of these operands, as `path:line`, in order."""
     mine = {(operand.span.path, operand.span.line) for operand in used}
     spans = {span for operand in used for span in (operand.definition, *operand.definitions)} - {None}
-    names = {parameter(analysis, operand) for operand in used} - {""}
+    names = {_last(parameter(analysis, operand)) for operand in used} - {""}
     found: dict[str, None] = {}
     for step in analysis.sites:
         for operand in analysis.operands(step.site):
             theirs = {operand.definition, *operand.definitions}
-            shared = not spans.isdisjoint(theirs) or (names and parameter(analysis, operand) in names)
+            shared = not spans.isdisjoint(theirs) or _last(parameter(analysis, operand)) in names
             if shared and (operand.span.path, operand.span.line) not in mine:
                 found[f"{operand.span.path}:{operand.span.line}"] = None
     return list(found)
+
+
+def _last(name: str) -> str:
+    """Return the last part of a parameter's name."""
+    return re.split(r"[/.~]", name)[-1]
 
 
 def _entry_of_parameter(call: ast.Call) -> str:

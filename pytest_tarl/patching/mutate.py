@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.charts import Chart, distance
-from pytest_tarl.patching.definitions import Place
+from pytest_tarl.patching.definitions import ParameterInFile, Place
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.expressions import counting, rounded
 from pytest_tarl.patching.fields import in_integer_field
@@ -89,6 +89,14 @@ def step_of(mutation: Mutation) -> float | None:
     by = float(mutation.value)
     new = by if mutation.operand.literal or not constant else float(constant) * by
     return mutation.chart.step(float(constant), new)
+
+
+def located(mutation: Mutation) -> Mutation:
+    """Return the mutation of a parameter in a file with its place there; all others unchanged."""
+    operand = mutation.operand
+    if isinstance(operand, ParameterInFile) and mutation.place is None:
+        return replace(mutation, place=operand.place)
+    return mutation
 
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:

@@ -16,7 +16,14 @@ from pytest_tarl.patching.definitions import edits as definition_edits
 from pytest_tarl.patching.document import Document, Edit, apply_edits, apply_plain_edits
 from pytest_tarl.patching.expressions import negated, number, scaled, shifted
 from pytest_tarl.patching.guards import Reading, always, condition, held
-from pytest_tarl.patching.mutate import Mutation, analysed_document, form_values, needs_integer, redefinition
+from pytest_tarl.patching.mutate import (
+    Mutation,
+    analysed_document,
+    form_values,
+    located,
+    needs_integer,
+    redefinition,
+)
 from pytest_tarl.patching.statements import Change, branched, choices, doubled, lazy, neighbours, replaced
 from pytest_tarl.patching.structures import Form, form_edits
 from pytest_tarl.patching.subscriptions import Subscriptions
@@ -40,6 +47,9 @@ def rewrite(
     `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that must be added. `texts`
     holds further files that define constants. Raise RepairError if a change cannot be written.
     """
+    mutations = [located(mutation) for mutation in mutations]
+    if any(one.place is not None for one in mutations) and not all(map(always, guard.conjuncts)):
+        raise RepairError("A number at its definition cannot have a condition.")
     conditions = Conditions(analysis, guard, topics)
     edits: dict[str, list[Edit]] = {}
     here = [mutation for mutation in mutations if mutation.place is None and mutation.form is None]

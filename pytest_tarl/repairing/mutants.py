@@ -9,7 +9,7 @@ from pathlib import Path
 from pytest_tarl.errors import RepairError, StaleTextError, TarlError
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.crossed_limits import crosses
-from pytest_tarl.patching.mutate import Mutation, analysed_document, is_integral, mutations
+from pytest_tarl.patching.mutate import Mutation, analysed_document, is_integral, located, mutations
 from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.recording import sound
 from pytest_tarl.repairing.request import Order
@@ -55,8 +55,12 @@ class Mutants:
 
     def _read_places(self, candidate: Candidate) -> None:
         """Read the files outside the analysis in which the candidate changes constants."""
-        for place in {mutation.place for mutation in candidate.mutations if mutation.place is not None}:
-            if place.path not in self.order.analysis.sources and place.path not in self.texts:
+        for place in {located(mutation).place for mutation in candidate.mutations} - {None}:
+            if (
+                place is not None
+                and place.path not in self.order.analysis.sources
+                and place.path not in self.texts
+            ):
                 self.texts[place.path] = (self.order.root / place.path).read_bytes().decode("utf-8")
 
     def foresee(self, wanted: Iterable[Wanted], drift: str | None) -> None:

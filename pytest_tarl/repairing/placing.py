@@ -18,8 +18,9 @@ from pytest_tarl.patching.definitions import (
     parameter,
     users,
 )
-from pytest_tarl.patching.mutate import Mutation, redefinition
+from pytest_tarl.patching.mutate import Mutation, located, redefinition
 from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
@@ -41,7 +42,8 @@ class Placing:
     def __call__(self, candidate: Candidate, trials: Trials) -> Candidate | None:
         """Return the candidate with its final places, or None if the place required by `--tarl-edit` does not work."""
         edit = self.order.options.edit
-        movable = [one for one in candidate.mutations if not one.operand.literal and one.form is None]
+        candidate = replace(candidate, mutations=tuple(map(located, candidate.mutations)))
+        movable = [one for one in candidate.mutations if not _stays(one)]
         if edit == "use" or candidate.guard.conjuncts or not movable:
             return candidate
         try:
@@ -55,15 +57,30 @@ class Placing:
         for mutation in candidate.mutations:
             if mutation.place is None and not candidate.guard.conjuncts and mutation.operand in self._why:
                 yield self._why[mutation.operand]
+        yield from self._unused(candidate)
         for place in dict.fromkeys(one.place for one in candidate.mutations if one.place is not None):
             yield from self._users(place, [m.operand for m in candidate.mutations if m.place == place])
+
+    def _unused(self, candidate: Candidate) -> Iterator[str]:
+        """Yield notes that name the numbers of a changed variable that stay, because this test does not use them."""
+        changed = {one.place for one in candidate.mutations if one.place is not None}
+        for operand in dict.fromkeys(one.operand for one in candidate.mutations if one.place is not None):
+            written = defined(self.order.analysis, operand)
+            if len(written) < 2 or alternatives(self.order.analysis, written):
+                continue
+            spots = {(place.path, place.line) for place in changed}
+            left = [f"{one.path}:{one.line}" for one in written if (one.path, one.line) not in spots]
+            if left and len(left) < len(written):
+                yield (
+                    f"`{operand.code}` gets other numbers at {', '.join(left)}, which stay unchanged, because the "
+                    "missions of this test do not use them"
+                )
 
     def _moved(self, candidate: Candidate, trials: Trials) -> Candidate | None:
         """Move mutations to definitions that the test uses; return None if there are none or if the result fails."""
         mutations: list[Mutation] = []
         for mutation in candidate.mutations:
-            stays = mutation.operand.literal or mutation.form is not None
-            places = () if stays else self._places(mutation, candidate, trials)
+            places = () if _stays(mutation) else self._places(mutation, candidate, trials)
             mutations += _at(mutation, places) or [mutation]
         mutations = _united(mutations)
         values: dict[Place, object] = {}
@@ -92,7 +109,7 @@ class Placing:
         return None
 
     def _left(self, mutations: Sequence[Mutation]) -> bool:
-        return any(one.place is None and not one.operand.literal and one.form is None for one in mutations)
+        return not all(map(_stays, mutations))
 
     def _places(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> tuple[Place, ...]:
         one = defined(self.order.analysis, mutation.operand) or mutation.operand
@@ -108,7 +125,7 @@ class Placing:
         apart = alternatives(analysis, written)
         for places in [(one,) for one in written[:MOST_PLACES]] if apart else [written]:
             if self._moves(mutation, places, candidate, trials):
-                return places
+                return tuple(places) if apart else self._in_use(mutation, places, candidate, trials)
         if not name:
             return ()
         file = (self.order.root / operand.span.path).resolve()
@@ -124,6 +141,32 @@ class Placing:
                 return (place,)
         self._why[operand] = self._given(name, operand, computed_at(name, texts))
         return ()
+
+    def _in_use(
+        self, mutation: Mutation, places: Sequence[Place], candidate: Candidate, trials: Trials
+    ) -> tuple[Place, ...]:
+        """Return the places that take part in the missions of the test; all of them if no change can be attributed.
+
+        A node may set a variable in several modes. A number of a mode that the test does not run stays, because nothing
+        shows that it should change. The whole change is compared with the change without one place, since a mission
+        that fails early may not come to it.
+        """
+        if not 1 < len(places) <= MOST_PLACES:
+            return tuple(places)
+        others = tuple(one for one in candidate.mutations if not _same_constant(one, mutation))
+        seeds = [pair.seed for pair in self.order.goal.pairs[:LOOKED_AT]]
+
+        def alike(kept: Sequence[Place]) -> bool:
+            whole, part = (
+                Candidate((*others, *_at(mutation, some)), candidate.guard) for some in (places, kept)
+            )
+            try:
+                return all(_same_mission(trials(whole, seed), trials(part, seed)) for seed in seeds)
+            except RepairError:
+                return False
+
+        needed = tuple(place for place in places if not alike([one for one in places if one != place]))
+        return needed if needed and (len(needed) == len(places) or alike(needed)) else tuple(places)
 
     def _moves(
         self, mutation: Mutation, places: Sequence[Place], candidate: Candidate, trials: Trials
@@ -173,6 +216,16 @@ class Placing:
                 f"{place.name} at {place.path}:{place.line} is also used by {', '.join(others[:MOST_NAMED])}{more}; "
                 "this run repeated the recorded tests that use it"
             )
+
+
+def _same_mission(one: Outcome, other: Outcome) -> bool:
+    """Return whether two episodes of one seed earned the same and published the same, if that is known."""
+    return one.total == other.total and one.outputs == other.outputs
+
+
+def _stays(mutation: Mutation) -> bool:
+    """Return whether a mutation is already where it belongs: at a literal, at a definition, or a new expression."""
+    return mutation.operand.literal or mutation.form is not None or mutation.place is not None
 
 
 def _same_constant(one: Mutation, other: Mutation) -> bool:

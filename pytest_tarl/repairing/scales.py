@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.charts import SHARE, Chart, offset
+from pytest_tarl.patching.definitions import ParameterInFile
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.mutate import is_integral
 from pytest_tarl.repairing.request import Order
@@ -43,6 +44,8 @@ def _chart(order: Order, operand: Operand, sizes: TypicalSizes) -> Chart | None:
             return None
     except (RepairError, KeyError):
         return None
+    if isinstance(operand, ParameterInFile) and not value and operand.size:
+        return offset(operand.size)
     if NEARLY_ALL <= value < 1.0:
         return SHARE
     if operand.literal and value:

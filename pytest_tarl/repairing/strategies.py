@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pytest_tarl import seeds
 from pytest_tarl.model import Guard
+from pytest_tarl.repairing.file_parameters import file_parameters, reads_one
 from pytest_tarl.repairing.labels import quantities
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.name_scopes import name_scope
@@ -126,7 +127,19 @@ def operands(order: Order) -> tuple[Operand, ...]:
         found |= dict.fromkeys(given, best)
     found |= _given_to_several(analysis, found, ranks)
     ordered = sorted(found, key=lambda o: found[o])
-    return tuple(sorted(quantities(analysis, dict.fromkeys(ordered)), key=writing))
+    kept = quantities(analysis, dict.fromkeys(ordered))
+    return tuple(sorted(_with_parameters(order, kept), key=writing))
+
+
+def _with_parameters(order: Order, operands: Sequence[Operand]) -> list[Operand]:
+    """Return the operands, after the parameters in files that are none by themselves.
+
+    A call that reads one of these parameters is left out, unless a repair may need a condition, which stands at a use.
+    """
+    inside = file_parameters(order, operands)
+    calls = {one.span for one in inside} if inside and order.permanent else set()
+    kept = [one for one in operands if one.span not in calls or not reads_one(order.analysis, one)]
+    return [*inside, *kept]
 
 
 def _given_to_several(

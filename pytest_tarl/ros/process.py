@@ -44,7 +44,17 @@ class Network:
         self.services = ServiceDirectory(self.scheduler)
         self.bus = Bus(self.scheduler, run, self.services)
         self.processes: list[Process] = []
+        # numbers that nodes read as parameters, by absolute name, with slashes also between the keys of nested ones
+        self.parameters_read: dict[str, bool | int | float] = {}
         self._parts: dict[Any, Any] = {}
+
+    def read(self, name: str, value: Any) -> None:
+        """Note that a node reads a parameter: its number, or the numbers of a subtree."""
+        if isinstance(value, Mapping):
+            for key, inner in value.items():
+                self.read(f"{name}/{key}", inner)
+        elif isinstance(value, int | float):
+            self.parameters_read[name] = value
 
     @cached_property
     def parameter_server(self) -> ParameterServer:

@@ -17,7 +17,18 @@ from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 
 COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
-TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values", "simulator", "outputs")
+TOLD = (
+    "passed",
+    "failure",
+    "broken",
+    "topics",
+    "crashed",
+    "stuck",
+    "values",
+    "simulator",
+    "outputs",
+    "parameters",
+)
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
 ALIVE = b""  # heartbeat: shows that the worker's Python threads can run
@@ -80,6 +91,7 @@ def run_message(run: EpisodeRun) -> bytes:
         "stuck": run.stuck,
         "simulator": run.simulator,
         "outputs": {topic: tuple(sums) for topic, sums in run.outputs.items()},
+        "parameters": dict(run.parameters),
         "notes": run.notes,
         "lost": run.lost,
         "older": [str(path) for path in run.older],

@@ -32,6 +32,8 @@ class Server:
         self.ns = f"{node.name}/{namespace_prefix}".rstrip("/")
         defaults = {name: one["default"] for name, one in described(type).items()}
         given = {name: get_param(f"{self.ns}/{name}", value) for name, value in defaults.items()}
+        for name, value in given.items():
+            node.process.ros.read(f"{self.ns}/{name}", value)
         self.config = Config(defaults)
         self._pub = Publisher(
             f"{self.ns}/parameter_updates", message_type("dynamic_reconfigure/Config"), latch=True

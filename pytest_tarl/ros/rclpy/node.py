@@ -80,6 +80,8 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
             **overrides(self._command_line.parameters, self._full_name),
         }
         NodeParameters.__init__(self, {**values, **given}, allow_undeclared_parameters)
+        for name, value in values.items():
+            self.process.ros.read(f"{self._full_name}/{name.replace('.', '/')}", value)
         if automatically_declare_parameters_from_overrides:
             self.declare_all_overrides()
         if start_parameter_services:

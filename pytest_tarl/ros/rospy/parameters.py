@@ -22,8 +22,10 @@ def get_param(param_name: str, default: Any = _NOTHING) -> Any:
     """Return a parameter. Raise KeyError if the parameter is not set and there is no default."""
     asked()
     node, server = _server("get_param")
-    value = server.get(node.resolve(param_name), _NOTHING)
+    name = node.resolve(param_name)
+    value = server.get(name, _NOTHING)
     if value is not _NOTHING:
+        node.process.ros.read(name, value)
         return value
     if default is _NOTHING:
         raise KeyError(param_name)

@@ -61,7 +61,9 @@ def test_the_search_gets_only_the_numbers_that_control_the_node(tmp_path: Path) 
     node = tmp_path / "keeper.py"
     node.write_text(KEEPER)
     order: Any = SimpleNamespace(
-        analysis=analyse([node], root=tmp_path), comparison=SimpleNamespace(culprits=())
+        analysis=analyse([node], root=tmp_path),
+        online=SimpleNamespace(recorded=SimpleNamespace(parameters={})),
+        comparison=SimpleNamespace(culprits=()),
     )
     found = {one.value for one in (*operands(order), *aside_operands(order))}
     assert {1.25, 0.5, 0.2} <= found

@@ -83,7 +83,11 @@ def suggested(folder: Path, *missions: dict[str, tuple[float, float]]) -> list[d
             site=np.array(site), event_step=np.array(step), flow=np.array(flow), reward=np.zeros(5)
         )
 
-    order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=()))
+    order: Any = SimpleNamespace(
+        analysis=analysis,
+        online=SimpleNamespace(recorded=SimpleNamespace(parameters={})),
+        comparison=SimpleNamespace(culprits=()),
+    )
     recorded: Any = [(trace(values, 0), trace(values, 1)) for values in missions]
     found: list[Hint] = hints(order, recorded, operands(order))
     return [{operand.code: factor for operand, factor in hint} for hint in found]
@@ -205,7 +209,11 @@ def test_a_threshold_of_a_received_number_stays_between_its_groups(
             reward=np.zeros(flow.size),
         )
 
-    order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=()))
+    order: Any = SimpleNamespace(
+        analysis=analysis,
+        online=SimpleNamespace(recorded=SimpleNamespace(parameters={})),
+        comparison=SimpleNamespace(culprits=()),
+    )
     recorded: Any = [(trace(21.0, 28.0), trace(21.0, 23.0, 21.0, 23.0))] * 2
     found = [hint for hint in hints(order, recorded, operands(order)) if len(hint) == 1]
     by = [factor for ((one, factor),) in found if one.code == "CHARGER"]
@@ -249,7 +257,11 @@ def test_a_literal_tolerance_that_drifted_missions_never_reach_is_widened(
             site=np.full(values.size, number), event_step=steps, flow=values, reward=np.zeros(values.size)
         )
 
-    order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=()))
+    order: Any = SimpleNamespace(
+        analysis=analysis,
+        online=SimpleNamespace(recorded=SimpleNamespace(parameters={})),
+        comparison=SimpleNamespace(culprits=()),
+    )
     recorded: Any = [(trace(ends[0]), trace(ends[1])) for _ in range(2)]
     found = hints(order, recorded, operands(order))
     assert [{operand.code: factor for operand, factor in hint} for hint in found] == expected

@@ -53,7 +53,11 @@ def test_constants_of_objects_are_searched_where_they_are_stored(
     path.write_text(NODE.format(setup=setup, use=use))
     analysis = analyse([path], root=tmp_path)
     places = [SimpleNamespace(site=SimpleNamespace(id=str(step.site))) for step in analysis.sites]
-    order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=places))
+    order: Any = SimpleNamespace(
+        analysis=analysis,
+        online=SimpleNamespace(recorded=SimpleNamespace(parameters={})),
+        comparison=SimpleNamespace(culprits=places),
+    )
     found = [one.code for one in operands(order)]
     assert sorted(found) == sorted(expected)
 
@@ -108,6 +112,10 @@ def test_constants_of_several_objects_of_a_class_are_searched_one_by_one(
     path.write_text(WHEELS.format(setup=setup, use=use))
     analysis = analyse([path], root=tmp_path)
     places = [SimpleNamespace(site=SimpleNamespace(id=str(step.site))) for step in analysis.sites]
-    order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=places))
+    order: Any = SimpleNamespace(
+        analysis=analysis,
+        online=SimpleNamespace(recorded=SimpleNamespace(parameters={})),
+        comparison=SimpleNamespace(culprits=places),
+    )
     found = [one.code for one in operands(order)]
     assert sorted(found) == sorted(expected)

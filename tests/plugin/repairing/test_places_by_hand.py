@@ -84,6 +84,7 @@ def placing(folder: Path, edit: str = "auto", text: str = NODE) -> Placing:
         analysis=analyse([Path("keeper.py")]),
         root=folder,
         goal=GOAL,
+        online=SimpleNamespace(recorded=SimpleNamespace(parameters={})),
         comparison=SimpleNamespace(culprits=()),
         fixture=SimpleNamespace(test="test_it.py::test_it", topics={}),
         options=SimpleNamespace(edit=edit),

@@ -68,6 +68,7 @@ def order(tmp_path: Path) -> Any:
     return SimpleNamespace(
         analysis=analyse([tmp_path / "keeper.py"], root=tmp_path),
         root=tmp_path,
+        online=SimpleNamespace(recorded=SimpleNamespace(parameters={})),
         comparison=SimpleNamespace(culprits=(), sensors=()),
         options=SimpleNamespace(seed=3, structure=True),
         goal="goal",

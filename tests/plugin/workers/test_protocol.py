@@ -53,6 +53,7 @@ RUN = EpisodeRun(
     older=(Path("/a/node.py"), Path("gains.py")),
     simulator=True,
     outputs={"/cmd": [2.0, 5.0]},
+    parameters={"/keeper/gain": 2.0, "/keeper/reverse": True},
 )
 
 

@@ -1,0 +1,52 @@
+"""The keys above a number in a YAML or JSON file, which say to which node a parameter belongs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+from pytest_tarl.patching.definitions import Place
+
+_WILDCARDS = frozenset({"*", "**", "ros__parameters"})
+_MOST_FILES = 64  # maximum number of files whose keys are cached
+
+
+def keys_above(place: Place, text: str) -> tuple[str, ...] | None:
+    """Return the keys of a number in a file with this text, without wildcards; None for a launch file, for example."""
+    if not place.path.endswith((".yaml", ".yml", ".json")):
+        return None
+    return _keys(place.path, text).get(place.start)
+
+
+def belongs(name: str, keys: Sequence[str]) -> bool:
+    """Return whether a number with these keys can be the value of a parameter with an absolute name: `/base/gain`."""
+    return name.strip("/").split("/")[-len(keys) :] == [*keys]
+
+
+@lru_cache(_MOST_FILES)
+def _keys(path: str, text: str) -> dict[int, tuple[str, ...]]:  # noqa: ARG001 (a file has its own entry)
+    """Return the keys above each number of a file, by its offset, without wildcards; empty without PyYAML."""
+    try:
+        import yaml
+
+        root = yaml.compose(text, Loader=yaml.SafeLoader)
+    except (ModuleNotFoundError, ValueError, RecursionError):
+        return {}
+    except yaml.YAMLError:
+        return {}
+    found: dict[int, tuple[str, ...]] = {}
+    pending: list[tuple[tuple[str, ...], Any]] = [((), root)] if root is not None else []
+    seen: set[int] = set()
+    while pending:
+        above, node = pending.pop()
+        if node.id == "scalar":
+            found[node.start_mark.index] = above
+        elif node.id == "mapping" and id(node) not in seen:
+            seen.add(id(node))
+            for key, value in node.value:
+                parts = re.split(r"[/.]", str(key.value)) if key.id == "scalar" else []
+                named = tuple(part for part in parts if part and part not in _WILDCARDS)
+                pending.append(((*above, *named), value))
+    return found

@@ -1,0 +1,183 @@
+"""Parameters that nodes read under names that the analysis does not know, changed in the file that sets them.
+
+In `config[mean]`, `get_param(f"~{axis}_gain")` or a loop over names, the use stands for several parameters, and in
+`[get_param("~x", 0.0), get_param("~y", 0.0)]`, the node may store them where the analysis loses them. The episodes of
+the comparison tell the names and values of the parameters that were read. The number of such a parameter in a YAML,
+launch or `.cfg` file is then a constant of the search by itself, and is always changed there.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from statistics import median
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.definitions import (
+    PARAMETER_CALLS,
+    ParameterInFile,
+    Place,
+    configured,
+    package_files,
+    parameter,
+)
+from pytest_tarl.patching.document import Document, called, document
+from pytest_tarl.patching.key_paths import belongs, keys_above
+from pytest_tarl.repairing.request import Order
+from tarl_lint.api import Analysis
+from tarl_lint.model import Operand, SiteId, Span
+
+MOST = 16  # maximum number of parameters to search in this way
+MOST_PLACES = 2  # maximum number of places to search for one parameter, if several files of a kind may set it
+NAMED = 2  # minimum number of keys of a number in a file that names its node
+USE = "use"  # value of --tarl-edit with which only uses are changed
+
+Number = bool | int | float
+
+
+def file_parameters(order: Order, operands: Sequence[Operand]) -> list[ParameterInFile]:
+    """Return the parameters in files whose uses are no operands by themselves, those that a flow names first."""
+    read = order.online.recorded.parameters
+    if not read or order.options.edit == USE:
+        return []
+    analysis, texts = order.analysis, files_of_packages(order)
+    calls = {key: one for one in operands if (key := _key_of_call(analysis, one))}
+    known = {key for one in operands if one not in calls.values() for key in _keys(analysis, one)}
+    named = dict(_named(analysis))
+    found: list[ParameterInFile] = []
+    for name, value in sorted(read.items(), key=lambda one: one[0].rpartition("/")[2] not in named):
+        key = name.rpartition("/")[2]
+        use = _use(analysis, operands, key, calls, named)
+        if key in known or use is None or len(found) >= MOST:
+            continue
+        for place in places_in_force(name, value, texts)[:MOST_PLACES]:
+            size = _usual_size(key, read) if not value else 0.0
+            column = place.start - texts[place.path].rfind("\n", 0, place.start)
+            written = Span(place.path, place.line, column, place.line, column + place.end - place.start)
+            found.append(ParameterInFile(*use, key, value, written, key, (), place, size))
+    return found
+
+
+def files_of_packages(order: Order) -> dict[str, str]:
+    """Return the texts of the configuration files of the nodes' packages, by path."""
+    root = order.root.resolve()
+    found: dict[str, str] = {}
+    for path in order.analysis.sources:
+        found |= package_files(root, (order.root / path).resolve())
+    return found
+
+
+def places_in_force(name: str, value: Number, texts: Mapping[str, str]) -> list[Place]:
+    """Return the numbers in files that may be the value which a node read for a parameter, by its absolute name.
+
+    A value in a YAML file whose keys name the node comes before all others, and the default in a `.cfg` file is in
+    force only if no other file sets the parameter. Only places of the best kind are returned.
+    """
+    ranked: dict[int, list[Place]] = {}
+    for place in configured(name, texts):
+        if isinstance(place.value, bool) == isinstance(value, bool) and place.value == value:
+            keys = keys_above(place, texts[place.path])
+            if keys is None or belongs(name, keys):
+                ranked.setdefault(_rank(place, keys), []).append(place)
+    return ranked[min(ranked)] if ranked else []
+
+
+def _rank(place: Place, keys: Sequence[str] | None) -> int:
+    """Return 0 for a number under the names of a node, 1 for other parameter files, 2 for the default in a `.cfg`."""
+    return 2 if place.path.endswith(".cfg") else int(keys is None or len(keys) < NAMED)
+
+
+def reads_one(analysis: Analysis, operand: Operand) -> bool:
+    """Return whether an operand is the call that reads one parameter."""
+    return bool(_key_of_call(analysis, operand))
+
+
+def _key_of_call(analysis: Analysis, operand: Operand) -> str:
+    """Return the parameter's key if the operand is the call that reads it, else ""."""
+    node = _node(analysis, operand)
+    if not isinstance(node, ast.Call) or called(node) not in PARAMETER_CALLS:
+        return ""
+    return _last(parameter(analysis, operand))
+
+
+def _keys(analysis: Analysis, operand: Operand) -> Iterator[str]:
+    """Yield the keys of the parameters that an operand may stand for by itself."""
+    yield _last(parameter(analysis, operand))
+    if operand.value is not None:
+        yield operand.code.rpartition(".")[2]
+
+
+def _is_nameless(analysis: Analysis, operand: Operand) -> bool:
+    """Return whether an operand has no known value and no known parameter."""
+    return operand.value is None and not operand.definitions and not parameter(analysis, operand)
+
+
+def _use(
+    analysis: Analysis,
+    operands: Sequence[Operand],
+    key: str,
+    calls: Mapping[str, Operand],
+    named: Mapping[str, tuple[SiteId, Span]],
+) -> tuple[SiteId, Span] | None:
+    """Return the statement and expression that most likely use a parameter; None if the program has no flow.
+
+    This is the call that reads it; an expression without a known parameter in a function that contains the key; an
+    expression of a flow that is named like the parameter; or else any expression without a known parameter, or any.
+    """
+    if key in calls:
+        return calls[key].site, calls[key].span
+    nameless = [one for one in operands if _is_nameless(analysis, one)]
+    near = next((one for one in nameless if key in _texts(analysis, one)), None)
+    if near is None and key in named:
+        return named[key]
+    one = near or next(iter([*nameless, *operands]), None)
+    return (one.site, one.span) if one is not None else next(iter(named.values()), None)
+
+
+def _named(analysis: Analysis) -> Iterator[tuple[str, tuple[SiteId, Span]]]:
+    """Yield the names and attributes that the statements of flows read, each with its statement and place."""
+    for step in reversed(analysis.sites):
+        try:
+            source = document(step.span.path, analysis.sources[step.span.path])
+        except (RepairError, KeyError):
+            continue
+        for node in ast.walk(source.tree):
+            reads = isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
+            if isinstance(node, ast.expr) and reads and step.span.line <= node.lineno <= step.span.end_line:
+                yield ast.unparse(node).rpartition(".")[2], (step.site, source.span(node))
+
+
+def _texts(analysis: Analysis, operand: Operand) -> set[str]:
+    """Return the strings in the function around an operand."""
+    node = _node(analysis, operand)
+    if node is None:
+        return set()
+    source = document(operand.span.path, analysis.sources[operand.span.path])
+    around = source.function(source.statement(node)) or source.tree
+    return {
+        one.value for one in ast.walk(around) if isinstance(one, ast.Constant) and isinstance(one.value, str)
+    }
+
+
+def _node(analysis: Analysis, operand: Operand) -> ast.expr | None:
+    try:
+        source: Document = document(operand.span.path, analysis.sources[operand.span.path])
+    except (RepairError, KeyError):
+        return None
+    return source.at(operand.span)
+
+
+def _usual_size(key: str, read: Mapping[str, Number]) -> float:
+    """Return the usual size of a parameter that is 0: that of parameters whose names begin alike, else of none."""
+    first = re.split(r"[_.]", key)[0]
+    alike = [
+        abs(value)
+        for name, value in read.items()
+        if value and not isinstance(value, bool) and name.rpartition("/")[2].split("_")[0] == first
+    ]
+    return float(median(alike)) if alike else 0.0
+
+
+def _last(name: str) -> str:
+    return re.split(r"[/.~]", name)[-1]

@@ -1,0 +1,239 @@
+"""A parameter that the node reads under a computed name is changed in the file that sets it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.definitions import ParameterInFile
+from pytest_tarl.patching.mutate import located, mutations
+from pytest_tarl.patching.rewriting import rewrite
+from pytest_tarl.repairing.file_parameters import files_of_packages, places_in_force
+from pytest_tarl.repairing.placing import Placing
+from pytest_tarl.repairing.scales import charts
+from pytest_tarl.repairing.strategies import operands
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate, effective_value
+from pytest_tarl.sensors import Sensor
+from tarl_lint.api import analyse
+
+NODE = """\
+import rospy
+from std_msgs.msg import Float64
+
+{before}
+
+class Keeper:
+    def __init__(self):
+        {first}
+        self.out = rospy.Publisher("/out", Float64, queue_size=1)
+        rospy.Subscriber("/in", Float64, self.on_value)
+
+    {method}
+
+    def on_value(self, msg):
+        self.out.publish({use} * msg.data + {added})
+
+
+if __name__ == "__main__":
+    rospy.init_node("keeper")
+    Keeper()
+    rospy.spin()
+"""
+YAML = """\
+other:
+  gain_left: 2.0
+keeper:
+  gain_left: 2.0  # per second
+  gain_right: 3.0
+  offset_left: 0.0
+  offset_right: 0.25
+"""
+FILES = {
+    "package.xml": "<package><name>tank</name></package>",
+    "config/params.yaml": YAML,
+    "cfg/Keeper.cfg": 'gen.add("gain_left", double_t, 0, "per second", 2.0, 0.0, 10.0)\n',
+}
+READ = {
+    "/keeper/gain_left": 2.0,
+    "/keeper/gain_right": 3.0,
+    "/keeper/offset_left": 0.0,
+    "/keeper/offset_right": 0.25,
+}
+SET_BY_MESSAGES = {
+    "first": (
+        'self.gain_left = rospy.get_param("~gain_left", 1.0)\n'
+        '        rospy.Subscriber("/gain", Float64, self.on_gain)'
+    ),
+    "method": "def on_gain(self, msg):\n        self.gain_left = msg.data\n",
+    "use": "self.gain_left",
+    "added": "msg.spare",
+}
+FORMS: Mapping[str, Mapping[str, str]] = {
+    "loop": {
+        "first": (
+            'self.gains = [0.0, 0.0]\n        for at, side in enumerate(("gain_left", "gain_right")):\n'
+            '            self.gains[at] = rospy.get_param("~" + side)'
+        ),
+        "use": "self.gains[0]",
+    },
+    "formatted name": {
+        "first": 'self.gains = {side: rospy.get_param(f"~gain_{side}") for side in ("left", "right")}',
+        "use": 'self.gains["left"]',
+    },
+    "set by messages": SET_BY_MESSAGES,
+    "list of calls": {
+        "first": 'self.gains = [rospy.get_param("~gain_left", 1.0), rospy.get_param("~gain_right", 1.0)]',
+        "use": "max(gain for gain in self.gains)",
+    },
+    "helper": {
+        "before": 'def read(name):\n    return rospy.get_param("~" + name)\n\n',
+        "first": 'self.gain = read("gain_" + "left")',
+        "use": "self.gain",
+    },
+}  # fmt: skip
+
+
+def order_of(folder: Path, form: Mapping[str, str], read: Mapping[str, Any] = READ, **options: Any) -> Any:
+    usual = {"before": "", "method": "", "added": "0.0"}
+    for name, text in (FILES | {"keeper.py": NODE.format(**usual | {**form})}).items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
+    return SimpleNamespace(
+        analysis=analyse([Path("keeper.py")], root=folder),
+        root=folder,
+        comparison=SimpleNamespace(culprits=(), sensors=()),
+        fixture=SimpleNamespace(sensors=(), topics={}),
+        online=SimpleNamespace(recorded=SimpleNamespace(parameters=read)),
+        options=SimpleNamespace(edit=options.get("edit", "auto")),
+        permanent=options.get("permanent", True),
+    )
+
+
+@pytest.fixture(autouse=True)
+def _in_the_project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def in_files(order: Any) -> dict[str, ParameterInFile]:
+    """Return the parameters in files among the operands, by name."""
+    found = [one for one in operands(order) if isinstance(one, ParameterInFile)]
+    assert len({one.code for one in found}) == len(found)
+    return {one.code: one for one in found}
+
+
+def changed(order: Any, one: ParameterInFile, factor: float) -> dict[str, str]:
+    """Return the text of each file that a factor on a parameter changes."""
+    mutation = mutations(one, factor)
+    assert mutation is not None
+    return rewrite(order.analysis, [mutation], ALWAYS, {}, files_of_packages(order))
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_parameter_with_a_computed_name_is_changed_in_the_section_of_its_node(
+    form: str, tmp_path: Path
+) -> None:
+    order = order_of(tmp_path, FORMS[form])
+    found = in_files(order)
+    one = found["gain_left"]
+    assert (one.value, one.setting) == (2.0, "gain_left")
+    texts = changed(order, one, 2.5)
+    assert texts == {"config/params.yaml": YAML.replace("  gain_left: 2.0  #", "  gain_left: 5.0  #")}
+
+
+def test_a_parameter_of_zero_moves_on_the_scale_of_parameters_whose_names_begin_alike(tmp_path: Path) -> None:
+    order = order_of(tmp_path, FORMS["loop"])
+    one = in_files(order)["offset_left"]
+    assert one.size == 0.25
+    chart = charts(SimpleNamespace(**vars(order) | {"fixture": NO_VALUES}), [one])[one]  # type: ignore[arg-type]
+    assert chart.size == 0.25
+    (text,) = changed(order, one, chart.factor(0.0, 2.0) or 1.0).values()
+    assert text == YAML.replace("offset_left: 0.0", "offset_left: 0.25")
+
+
+class _Values:
+    """A recording without values."""
+
+    def __getattr__(self, name: str) -> Any:
+        return _Values()
+
+    def __call__(self, *_: Any) -> Any:
+        return _Values()
+
+    def __iter__(self) -> Any:
+        return iter(())
+
+
+NO_VALUES = _Values()
+
+
+def test_named_parameters_and_those_that_no_file_sets_are_not_added(tmp_path: Path) -> None:
+    named = {"first": 'self.gain = rospy.get_param("~gain_left", 1.0)', "use": "self.gain"}
+    assert "gain_left" not in in_files(order_of(tmp_path, named))
+    loop = FORMS["loop"]
+    assert (
+        in_files(order_of(tmp_path, loop, {"/keeper/gain_left": 2.5})) == {}
+    )  # the test passes another value
+    assert in_files(order_of(tmp_path, loop, {})) == {}
+    assert in_files(order_of(tmp_path, loop, edit="use")) == {}
+
+
+def test_a_repair_that_may_need_a_condition_keeps_the_call_as_well(tmp_path: Path) -> None:
+    for permanent in (True, False):
+        codes = [
+            one.code for one in operands(order_of(tmp_path, FORMS["list of calls"], permanent=permanent))
+        ]
+        assert "gain_left" in codes
+        assert ('rospy.get_param("~gain_left", 1.0)' in codes) is not permanent
+
+
+def test_a_parameter_in_a_file_cannot_have_a_condition(tmp_path: Path) -> None:
+    order = order_of(tmp_path, FORMS["loop"])
+    mutation = mutations(in_files(order)["gain_left"], 2.0)
+    assert mutation is not None
+    guard = Guard((Conjunct(Sensor("wet", topic="/wet", field="data"), 1.0, 1.0),))
+    with pytest.raises(RepairError, match="cannot have a condition"):
+        rewrite(order.analysis, [mutation], guard, {}, files_of_packages(order))
+
+
+def test_the_label_and_the_accepted_change_name_the_place_in_the_file(tmp_path: Path) -> None:
+    order = order_of(tmp_path, FORMS["loop"])
+    mutation = mutations(in_files(order)["gain_left"], 2.0)
+    assert mutation is not None
+    assert effective_value(mutation) == effective_value(located(mutation)) == 4.0
+    mutants: Any = SimpleNamespace(order=order)
+    placed: Any = Placing(mutants)(Candidate((mutation,), ALWAYS), None)  # type: ignore[arg-type]
+    (place,) = [one.place for one in placed.mutations]
+    assert (place.path, place.line, place.name) == ("config/params.yaml", 4, "gain_left")
+
+
+@pytest.mark.parametrize(
+    ("name", "files", "expected"),
+    [
+        ("/keeper/gain", {"a.yaml": "gain: 2.0\n", "b.yaml": "keeper:\n  gain: 2.0\n"}, ["b.yaml:2"]),
+        ("/ns/keeper/gain", {"b.yaml": "/ns/keeper:\n  ros__parameters:\n    gain: 2.0\n"}, ["b.yaml:3"]),
+        ("/keeper/gain", {"b.yaml": "/**: {ros__parameters: {gain: 2.0}}\n"}, ["b.yaml:1"]),
+        ("/keeper/pid/gain", {"b.yaml": "pid: {gain: 2.0}\nroll: {gain: 2.0}\n"}, ["b.yaml:1"]),
+        ("/keeper/gain", {"b.yaml": "other:\n  gain: 2.0\n", "a.cfg": FILES["cfg/Keeper.cfg"]}, []),
+        ("/keeper/gain_left", {"a.cfg": FILES["cfg/Keeper.cfg"]}, ["a.cfg:1"]),
+        (
+            "/keeper/gain",
+            {
+                "k.launch": '<launch><param name="gain" value="2.0"/></launch>',
+                "a.cfg": 'g.add("gain", d, 0, "", 2.0)',
+            },
+            ["k.launch:1"],
+        ),
+        ("/keeper/gain", {"b.yaml": "gain: true\nother: [\n"}, []),
+    ],
+)
+def test_the_number_in_force_is_the_one_whose_keys_name_the_node(
+    name: str, files: Mapping[str, str], expected: list[str]
+) -> None:
+    assert [f"{one.path}:{one.line}" for one in places_in_force(name, 2.0, files)] == expected
