@@ -158,7 +158,8 @@ class Placing:
 
         def alike(kept: Sequence[Place]) -> bool:
             whole, part = (
-                Candidate((*others, *_at(mutation, some)), candidate.guard) for some in (places, kept)
+                Candidate(tuple(_united([*others, *_at(mutation, some)])), candidate.guard)
+                for some in (places, kept)
             )
             try:
                 return all(_same_mission(trials(whole, seed), trials(part, seed)) for seed in seeds)
@@ -181,7 +182,8 @@ class Placing:
         others = tuple(one for one in candidate.mutations if not _same_constant(one, mutation))
         moved = tuple(_at(mutation, places))
         alone, beside, without = (
-            Candidate(changes, candidate.guard) for changes in (moved, (*others, *moved), others)
+            Candidate(changes, candidate.guard)
+            for changes in (moved, tuple(_united([*others, *moved])), others)
         )
         try:
             if trials(alone, pair.seed).total != pair.total:

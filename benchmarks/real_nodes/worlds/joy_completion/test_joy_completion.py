@@ -1,4 +1,4 @@
-"""JSK's head_teleop_joy_completion.py turns the pull on a lever into the walk of a led robot. A stiff lever gives less."""
+"""JSK's head_teleop_joy_completion.py turns a pull on a lever into the walk of a led robot. A stiff one gives less."""
 
 import math
 
