@@ -48,6 +48,7 @@ RUN = EpisodeRun(
     crashed=True,
     stuck=True,
     notes=("slow", "late"),
+    lost=("it ended with status 3",),
     values={"x": [1.0, 2.5]},
     judged=(Judged("level < 1", 0.5, 1.5), Judged("x > 0", -1.0, 2.0)),
     older=(Path("/a/node.py"), Path("gains.py")),
