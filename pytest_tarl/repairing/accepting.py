@@ -10,9 +10,9 @@ from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import STRONG, WEAK, further
-from pytest_tarl.repairing.centring import centred
+from pytest_tarl.repairing.centring import THIN, centred
 from pytest_tarl.repairing.good_range import GoodRange
-from pytest_tarl.repairing.known_missions import firing, harmed, harms_again, known_to_fail
+from pytest_tarl.repairing.known_missions import firing, harmed, harms_again, known_to_fail, lost_as_designed
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.missed import Missed
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
@@ -192,6 +192,7 @@ class Examiner:
         if isinstance(value, Tried):
             return value
         problem = self._failing_at_once(value, trials)
+        value = value if problem or chosen else self._cheaper(value, trials)
         placed = None if problem else self.placing(value, trials)
         if placed is None:
             return self._refused(value, problem or "not at its definition")
@@ -237,6 +238,26 @@ class Examiner:
             return WORSE if harmed(self.mutants, candidate, trials, self._missed) else ""
         except RepairError:
             return ""
+
+    def _cheaper(self, candidate: Candidate, trials: Trials) -> Candidate:
+        """Return a smaller change if a candidate loses much of the margin in designed missions and the change less.
+
+        A test can hardly show that the loss stays below the margin; it would only use up a share of α.
+        """
+        lost, margin = lost_as_designed(self.mutants, candidate, self._missed), self.order.reference.margin
+        for smaller in self.others.nearer(candidate, trials) if lost > THIN * margin else ():
+            if self._passes(smaller, trials) and not self._failing_at_once(smaller, trials):
+                less = lost_as_designed(self.mutants, smaller, self._missed)
+                return smaller if less < lost else candidate
+        return candidate
+
+    def _passes(self, candidate: Candidate, trials: Trials) -> bool:
+        """Return whether a candidate reaches the goal on the first known seeds."""
+        goal = self.order.goal
+        try:
+            return all(trials.reaches(candidate, pair.seed, goal) for pair in goal.pairs[:CONFIRMATIONS])
+        except RepairError:
+            return False
 
     def _refused(self, candidate: Candidate, reason: Reason) -> Tried:
         """Store that a candidate fails on known missions."""

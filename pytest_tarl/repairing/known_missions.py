@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from statistics import fmean
+
 from pytest_tarl.model import Reason
 from pytest_tarl.repairing.ledger import operands
 from pytest_tarl.repairing.missed import Missed
@@ -46,6 +48,13 @@ def harmed(mutants: Mutants, candidate: Candidate, trials: Trials, missed: Misse
     return False
 
 
+def lost_as_designed(mutants: Mutants, candidate: Candidate, missed: Missed) -> float:
+    """Return the mean loss of a candidate in the recorded missions that it ran, or 0 if it ran none."""
+    recorded = _recorded(mutants.order)
+    lost = [recorded[seed] - total for (one, seed), total in missed.designed.items() if one == candidate]
+    return fmean(lost) if lost else 0.0
+
+
 def harms_again(mutants: Mutants, candidate: Candidate, trials: Trials, missed: Missed) -> bool:
     """Return whether a candidate makes the same recorded mission worse as the same constants did before.
 
@@ -63,10 +72,14 @@ def _harms(mutants: Mutants, candidate: Candidate, seed: int, trials: Trials, mi
     if (candidate, seed) not in missed.designed:
         trials.charge()
         missed.designed[candidate, seed] = mutants.run(candidate, seed, None).total
-    offline = order.fixture.sample
-    known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))
-    least: float = known[seed] - (order.reference.mean - order.goal.near)
+    least = _recorded(order)[seed] - (order.reference.mean - order.goal.near)
     return missed.designed[candidate, seed] < least
+
+
+def _recorded(order: Order) -> dict[int, float]:
+    """Return the total reward of each recorded mission, by seed."""
+    offline = order.fixture.sample
+    return dict(zip(offline.seeds, offline.total.tolist(), strict=True))
 
 
 def firing(order: Order, candidate: Candidate) -> tuple[int, ...]:

@@ -22,6 +22,7 @@ from pytest_tarl.searching.gains import Part
 from pytest_tarl.searching.gentler import another_way, gentler
 from pytest_tarl.searching.moderate import MODERATE, extreme, moderate
 from pytest_tarl.searching.plainness import Oddness, instead_of_offset, kind, named, oddness, plainer
+from pytest_tarl.searching.plateau import NEARBY
 from pytest_tarl.searching.preference_search import Search
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING
 from pytest_tarl.searching.search import Candidate
@@ -105,12 +106,13 @@ class Preferences:
             yield from self.search.attempt(other, found.guard, step, pair)
 
     def _usual(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """If a change exceeds the usual commands, first try the same step on other constants, once.
+        """If a large change exceeds the usual commands, first try the same step on other constants, once.
 
         A simulator may obey a command that no motor or heater can follow.
         """
         search = self.search
-        if search.proposed or self._exceeded or not self._exceeds(found, pair):
+        large = change_size(unit, factor) > log(NEARBY)
+        if search.proposed or self._exceeded or not large or not self._exceeds(found, pair):
             return
         self._exceeded, begun = True, search.trials.spent
         others = sorted(

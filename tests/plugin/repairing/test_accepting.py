@@ -386,6 +386,25 @@ def test_a_narrow_window_between_two_refused_values_is_bisected(
     assert low <= accepted_factor(field, (low * weak, low * width * strong)) <= low * width
 
 
+class Taxed(Window):
+    """One operand that suffices above a factor, and costs reward in the designed world in proportion to its change."""
+
+    def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        if candidate == ORIGINAL or drift is not None:
+            return super().run(candidate, seed, drift)
+        (mutation,) = candidate.mutations
+        return Outcome(DESIGNED - 0.2 * (float(mutation.value) / 0.5 - 1.0), passed=True)
+
+
+@pytest.mark.parametrize(("factor", "accepted"), [(3.0, 3.0**0.375), (1.7, 1.7)])
+def test_a_change_that_loses_much_of_the_margin_as_designed_is_reduced_before_its_test(
+    factor: float, accepted: float
+) -> None:
+    field: Any = Taxed(1.5, 9.0)
+    assert accepted_factor(field, [factor]) == pytest.approx(accepted, rel=1e-3)
+    assert [by for by, _ in field.runs[-20:]] == [pytest.approx(accepted, rel=1e-3)] * 20
+
+
 class Edge(Window):
     """One operand that suffices above a factor; slightly below, it suffices in seven of eight missions."""
 
