@@ -240,10 +240,13 @@ class Examiner:
             return ""
 
     def _cheaper(self, candidate: Candidate, trials: Trials) -> Candidate:
-        """Return a smaller change if a candidate loses much of the margin in designed missions and the change less.
+        """Return a smaller structural change if a candidate loses much of the margin in designed missions.
 
-        A test can hardly show that the loss stays below the margin; it would only use up a share of α.
+        A test can hardly show that the loss stays below the margin; it would only use up a share of α. A constant keeps
+        its value, because a smaller one may lie at the end of the good ones, and a condition may prevent the loss.
         """
+        if all(mutation.form is None for mutation in candidate.mutations):
+            return candidate
         lost, margin = lost_as_designed(self.mutants, candidate, self._missed), self.order.reference.margin
         for smaller in self.others.nearer(candidate, trials) if lost > THIN * margin else ():
             if self._passes(smaller, trials) and not self._failing_at_once(smaller, trials):

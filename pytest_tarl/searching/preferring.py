@@ -43,6 +43,7 @@ from pytest_tarl.searching.units import NEAR, Unit, change_size
 
 PLAINER_ROUNDS = 2  # number of refinements of each constant whose change a maintainer would prefer
 FUNCTIONS = 2  # maximum number of functions; their constants are compared by how their missions proceed
+UNUSUAL = 6  # number of episodes for trying other constants in place of unusual commands
 PLAINER = 12  # maximum number of episodes for trying constants whose change a maintainer would prefer
 
 
@@ -115,18 +116,22 @@ class Preferences:
         if search.proposed or self._exceeded or not large or not self._exceeds(found, pair):
             return
         self._exceeded, begun = True, search.trials.spent
-        others = sorted(
-            (one for one in search.gains.moving(search.units) if kind(one) < Oddness.OFFSET), key=kind
-        )
-        for other in others:
-            if search.trials.spent - begun >= PLAINER:
+        for other in sorted(search.gains.moving(search.units), key=kind):
+            if search.trials.spent - begun >= UNUSUAL:
                 return
-            if set(other.operands) & set(unit.operands):
+            taken = kind(other) >= Oddness.OFFSET or set(other.operands) & set(unit.operands)
+            if taken or self._loses(other, factor, found.guard):
                 continue
             candidate = search.holding(other, factor, found.guard, pair)
             if candidate is not None and not self._exceeds(candidate, pair):
                 yield candidate
                 search.refused.add((other, found.guard))
+
+    def _loses(self, unit: Unit, factor: float, guard: Guard) -> bool:
+        """Return whether a smaller step of a unit in the same direction clearly lost reward."""
+        tried, slack = self.search.gains.of(unit, guard), self.search.gains.slack
+        low, high = min(1.0, factor), max(1.0, factor)
+        return any(gain < -slack for one, gain in tried.items() if low < one < high)
 
     def _exceeds(self, candidate: Candidate, pair: int) -> bool:
         """Return whether a candidate that ran publishes larger commands than a designed mission; False if unknown."""
