@@ -34,6 +34,7 @@ from pytest_tarl.searching.smaller import (
     LOST,
     WORSE,
     inside,
+    known_steps,
     milder,
     onward,
     outside,
@@ -324,8 +325,11 @@ class Preferences:
     def _small_steps(
         self, parts: Sequence[Part], found: Candidate, unit: Unit, factor: float, begun: int
     ) -> Iterator[Part]:
-        """Yield the parts as long as episodes are left for them, then larger steps of those that gained something."""
-        tried: list[Part] = []
+        """Yield the parts as long as episodes are left for them, then larger steps of those that gained something.
+
+        Small steps that were tried before count as well.
+        """
+        tried = known_steps(unit, self.search.units, self.search.gains, found.guard)
         for part in parts:
             if self.search.trials.spent - begun >= EPISODES:
                 break

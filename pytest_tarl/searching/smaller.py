@@ -59,6 +59,12 @@ def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, gua
     ]
 
 
+def known_steps(found: Unit, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Part]:
+    """Return the small steps of other named constants that were tried before."""
+    others = [unit for unit in named(units) if unit.operands != found.operands and unit.chart is None]
+    return [(unit, step) for unit in others for step in STEPS if step in gains.of(unit, guard)]
+
+
 def onward(
     tried: Sequence[Part], found: Unit, factor: float, gains: Gains, guard: Guard, wanted: float
 ) -> list[Part]:
