@@ -58,7 +58,7 @@ class EndedEpisode:
         return (told,)
 
     def problem(self) -> TarlError | None:
-        """Return why the episode is unusable (no reward, silent sensor, silent node), or None if it is usable."""
+        """Return why the episode is unusable, such as a test without rewards, or None if it is usable."""
         if self.replay is not None:
             return self._unplayed(self.replay)
         if not self.rewards and self.requirements.rewarding:
@@ -73,13 +73,25 @@ class EndedEpisode:
             )
         if self.drifted:
             return None  # this is not an error, because a drift may silence sensors and nodes
-        problem = self.situation.problem() or self._unmet()
-        if problem is None and self._silent and not self.changed:
-            problem = RecordingError(
-                "The node published nothing in the whole episode, so nothing can be learned: check that it receives "
-                f"the messages that it waits for (it subscribes to {self._heard})."
-            )
-        return problem
+        return self._unmet()
+
+    def silence(self) -> str:
+        """Return which sensor or node was silent in the whole episode and what to check, or "".
+
+        A silent mission is no error if others are not: a door may stay closed, or a battery full. Drifts and candidates
+        for a repair may silence a node in all missions.
+        """
+        if self.replay is not None or self.drifted:
+            return ""
+        problem = self.situation.problem()
+        if problem is not None:
+            return str(problem)
+        if not self._silent or self.changed:
+            return ""
+        return (
+            "The node published nothing in the whole episode, so nothing can be learned: check that it receives the "
+            f"messages that it waits for (it subscribes to {self._heard})."
+        )
 
     @property
     def _silent(self) -> bool:

@@ -337,6 +337,10 @@ class Tarl:
         """Return notes for the user on how the nodes were started."""
         return self._ros.notes if self._ros is not None else ()
 
+    def silence(self) -> str:
+        """Return which sensor or node was silent in the whole episode, or ""."""
+        return self._ended().silence()
+
     def problem(self) -> TarlError | None:
         """Return why the episode is unusable (no reward, silent sensor, silent node), or None if it is usable."""
         return self._ended().problem()

@@ -63,6 +63,7 @@ class Episode:
     simulator: bool = False  # whether an external simulator was the episode's world
     outputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
     parameters: Mapping[str, bool | int | float] = field(default_factory=dict)
+    silent: str = ""  # which sensor or node was silent in the whole episode
 
 
 EPISODE = pytest.StashKey[Episode]()
@@ -131,7 +132,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
             episode.judged = tarl.judged
             episode.topics, episode.values = dict(tarl.topics), tarl.values
             episode.outputs, episode.parameters = outputs.sums, tarl.parameters_read
-            episode.problem = tarl.problem()
+            episode.problem, episode.silent = tarl.problem(), tarl.silence()
             episode.replayed = replay is not None and replay.done
             episode.simulator = tarl.simulator is not None
         finally:

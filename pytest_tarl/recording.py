@@ -43,6 +43,7 @@ Members = Sequence[Sequence[int]]
 
 PILOTS = 20  # number of episodes from which bins are learned
 
+SILENT = 5  # number of first episodes after which a sensor or node that was silent in all of them is an error
 FEW = 30  # if fewer episodes are recorded, a note states the detectable loss
 NOT_REPRODUCIBLE = (
     "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
@@ -195,9 +196,12 @@ def read_values(
     """Run PILOTS separate episodes; return the values of the sensors whose bins are to be learned, by sensor name."""
     read: dict[str, list[float]] = {}
     plans = [EpisodePlan(each, drift) for each in episode_seeds(seed, "bins", PILOTS)]
+    silent = Silent()
     for done, episode in enumerate(in_order(rollout, plans)):
         progress(done, PILOTS, "bins")
-        for name, values in sound(episode.result()).values.items():
+        run = sound(episode.result())
+        silent.add(run)
+        for name, values in run.values.items():
             read.setdefault(name, []).extend(values)
     return read
 
@@ -215,7 +219,8 @@ def run_episodes(
     """Run one instrumented episode per seed, until `enough` returns true.
 
     Raises:
-        RecordingError: the test itself is broken, the node never waits, or memory does not suffice for the episodes.
+        RecordingError: the test itself is broken, the node never waits, a sensor or the node is silent in all missions,
+            or memory does not suffice for the episodes.
     """
     footprint = footprint or Footprint(len(seeds))
     learners = tuple(LEARNERS[learner](len(chosen)) for chosen in members)
@@ -225,6 +230,7 @@ def run_episodes(
     samples: list[Sample] = []
     failures: list[str] = []
     notes: dict[str, None] = {}
+    silent = Silent()
     topics: dict[str, str] = {}
     plans = (EpisodePlan(seed, drift, record=True) for seed in seeds)
     for done, (seed, episode) in enumerate(zip(seeds, in_order(rollout, plans), strict=True)):
@@ -233,6 +239,7 @@ def run_episodes(
         if first is None:
             first, parameters = run.trace, run.parameters
         simulator = run.simulator
+        silent.add(run)
         counted = sample(run.trace, seed, run.passed, members)
         samples.append(replace(counted, judgements=judgements(run.judged)))
         footprint.add(samples[-1])
@@ -246,10 +253,38 @@ def run_episodes(
             break
     if first is None:
         raise RecordingError("There is nothing to learn from: 0 episodes were requested.")
-    notes |= dict.fromkeys([footprint.warning] if footprint.warning else [])
+    silent.check()
+    notes |= dict.fromkeys([*silent.notes(), *([footprint.warning] if footprint.warning else [])])
     return Recorded(
         first, merge(samples), learners, topics, tuple(failures), learner, tuple(notes), simulator, parameters
     )
+
+
+@dataclass
+class Silent:
+    """Missions in which a sensor or the node was silent: an error if all are, otherwise a note."""
+
+    episodes: int = 0
+    found: list[str] = field(default_factory=list)
+
+    def add(self, run: EpisodeRun) -> None:
+        """Add a mission. Raise RecordingError if the first `SILENT` missions were all silent."""
+        self.episodes += 1
+        self.found += [run.silent] if run.silent else []
+        if self.episodes == SILENT:
+            self.check()
+
+    def check(self) -> None:
+        """Raise RecordingError if all missions so far were silent."""
+        if self.found and len(self.found) == self.episodes:
+            raise RecordingError(self.found[0])
+
+    def notes(self) -> list[str]:
+        """Return a note for each kind of silence; these missions count like all others."""
+        return [
+            f"in {self.found.count(told)} of {self.episodes} missions, which count like the others: {told}"
+            for told in dict.fromkeys(self.found)
+        ]
 
 
 def sound(run: EpisodeRun) -> EpisodeRun:

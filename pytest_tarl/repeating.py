@@ -168,7 +168,8 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
     if isinstance(episode.error, TarlError) and not isinstance(episode.error, NodeError):
         raise episode.error
     mission = isinstance(episode.error, (AssertionError, pytest.fail.Exception, NodeError))
-    if episode.problem is not None and (episode.error is None or isinstance(episode.error, AssertionError)):
+    ended = episode.error is None or isinstance(episode.error, AssertionError)
+    if episode.problem is not None and ended:
         raise episode.problem
     skipped = next((report for report in reports if report.skipped and not _expected(report)), None)
     if skipped is not None and not episode.replayed:
@@ -196,6 +197,7 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         simulator=episode.simulator,
         outputs=episode.outputs,
         parameters=episode.parameters,
+        silent=episode.silent if ended else "",  # an error of the node explains the silence
     )
 
 

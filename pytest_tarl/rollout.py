@@ -52,6 +52,9 @@ class EpisodeRun:
     `parameters` holds, by absolute name, the numbers that nodes in this process get as parameters from outside, such as
     launch files or the test.
 
+    `silent` says which sensor or node was silent in the whole episode of a world without drift; an error only if it is
+    in all missions.
+
     `simulator` is true if an external simulator was the world; then the same plan may give another result.
 
     `lost` has, for each run of the episode whose simulator died or hung, the reason in brief; the result is that of the
@@ -76,6 +79,7 @@ class EpisodeRun:
     outputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
     lost: tuple[str, ...] = ()
     parameters: Mapping[str, bool | int | float] = field(default_factory=dict)
+    silent: str = ""
 
 
 class Pending(Protocol):

@@ -18,17 +18,9 @@ from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 
 COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
 TOLD = (
-    "passed",
-    "failure",
-    "broken",
-    "topics",
-    "crashed",
-    "stuck",
-    "values",
-    "simulator",
-    "outputs",
-    "parameters",
-)
+    "passed", "failure", "broken", "topics", "crashed", "stuck", "values", "simulator", "outputs", "parameters",
+    "silent",
+)  # fmt: skip
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
 ALIVE = b""  # heartbeat: shows that the worker's Python threads can run
@@ -92,6 +84,7 @@ def run_message(run: EpisodeRun) -> bytes:
         "simulator": run.simulator,
         "outputs": {topic: tuple(sums) for topic, sums in run.outputs.items()},
         "parameters": dict(run.parameters),
+        "silent": run.silent,
         "notes": run.notes,
         "lost": run.lost,
         "older": [str(path) for path in run.older],

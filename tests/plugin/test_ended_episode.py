@@ -70,16 +70,29 @@ def test_an_episode_with_a_reward_and_a_node_that_publishes_is_usable() -> None:
         ({"rewards": 0, "requirements": Requirements(rewarding=True)}, "never called tarl.step"),
         ({"rewards": 0, "drifted": True}, "never called tarl.reward"),
         ({"rewards": 0, "situation": UNKNOWN}, "never called tarl.reward"),
-        ({"situation": UNKNOWN}, "Sensor 'x'"),
-        ({"situation": UNKNOWN, "faults": FAULTS, "ros": SILENT}, "Sensor 'x'"),
+        ({"situation": UNKNOWN, "faults": FAULTS, "ros": SILENT}, "the fault 'bias'"),
         ({"faults": FAULTS, "ros": SILENT}, "the fault 'bias'"),
+    ],
+)
+def test_the_first_reason_why_an_episode_is_unusable_is_reported(changed: dict[str, Any], words: str) -> None:
+    assert re.search(words, problem(**changed))
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"situation": UNKNOWN}, "Sensor 'x'"),
+        ({"situation": UNKNOWN, "ros": SILENT}, "Sensor 'x'"),
         ({"ros": SILENT}, "published nothing in the whole episode.*it subscribes to /joy, /odom"),
         ({"ros": DEAF}, "it subscribes to no topic"),
         ({"situation": UNKNOWN, "changed": True, "ros": SILENT}, "Sensor 'x'"),
     ],
 )
-def test_the_first_reason_why_an_episode_is_unusable_is_reported(changed: dict[str, Any], words: str) -> None:
-    assert re.search(words, problem(**changed))
+def test_a_silent_sensor_or_node_is_reported_but_the_episode_is_usable(
+    changed: dict[str, Any], words: str
+) -> None:
+    assert problem(**changed) == ""
+    assert re.search(words, ended(**changed).silence())
 
 
 @pytest.mark.parametrize(
@@ -95,7 +108,7 @@ def test_the_first_reason_why_an_episode_is_unusable_is_reported(changed: dict[s
     ],
 )
 def test_missing_output_is_no_error_under_a_drift_or_in_a_test_without_nodes(changed: dict[str, Any]) -> None:
-    assert problem(**changed) == ""
+    assert problem(**changed) == ended(**changed).silence() == ""
 
 
 def replay(begun: bool) -> Any:
@@ -108,7 +121,7 @@ def test_a_replayed_mission_needs_a_step_and_a_reward() -> None:
     silent = {"ros": SILENT, "situation": UNKNOWN}
     assert problem(replay=replay(False), rewards=0).startswith("mission.bag was not replayed")
     assert problem(replay=replay(True), rewards=0).startswith("Nothing was learned from mission.bag")
-    assert problem(replay=replay(True), **silent) == ""
+    assert problem(replay=replay(True), **silent) == ended(replay=replay(True), **silent).silence() == ""
 
 
 def test_a_node_that_a_drift_silences_is_noted_unless_a_fault_is_declared_for_it() -> None:

@@ -84,3 +84,34 @@ def test_missions_that_fail_without_a_loss_are_degraded_and_get_no_repair(tank: 
     )
     ran.stdout.no_fnmatch_line("  repair *")
     ran.stdout.no_fnmatch_line("  next *")
+
+
+def test_a_sensor_that_is_silent_in_some_designed_missions_is_noted(tank: pytest.Pytester) -> None:
+    changed(
+        tank,
+        "test_tank",
+        "sensors=[",
+        'sensors=[Sensor("alarm", topic="/alarm", field="data", low=0, high=1, bins=2), ',
+    )
+    changed(
+        tank,
+        "test_tank",
+        "    for _ in range(25):\n",
+        "    rings = draws.uniform() < 0.6\n    for _ in range(25):\n"
+        '        if rings:\n            tarl.bus.publish("/alarm", Float64(data=0.5))\n',
+    )
+    ran = tank.runpytest(*RECORD)
+    ran.assert_outcomes(passed=1, deselected=1)
+    told = " ".join(ran.stdout.str().split())
+    assert "of 16 missions, which count like the others: Sensor 'alarm' received no message on /alarm" in told
+    tank.runpytest(*ONLINE).stdout.fnmatch_lines(["*clogged*: degraded*"])
+
+
+def test_a_node_that_is_silent_in_some_designed_missions_is_noted(tank: pytest.Pytester) -> None:
+    changed(tank, "keeper", "if level is not None:", "if level is not None and level < 0.95:")
+    changed(tank, "test_tank", "float(draws.uniform(0.0, 0.2))", "float(draws.choice([0.1, 1.0]))")
+    changed(tank, "test_tank", "float(draws.normal(0, 0.005))", "0.0")
+    ran = tank.runpytest(*RECORD)
+    ran.assert_outcomes(passed=1, deselected=1)
+    told = " ".join(ran.stdout.str().split())
+    assert "of 16 missions, which count like the others: The node published nothing" in told

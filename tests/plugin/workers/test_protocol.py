@@ -55,6 +55,7 @@ RUN = EpisodeRun(
     simulator=True,
     outputs={"/cmd": [2.0, 5.0]},
     parameters={"/keeper/gain": 2.0, "/keeper/reverse": True},
+    silent="Sensor 'level' received no message on /lvl.",
 )
 
 
