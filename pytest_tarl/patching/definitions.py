@@ -99,7 +99,7 @@ def _defined_at(analysis: Analysis, operand: Operand, span: Span) -> Place | Non
         return None
     source = document(span.path, analysis.sources[span.path])
     node = _written(source.at(span))
-    value = _number(node)
+    value = literal_number(node)
     if node is None or value is None or operand.value not in (None, value):
         return None
     name = parameter(analysis, operand) or _name(source, node) or operand.code
@@ -243,7 +243,7 @@ def _written(node: ast.expr | None) -> ast.expr | None:
     return node
 
 
-def _number(node: ast.expr | None) -> bool | int | float | None:
+def literal_number(node: ast.expr | None) -> bool | int | float | None:
     """Return the value of a literal number, with its sign, or of a string that is one; None for other expressions."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str) and re.fullmatch(_NUMERAL, node.value):
         return int(node.value) if _PLAIN.fullmatch(node.value) else float(node.value)

@@ -19,6 +19,7 @@ from pytest_tarl.patching.definitions import (
     users,
 )
 from pytest_tarl.patching.mutate import Mutation, located, redefinition
+from pytest_tarl.patching.named_numbers import named_numbers
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate, Trials
@@ -126,6 +127,11 @@ class Placing:
         for places in [(one,) for one in written[:MOST_PLACES]] if apart else [written]:
             if self._moves(mutation, places, candidate, trials):
                 return tuple(places) if apart else self._in_use(mutation, places, candidate, trials)
+        for place in (
+            named_numbers(analysis, operand)[:MOST_PLACES] if not written and not operand.setting else ()
+        ):
+            if self._moves(mutation, [place], candidate, trials):
+                return (place,)
         if not name:
             return ()
         file = (self.order.root / operand.span.path).resolve()

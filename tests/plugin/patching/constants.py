@@ -88,6 +88,9 @@ def _method(text: str) -> str:
     return text.replace("\n", "\n    ")
 
 
+COMMAND_LINE: Final = (
+    "parser = argparse.ArgumentParser()\nparser.add_argument({option})  # here\nA = parser.parse_args([])"
+)
 FORMS: Final[Mapping[str, Mapping[str, str]]] = {
     "literal": {"use": "2.0"},
     "module constant": {"before": "GAIN = 2.0  # here", "use": "GAIN"},
@@ -199,7 +202,7 @@ FORMS: Final[Mapping[str, Mapping[str, str]]] = {
     "merged dictionary": {"before": 'D = {"gain": 2.0}  # here\nC = {**D}', "use": 'C["gain"]'},
     "dictionary kept": {"first": 'self.c = {"gain": 2.0}  # here', "use": 'self.c["gain"]'},
     "list": {"before": "C = [2.0, 1.0]  # here", "use": "C[0]"},
-    "array": {"before": "C = np.array([2.0, 1.0])", "use": "C[0]"},
+    "array": {"before": "C = np.array([2.0, 1.0])  # here", "use": "C[0]"},
     "getattr": {"first": "self.gain = 2.0  # here", "use": 'getattr(self, "gain")'},
     "property": {
         "first": "self._gain = 2.0  # here",
@@ -244,7 +247,7 @@ FORMS: Final[Mapping[str, Mapping[str, str]]] = {
     "parameters in a loop": {
         "before": READ,
         "first": (
-            'for name, usual in (("gain", 2.0), ("more", 1.0)):\n'
+            'for name, usual in (("gain", 2.0), ("more", 1.0)):  # here\n'
             '            setattr(self, name, read(name, usual))'
         ),
         "use": "self.gain",
@@ -286,10 +289,11 @@ FORMS: Final[Mapping[str, Mapping[str, str]]] = {
     },
     "environment": {"before": f'GAIN = float(os.environ.get("KEEPER_GAIN", "2.0")){HERE}', "use": "GAIN"},
     "command line": {
-        "before": (
-            'parser = argparse.ArgumentParser()\n'
-            'parser.add_argument("--gain", type=float, default=2.0)\nA = parser.parse_args([])'
-        ),
+        "before": COMMAND_LINE.format(option='"--gain", type=float, default=2.0'),
+        "use": "A.gain",
+    },
+    "command line by another name": {
+        "before": COMMAND_LINE.format(option='"-g", type=float, default=2.0, dest="gain"'),
         "use": "A.gain",
     },
 }  # fmt: skip

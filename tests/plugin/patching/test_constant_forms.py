@@ -12,6 +12,7 @@ import pytest
 from pytest_tarl.instrumentation.datafiles import reading
 from pytest_tarl.patching.definitions import Place, configured, defined, package_files, parameter
 from pytest_tarl.patching.mutate import Mutation, mutations
+from pytest_tarl.patching.named_numbers import named_numbers
 from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
@@ -22,14 +23,7 @@ from tests.plugin.patching.constants import DATA, FORMS, HERE, node
 from tests.plugin.patching.repairs import TinyRos
 
 WANTED = 5.0  # gain that the drifted world needs; the node has 2
-NOWHERE = {
-    "literal",
-    "array",
-    "choice",
-    "parameter at its use",
-    "parameters in a loop",
-    "command line",
-}
+NOWHERE = {"literal", "choice", "parameter at its use"}
 
 
 class World:
@@ -70,7 +64,13 @@ class World:
             for key, text in package_files(self.folder, self.folder / "keeper.py").items()
             if key == self.data
         }
-        return next(configured(parameter(self.analysis, mutation.operand), texts), None)
+        others = named_numbers(self.analysis, mutation.operand) if not found else []
+        others += configured(parameter(self.analysis, mutation.operand), texts)
+        return next((one for one in others if self.in_force(mutation, one)), None)
+
+    def in_force(self, mutation: Mutation, place: Place) -> bool:
+        """Return whether a change of a number alters what the node sends."""
+        return self.published(self.written(Candidate((replace(mutation, place=place),), ALWAYS))) != 2.0
 
     @property
     def data(self) -> str:
