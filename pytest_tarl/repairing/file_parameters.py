@@ -3,7 +3,8 @@
 In `config[mean]`, `get_param(f"~{axis}_gain")` or a loop over names, the use stands for several parameters, and in
 `[get_param("~x", 0.0), get_param("~y", 0.0)]`, the node may store them where the analysis loses them. The episodes of
 the comparison tell the names and values of the parameters that were read. The number of such a parameter in a YAML,
-launch or `.cfg` file is then a constant of the search by itself, and is always changed there.
+launch or `.cfg` file is then a constant of the search by itself, and is always changed there. So is the default of a
+parameter that no file sets, if the analysis loses its value, as in `min(get_param("~cutoff", 10), rate / 2)`.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from pytest_tarl.patching.definitions import (
     ParameterInFile,
     Place,
     configured,
+    literal_number,
     package_files,
     parameter,
 )
@@ -37,26 +39,61 @@ Number = bool | int | float
 
 
 def file_parameters(order: Order, operands: Sequence[Operand]) -> list[ParameterInFile]:
-    """Return the parameters in files whose uses are no operands by themselves, those that a flow names first."""
-    read = order.online.recorded.parameters
-    if not read or order.options.edit == USE:
-        return []
-    analysis, texts = order.analysis, files_of_packages(order)
+    """Return the parameters whose uses are no operands by themselves, those that a flow names first."""
+    analysis = order.analysis
     calls = {key: one for one in operands if (key := _key_of_call(analysis, one))}
     known = {key for one in operands if one not in calls.values() for key in _keys(analysis, one)}
+    values = [one for one in _values(order, operands) if one[0] not in known]
+    if not values or order.options.edit == USE:
+        return []
     named = dict(_named(analysis))
     found: list[ParameterInFile] = []
-    for name, value in sorted(read.items(), key=lambda one: one[0].rpartition("/")[2] not in named):
-        key = name.rpartition("/")[2]
+    for key, place, size in sorted(values, key=lambda one: one[0] not in named):
         use = _use(analysis, operands, key, calls, named)
-        if key in known or use is None or len(found) >= MOST:
-            continue
-        for place in places_in_force(name, value, texts)[:MOST_PLACES]:
-            size = _usual_size(key, read) if not value else 0.0
-            column = place.start - texts[place.path].rfind("\n", 0, place.start)
-            written = Span(place.path, place.line, column, place.line, column + place.end - place.start)
-            found.append(ParameterInFile(*use, key, value, written, key, (), place, size))
+        if use is not None and len(found) < MOST:
+            written = Span(place.path, place.line, place.start, place.line, place.end)  # offsets as columns
+            found.append(ParameterInFile(*use, key, place.value, written, key, (), place, size))
     return found
+
+
+def _values(order: Order, operands: Sequence[Operand]) -> Iterator[tuple[str, Place, float]]:
+    """Yield the keys of parameters with their numbers: in files, and the defaults of those that nothing else sets.
+
+    The last element is the usual size of such a parameter if its value is 0. The default of a parameter that is an
+    operand is left out.
+    """
+    read = order.online.recorded.parameters
+    texts = files_of_packages(order) if read else {}
+    for name, value in read.items():
+        key = name.rpartition("/")[2]
+        for place in places_in_force(name, value, texts)[:MOST_PLACES]:
+            yield key, place, _usual_size(key, read) if not value else 0.0
+    given = {name.rpartition("/")[2] for name in read}
+    used = {span for one in operands for span in (one.span, one.definition, *one.definitions)}
+    for path in order.analysis.sources:
+        for key, place, spans in _defaults(order.analysis, path):
+            if key not in given and used.isdisjoint(spans) and place.value:
+                yield key, place, 0.0
+
+
+def _defaults(analysis: Analysis, path: str) -> Iterator[tuple[str, Place, set[Span]]]:
+    """Yield the parameters that a file reads with a number as default, and the spans of the number and of the call."""
+    try:
+        source = document(path, analysis.sources[path])
+    except RepairError:
+        return
+    for node in ast.walk(source.tree):
+        if not isinstance(node, ast.Call) or called(node) not in PARAMETER_CALLS or not node.args:
+            continue
+        name = node.args[0]
+        others = [*node.args[1:2], *(one.value for one in node.keywords if one.arg in ("default", "value"))]
+        for number in others:
+            value = literal_number(number)
+            if value is None or not isinstance(name, ast.Constant) or not isinstance(name.value, str):
+                continue
+            key = _last(name.value)
+            place = Place(path, source.start(number), source.end(number), number.lineno, key, value)
+            yield key, place, {source.span(number), source.span(node)}
 
 
 def files_of_packages(order: Order) -> dict[str, str]:

@@ -237,3 +237,31 @@ def test_the_number_in_force_is_the_one_whose_keys_name_the_node(
     name: str, files: Mapping[str, str], expected: list[str]
 ) -> None:
     assert [f"{one.path}:{one.line}" for one in places_in_force(name, 2.0, files)] == expected
+
+
+LIMITED = {
+    "before": (
+        "from scipy import signal\n\n\nclass Filter:\n    def __init__(self, cutoff):\n"
+        "        self.shares = signal.butter(2, cutoff)\n"
+    ),
+    "first": (
+        'self.cutoff = min(float(rospy.get_param("~gain_left", 2)), 50.0)\n        self.filters = []\n'
+        '        for _ in range(2):\n            self.filters.append(Filter(self.cutoff / 100.0))'
+    ),
+    "use": "self.filters[0].shares[0]",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("read", "file"), [({}, "keeper.py"), (READ, "config/params.yaml")])
+def test_the_default_of_a_parameter_is_changed_if_nothing_sets_it(
+    read: Mapping[str, float], file: str, tmp_path: Path
+) -> None:
+    order = order_of(tmp_path, LIMITED, read)
+    ((path, text),) = changed(order, in_files(order)["gain_left"], 2.5).items()
+    assert Path(path).name == Path(file).name
+    assert ('get_param("~gain_left", 5))' if file == "keeper.py" else "  gain_left: 5.0  #") in text
+
+
+def test_the_default_of_a_parameter_that_is_an_operand_is_not_added(tmp_path: Path) -> None:
+    named = {"first": 'self.gain = rospy.get_param("~gain_left", 1.0)', "use": "self.gain"}
+    assert in_files(order_of(tmp_path, named, {})) == {}
