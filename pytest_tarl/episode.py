@@ -13,6 +13,7 @@ from pytest_tarl import seeds
 from pytest_tarl.ended_episode import EndedEpisode
 from pytest_tarl.errors import SettingsError, TarlError
 from pytest_tarl.faults.installing import NO_FAULTS, Faults
+from pytest_tarl.finalizers import run_finalizers
 from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
 from pytest_tarl.formulas.episode import EpisodeFormulas
 from pytest_tarl.formulas.judging import Judged
@@ -327,6 +328,7 @@ class Tarl:
     def close(self) -> None:
         """Shut the nodes down and release the episode."""
         self._open.close()
+        run_finalizers(self._folder / node for node in self._nodes)
 
     def notes(self) -> tuple[str, ...]:
         """Return notes for the user on a usable episode; complete only after `close`."""
