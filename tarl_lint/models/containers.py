@@ -78,10 +78,9 @@ def mutate(
     elif name == "setdefault" and len(plain) > 1:
         _set_default(ctx, base, plain[0], through_statement(ctx, plain[1], frame, call))
     elif name == "sort":
-        order = iterators.ordered_by(
-            ctx, heap.elements(ctx, base), Invocation(name, base, arguments, frame, call)
-        )
-        insert_elements(ctx, base, [order] if "key" in named else [], frame, call)
+        before = heap.elements(ctx, base)
+        order = iterators.ordered(ctx, before, Invocation(name, base, arguments, frame, call))
+        insert_elements(ctx, base, [order] if order is not before else [], frame, call)
     elif name == "update" and base.pts:
         _update(ctx, base, plain, named, frame, call)
     elif name in ("extend", "extendleft"):
@@ -371,7 +370,9 @@ def new_container(ctx: Interpreter, it: Invocation) -> Value:
     given = [v for v in it.arguments[0][:1] if v is not BOTTOM]
     known = sizes.unpacked(ctx, given[0]) if given and it.name in IN_ORDER else None
     known = known[::-1] if known is not None and it.name == "reversed" else known
-    element = iterators.ordered_by(ctx, join_all(heap.elements(ctx, v) for v in given), it)
+    element = join_all(heap.elements(ctx, v) for v in given)
+    if it.name == "sorted":
+        element = iterators.ordered(ctx, element, it)
     length = sizes.length(ctx, given[0]) if given else NONE
     if it.name in ("set", "frozenset"):
         # a set keeps only one of several equal elements, so its length depends on the elements
@@ -427,11 +428,20 @@ def new_pipe(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
-    """Return one of the arguments' elements, possibly chosen by data."""
-    plain = it.arguments[0]
-    values = [heap.elements(ctx, plain[0])] if len(plain) == 1 else plain
-    result = iterators.ordered_by(ctx, join_all(values), it)
-    return Value(result.deps | call_contexts.all_used(ctx, it.arguments), result.pts)
+    """Return one of the arguments' elements, chosen by `key=` or by itself; with a default, whether there is one."""
+    plain, named = it.arguments
+    several = [*plain, named["*"]] if "*" in named and plain else plain
+    values = [heap.elements(ctx, plain[0])] if len(several) == 1 else several
+    if len(several) == 1 and "default" in named:
+        empty = iterators.gate(ctx, sizes.length(ctx, plain[0]), it.frame, ("default", it.call.slot))
+        values += [named["default"], Value(empty)]
+    result = iterators.ordered(ctx, join_all(values), it)
+    if "key" in named:
+        return Value(result.deps, result.pts)
+    if not any(o.kind in iterators.COMPARED for o in result.pts):
+        return Value(result.deps | call_contexts.all_used(ctx, it.arguments), result.pts)
+    numbers = (Value(v.deps, frozenset(o for o in v.pts if o.kind not in iterators.COMPARED)) for v in values)
+    return Value(result.deps.union(*(ctx.use(value) for value in numbers)), result.pts)
 
 
 def is_device(obj: Obj) -> bool:

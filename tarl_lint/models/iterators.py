@@ -17,6 +17,7 @@ from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, join_all
 from tarl_lint.models import rows as possible_rows
 from tarl_lint.models import sizes
 
+COMPARED = frozenset(["sequence", "mapping", "instance"])  # kinds of objects that consist of what is compared
 MAX_MAPPED = 8  # maximum number of elements to which `map` is applied one by one
 
 
@@ -175,13 +176,51 @@ def next_element(ctx: Interpreter, it: Invocation) -> Value:
     return join_all([element, plain[1], Value(decides)])
 
 
-def ordered_by(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
-    """Return elements chosen or ordered by `key=`; the results of the key function decide which and where."""
+def ordered(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
+    """Return elements that a call chooses or sorts: what it compares decides which one is where.
+
+    What it compares are the results of `key=`, or else the data inside elements that are containers or instances. The
+    results are not data of the elements, just as the condition of an `if` is not data of what it chooses.
+    """
     key = it.arguments[1].get("key")
-    if key is None or key.consts or not elements.deps | elements.pts | key.pts:
-        return elements
-    said = calls.call_value(ctx, key, ([elements], {}), it.frame, it.call)
-    return Value(elements.deps | ctx.use(said), elements.pts, elements.consts)
+    if key is None or key.consts:
+        inside = frozenset(o for o in elements.pts if o.kind in COMPARED)
+        return _decided(ctx, elements, ctx.use(Value(pts=inside)) if inside else NONE, it)
+    return _decided(ctx, elements, ctx.use(_key(ctx, key, elements, it)), it)
+
+
+def _key(ctx: Interpreter, key: Value, elements: Value, it: Invocation) -> Value:
+    """Return what a key function returns for an element."""
+    if not elements.deps | elements.pts | key.pts:
+        return UNKNOWN
+    return calls.call_value(ctx, key, ([elements], {}), it.frame, it.call)
+
+
+def _decided(ctx: Interpreter, elements: Value, compared: Nodes, it: Invocation) -> Value:
+    decides = gate(ctx, compared, it.frame, ("ordered", it.call.slot))
+    return Value(elements.deps | decides, elements.pts, elements.consts) if decides else elements
+
+
+def first_elements(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the list that `heapq.nlargest` and `heapq.nsmallest` make."""
+    plain = it.arguments[0]
+    if len(plain) < 2:
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    element = ordered(ctx, heap.elements(ctx, plain[1]), it)
+    return listed(ctx, element, sizes.length(ctx, plain[1]) | ctx.use(plain[0]), it)
+
+
+def grouped(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the pairs of `itertools.groupby`: what the key function returns, and the elements that it selects."""
+    plain, named = it.arguments
+    if not plain:
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    element, length = heap.elements(ctx, plain[0]), sizes.length(ctx, plain[0])
+    key = plain[1] if len(plain) > 1 else named.get("key", const(None))
+    found = element if key.consts else _key(ctx, key, element, it)
+    compared = ctx.use(found)
+    group = listed(ctx, _decided(ctx, element, compared, it), length | compared, it)
+    return pairs(ctx, [found, group], it.frame, it.call, length | compared)
 
 
 def asked(ctx: Interpreter, it: Invocation) -> Value:

@@ -250,6 +250,8 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "map": iterators.mapped_elements,
     "filter": iterators.mapped_elements,
     "functools.reduce": iterators.reduced,
+    "itertools.groupby": iterators.grouped,
+    **dict.fromkeys(("heapq.nlargest", "heapq.nsmallest"), iterators.first_elements),
     function_wrappers.WRAPS: function_wrappers.wraps,
     function_wrappers.UPDATES: function_wrappers.update_wrapper,
     "heapq.heappop": heaps.popped,

@@ -109,9 +109,9 @@ class Planner:
             self.out.publish(pool.map(len, ["a"])[0])  # clean
         several = joblib.Parallel(n_jobs=2)(joblib.delayed(self.shape)(v) for v in (1.0, 2.0))
         self.out.publish(several[0])  # sink speed
-        self.out.publish(heapq.nsmallest(1, [1.0, 2.0], key=self.shape)[0])  # sink speed
+        self.out.publish(heapq.nsmallest(1, [1.0, 2.0], key=self.shape)[0])  # sink ~speed
         groups = [list(g) for _, g in groupby([1.0, 2.0], key=self.rule)]
-        self.out.publish(groups[0][0])  # sink load
+        self.out.publish(groups[0][0])  # sink ~load
         rows = np.apply_along_axis(self.blind, 0, np.array(self.ranges))
         Float64MultiArray(data=list(rows))
         self.out.publish(np.fromfunction(self.shape, (2,))[0])  # sink speed

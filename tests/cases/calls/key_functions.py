@@ -22,9 +22,9 @@ class Planner:
     def on_odom(self, m):
         self.x, self.y = m.pose.pose.position.x, m.pose.pose.position.y
         near = min(WAYPOINTS, key=self.distance)
-        self.pub.publish(Point(x=near[0], y=near[1]))  # sink odom
+        self.pub.publish(Point(x=near[0], y=near[1]))  # sink ~odom
         ordered = sorted(WAYPOINTS, key=lambda w: math.hypot(w[0] - self.x, w[1] - self.y))
-        self.pub.publish(Point(ordered[0][0], ordered[0][1], 0.0))  # sink odom
+        self.pub.publish(Point(ordered[0][0], ordered[0][1], 0.0))  # sink ~odom
         self.pub.publish(Point(*WAYPOINTS[0], 0.0))  # clean
         close = [w for w in WAYPOINTS if self.distance(w) < 1.0]
         self.n.publish(len(close))  # sink ~odom

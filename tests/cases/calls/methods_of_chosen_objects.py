@@ -48,7 +48,7 @@ def on_gear(msg):
 
 def on_load(msg):
     nearest = min(gears, key=lambda gear: abs(gear.ratio - msg.data))
-    pub.publish(nearest.torque)  # sink load
+    pub.publish(nearest.torque)  # sink ~load
 
 
 rospy.init_node("gears")

@@ -22,7 +22,7 @@ class Agent:
         self.goal.publish(goal)  # sink ~charge
 
     def tell(self):
-        self.chosen.publish(String(data=self.name))  # sink charge
+        self.chosen.publish(String(data=self.name))  # sink ~charge
 
 
 class Fleet(Node):

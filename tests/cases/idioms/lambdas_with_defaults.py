@@ -31,7 +31,7 @@ class Ring(Node):
             return
         side, distance = min(self.latest.items(), key=lambda item: item[1])
         self.worst.publish(Float32(data=distance))  # sink range
-        self.index.publish(Int32(data=self.SIDES.index(side)))  # sink range
+        self.index.publish(Int32(data=self.SIDES.index(side)))  # sink ~range
         self.index.publish(Int32(data=len(self.SIDES)))  # clean
 
 

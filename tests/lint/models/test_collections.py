@@ -155,7 +155,7 @@ for key, value in d.items():
 out.publish(list(d))  # clean
 out.publish(list(d.values()))  # data
 out.publish(sorted(d)[0])  # clean
-out.publish(max(d, key=d.get))  # data
+out.publish(max(d, key=d.get))  # control
 ### keys that are data
 d = {}
 d[msg.name] = 1.0
@@ -385,13 +385,13 @@ out.publish(operator.itemgetter(1)([msg.data, 1.0]))  # clean
 ### sorting by data
 l = [1.0, 2.0]
 l.sort(key=lambda x: x * msg.data)
-out.publish(l[0])  # data
+out.publish(l[0])  # control
 k = [1.0, 2.0]
 k.sort()
 out.publish(k[0])  # clean
 out.publish(sorted([1.0, 2.0], key=lambda x: -x)[0])  # clean
-out.publish(sorted([(1.0, msg.data)], key=lambda p: p[1])[0][0])  # data
-out.publish(min([1.0, 2.0], key=lambda x: abs(x - msg.data)))  # data
+out.publish(sorted([(1.0, msg.data), (2.0, 0.0)], key=lambda p: p[1])[0][0])  # control
+out.publish(min([1.0, 2.0], key=lambda x: abs(x - msg.data)))  # control
 ### streams and files
 import io, json
 s = io.StringIO()

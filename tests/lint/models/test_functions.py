@@ -79,7 +79,7 @@ CASES: dict[tuple[str, ...], str] = {
     ("sorted",): """
         out.publish(NAME([0.0, msg.data])[0])  # data
         out.publish(NAME([0.0, 1.0])[0])  # clean
-        out.publish(NAME([0.0, 1.0], key=lambda v: v * msg.data)[0])  # data
+        out.publish(NAME([0.0, 1.0], key=lambda v: v * msg.data)[0])  # control
     """,
     tuple(QUEUES): """
         full, other = NAME(), NAME()
@@ -403,7 +403,21 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME([0.0, msg.data]))  # data
         out.publish(NAME(0.0, msg.data))  # data
         out.publish(NAME(0.0, 1.0))  # clean
-        out.publish(NAME([0.0, 1.0], key=lambda v: v * msg.data))  # data
+        out.publish(NAME([0.0, 1.0], key=lambda v: v * msg.data))  # control
+    """,
+    ("heapq.nlargest", "heapq.nsmallest"): """
+        out.publish(NAME(1, [0.0, msg.data])[0])  # data
+        out.publish(NAME(1, [0.0, 1.0])[0])  # clean
+        out.publish(NAME(1, [0.0, 1.0], key=lambda v: v * msg.data)[0])  # control
+        out.publish(len(NAME(int(msg.data), [0.0, 1.0])))  # data
+    """,
+    ("itertools.groupby",): """
+        for key, group in NAME([0.0, 1.0], lambda v: v > msg.data):
+            out.publish(key)  # data
+            out.publish(list(group)[0])  # control
+        for key, group in NAME([0.0, 1.0]):
+            out.publish(key)  # clean
+            out.publish(list(group)[0])  # clean
     """,
     ("next",): """
         out.publish(NAME(iter([msg.data])))  # data

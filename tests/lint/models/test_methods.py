@@ -253,7 +253,7 @@ CHANGED: dict[tuple[str, ...], str] = {
         kept.NAME()
         out.publish(kept[0])  # clean
         kept.NAME(key=lambda v: v * msg.data)
-        out.publish(kept[0])  # data
+        out.publish(kept[0])  # control
     """,
     ("clear",): """
         kept = [msg.data]
