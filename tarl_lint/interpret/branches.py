@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarl_lint.interpret import dunder_methods, expressions, operators
+from tarl_lint.interpret import dunder_methods, expressions, operators, tags
 from tarl_lint.interpret.budget import MAX_NESTED_ROWS, MAX_ROWS, MAX_STATEMENTS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
@@ -44,15 +44,19 @@ def if_statement(ctx: Interpreter, s: ir.If, frame: Frame) -> bool:
     way = decide(ctx, s.test, s, frame)
     if way is not None:
         return ctx.ops.block(ctx, s.body if way else s.orelse, frame)
-    goes_on: list[Delta] = []
-    for body in (s.body, s.orelse):
+    goes_on: list[tuple[tags.Narrowed, Delta]] = []
+    before: tags.Narrowed = {}
+    for body, holds in ((s.body, True), (s.orelse, False)):
         ctx.store.push()
+        frame.statement = s
+        narrowed = tags.narrow(ctx, s.test, frame, before, holds=holds)
         if ctx.ops.block(ctx, body, frame):
-            goes_on.append(ctx.store.pop())
+            goes_on.append((narrowed, ctx.store.pop()))
         else:
             ctx.store.pop()
     if goes_on:
-        joins.merge(ctx, goes_on)
+        joins.merge(ctx, [state for _, state in goes_on])
+        tags.restore(ctx, before, goes_on)
     return bool(goes_on)
 
 

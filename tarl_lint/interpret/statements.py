@@ -15,6 +15,7 @@ from tarl_lint.interpret import (
     expressions,
     literals,
     nullness,
+    tags,
 )
 from tarl_lint.interpret.budget import READS_PER_STATEMENT
 from tarl_lint.interpret.interpreter import Interpreter
@@ -83,6 +84,7 @@ def bind_target(
     node = ctx.node(frame, ("target", slot), "assign")
     literals.mark(ctx, node, source, value, frame)
     assign(ctx, target, ctx.carry(value, node), frame)
+    tags.note(ctx, target, source, value, slot, frame)
 
 
 def unpack(
@@ -98,6 +100,7 @@ def unpack(
         bind_target(ctx, item, part, frame, f"{slot}.{number}", expr)
         if starred is None:
             nullness.note_taken(ctx, item, value, number, part, frame)
+            tags.note_element(ctx, item, value, number, f"{slot}.{number}", frame)
 
 
 def assign(ctx: Interpreter, target: ir.Expr, value: Value, frame: Frame) -> None:

@@ -60,6 +60,21 @@ class Leaving:
     cause: Escape | Value | Literal["break", "continue"]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Taken:
+    """Where a variable got its value: a statement, the objects that it may be, or of which it may be a part.
+
+    `field` is the attribute or index of the part; `of` is the variable that holds the objects.
+    """
+
+    value: Value
+    before: Value  # the objects, before the statement
+    statement: ir.Stmt
+    slot: str
+    field: str | Value | None = None
+    of: Key | None = None
+
+
 def inside(statement: ir.Stmt | None, turns: Turns) -> Turns:
     """Return those of the loops that contain a statement; a loop contains itself, since it binds its target."""
     if not turns or statement is None:
@@ -105,6 +120,7 @@ class Frame(Obj):
         "slot",
         "statement",
         "steps",
+        "taken",
         "thrown",
         "tries",
         "turn",
@@ -149,6 +165,8 @@ class Frame(Obj):
             tuple[int, ...], dict[Key, Value]
         ] = {}  # loop and iterations of outer loops → state at the loop's head in its last fixpoint
         self.captured = False
+        # variable → its values that are, or were parts of, one of several objects
+        self.taken: dict[Key, list[Taken]] = {}
         self.returns: list[tuple[dict[Key, Value], Value]] = []
         self.jumps: list[tuple[int, dict[str, list[dict[Key, Value]]]]] = []
         self.handling: list[dict[str, Value]] = []  # exceptions of the handlers that are running, by name
@@ -174,6 +192,7 @@ class Frame(Obj):
         self.returns, self.jumps, self.tries, self.escapes, self.arguments = [], [], [], [], []
         self.recorded = self.passed = self.thrown = None
         self.heads.clear()
+        self.taken.clear()
 
     def owner_class(self) -> Obj | None:
         """Return the class whose body this is; None for functions."""
