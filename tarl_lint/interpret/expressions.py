@@ -227,8 +227,8 @@ def _choice(ctx: Interpreter, expr: ir.Choice, frame: Frame) -> Value:
     if known:
         return evaluate(ctx, expr.then if constant else expr.other, frame)
     guard = operators.guard(ctx, operators.truth(ctx, test, frame, expr.slot), frame, expr.slot)
-    then = under_guard(ctx, expr.then, (guard, "then"), frame)
-    other = under_guard(ctx, expr.other, (guard, "other"), frame)
+    then = under_guard(ctx, expr.then, (guard, "then"), expr.test, frame)
+    other = under_guard(ctx, expr.other, (guard, "other"), expr.test, frame)
     if ctx.thorough:
         then = literals.entry(ctx, expr.then, then, frame, ("then", expr.slot))
         other = literals.entry(ctx, expr.other, other, frame, ("other", expr.slot))
@@ -239,10 +239,14 @@ def _choice(ctx: Interpreter, expr: ir.Choice, frame: Frame) -> Value:
     return Value(both.deps | ctx.kept(node), both.pts, both.consts)
 
 
-def under_guard(ctx: Interpreter, expr: ir.Expr, guard: tuple[int, str], frame: Frame) -> Value:
+def under_guard(
+    ctx: Interpreter, expr: ir.Expr, guard: tuple[int, str], test: ir.Expr, frame: Frame
+) -> Value:
     """Evaluate an expression that is executed only for one outcome of a decision."""
     ctx.guards.append(guard)
+    former = ctx.ops.narrow_part(ctx, test, frame, holds=guard[1] == "then")
     value = evaluate(ctx, expr, frame)
+    ctx.ops.widen(ctx, former)
     ctx.guards.pop()
     return value
 

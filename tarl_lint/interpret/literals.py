@@ -8,7 +8,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.constant_expressions import computed
 from tarl_lint.memory import heap, recency, updates
-from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.frames import Former, Frame
 from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.shared import BORN
 from tarl_lint.memory.store import AGING
@@ -93,12 +93,14 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
         return _one_by_one_of(ctx, expr, chosen, frame)
     obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
     deps, lengths = NONE, NONE
+    former: Former = []
     for number, (target, source, conditions) in enumerate(expr.loops):
         several = ctx.ops.evaluate(ctx, source, frame) if number else first
         lengths |= sizes.length(ctx, several)
         ctx.ops.assign(ctx, target, heap.elements(ctx, several), frame)
         for condition in conditions:
             deps |= ctx.use(ctx.ops.evaluate(ctx, condition, frame))
+            former += ctx.ops.narrow_part(ctx, condition, frame, holds=True)
     element = ctx.ops.evaluate(ctx, expr.element, frame)
     gate = ctx.ops.gate(ctx, deps, frame, expr.slot)
     element = Value(element.deps | gate, element.pts, element.consts)
@@ -114,6 +116,7 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
             again = ctx.ops.evaluate(ctx, expr.element, frame)
             ctx.repeating = False
             updates.add_element(ctx, pointer(obj), Value(again.deps | gate, again.pts, again.consts))
+    ctx.ops.widen(ctx, former)
     return pointer(obj)
 
 

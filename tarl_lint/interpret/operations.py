@@ -7,7 +7,7 @@ from typing import Protocol, TypeVar
 
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.frames import Former, Frame
 from tarl_lint.memory.shared import Root
 from tarl_lint.memory.values import (
     NONE,
@@ -147,6 +147,10 @@ class Operations(Protocol[Ctx]):
         """Return the qualified name of an analysed function or method that the settings mention; "" for others."""
         ...
 
+    def narrow_part(self, ctx: Ctx, test: ir.Expr, frame: Frame, *, holds: bool) -> Former:
+        """Narrow variables for the rest of an expression; return their former and their new values."""
+        ...
+
     def read_item(self, ctx: Ctx, base: Value, index: Value) -> Value:
         """Return an element; a tainted index taints it."""
         ...
@@ -181,6 +185,10 @@ class Operations(Protocol[Ctx]):
 
     def unpacked(self, ctx: Ctx, value: Value) -> list[Value] | None:
         """Return the elements of a sequence with known elements."""
+        ...
+
+    def widen(self, ctx: Ctx, former: Former) -> None:
+        """After an expression, give each variable that it has not assigned its former value again."""
         ...
 
     def wait(self, ctx: Ctx, frame: Frame) -> None:

@@ -11,7 +11,7 @@ from tarl_lint.interpret import dunder_methods, nullness
 from tarl_lint.interpret.interpreter import NONE_ONLY, Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap, object_contents
-from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.frames import Former, Frame
 from tarl_lint.memory.values import (
     BOTTOM,
     BY_CLASS,
@@ -191,6 +191,7 @@ def _always_true(ctx: Interpreter, obj: Obj) -> bool:
 def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
     """Return the value of `a or b`. The first operand decides which one it is; calls in the second depend on it."""
     result, deps, guards, decided = BOTTOM, NONE, len(ctx.guards), False
+    former: Former = []
     for number, part in enumerate(expr.parts):
         value = ctx.ops.evaluate(ctx, part, frame)
         last = number + 1 == len(expr.parts)
@@ -204,6 +205,10 @@ def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
             break
         if not last and not known and isinstance(expr.parts[number + 1], CALLING):
             ctx.guards.append((guard(ctx, decides, frame, (expr.pos, number)), "rest"))
+        if not last and not known:
+            former += ctx.ops.narrow_part(ctx, part, frame, holds=expr.operator == "and")
+    if former:
+        ctx.ops.widen(ctx, former)
     del ctx.guards[guards:]
     false = decided and expr.operator == "and" and result.consts is None and not result.pts
     return Value(result.deps | deps, result.pts, FALSE if false else result.consts)

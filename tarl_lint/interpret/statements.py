@@ -118,6 +118,7 @@ def assign(ctx: Interpreter, target: ir.Expr, value: Value, frame: Frame) -> Non
     elif isinstance(target, ir.SequenceDisplay):
         for number, item in enumerate(target.items):
             assign(ctx, item, expressions.read_item(ctx, value, const(number)), frame)
+            tags.note_element(ctx, item, value, number, f"{target.pos}.{number}", frame)
     elif isinstance(target, ir.Starred):
         assign(ctx, target.value, value, frame)
 

@@ -15,7 +15,7 @@ from tarl_lint.interpret import expressions, operators
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap
-from tarl_lint.memory.frames import Frame, Taken
+from tarl_lint.memory.frames import Former, Frame, Taken
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import NO_CONSTANTS, NONE, Key, Nodes, Obj, Value, const, lineage, pointer
 from tarl_lint.models import sizes
@@ -107,6 +107,20 @@ def restore(ctx: Interpreter, before: Narrowed, ways: Sequence[tuple[Narrowed, D
     for key, value in before.items() if len(ways) > 1 else ():
         if all(key not in state or state[key] is narrowed.get(key) for narrowed, state in ways):
             ctx.store.put(key, value)
+
+
+def narrow_part(ctx: Interpreter, test: ir.Expr, frame: Frame, *, holds: bool) -> Former:
+    """Narrow variables for the rest of an expression; return their former and their new values."""
+    before: Narrowed = {}
+    found = narrow(ctx, test, frame, before, holds=holds)
+    return [(key, before[key], value) for key, value in found.items() if key in before]
+
+
+def widen(ctx: Interpreter, former: Former) -> None:
+    """After an expression, give each variable that it has not assigned its former value again."""
+    for key, before, value in reversed(former):
+        if ctx.store.get(key) is value:
+            ctx.store.put(key, before)
 
 
 # --- conditions ---------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ from tarl_lint.interpret.exceptions import escaped, may_fail
 from tarl_lint.interpret.expressions import evaluate, holder, read_item
 from tarl_lint.interpret.imports import default, imported
 from tarl_lint.interpret.statements import assign, assign_fallback, bind_target, block, run
+from tarl_lint.interpret.tags import narrow_part, widen
 from tarl_lint.interpret.worklist import add_root, root_frame, wait
 from tarl_lint.memory.reachable_data import deep
 from tarl_lint.models.iterators import gate
@@ -48,6 +49,7 @@ __all__ = [
     "may_fail",
     "missing",
     "named_by_settings",
+    "narrow_part",
     "read_item",
     "register_filter",
     "remainder",
@@ -58,4 +60,5 @@ __all__ = [
     "serve",
     "unpacked",
     "wait",
+    "widen",
 ]

@@ -9,6 +9,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.exception_types import ExceptionTypes, Handled
 from tarl_lint.memory.values import BOTTOM, Branches, Key, Obj, Value
 
+Former = list[tuple[Key, Value, Value]]  # narrowed variables with their former and their new values
 Turns = tuple[tuple[ir.Loop, int], ...]  # loops, outer ones first, with the number of the current iteration
 
 
