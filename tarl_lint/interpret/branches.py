@@ -50,6 +50,8 @@ def if_statement(ctx: Interpreter, s: ir.If, frame: Frame) -> bool:
         ctx.store.push()
         frame.statement = s
         narrowed = tags.narrow(ctx, s.test, frame, before, holds=holds)
+        if narrowed:
+            tags.decide(ctx, s, frame, narrowed, holds=holds)
         if ctx.ops.block(ctx, body, frame):
             goes_on.append((narrowed, ctx.store.pop()))
         else:

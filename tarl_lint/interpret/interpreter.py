@@ -110,6 +110,8 @@ class Interpreter:
         )  # classes that annotate parameters of functions that code outside the files calls
         self.parts: dict[Obj, Part] = {}  # states of machines and behaviours of trees
         self.groups: dict[Obj, Group[Obj]] = {}  # their containers
+        # allocation site → nodes that put its objects into containers
+        self.inserted: dict[Hashable, set[int]] = {}
         self.opened: list[Value] = []  # the context managers of the `with` statements that are running
         self.handed_over: set[Obj] = set()  # functions with a decorator of a package that is not analysed
         # names of classes outside the analysed files whose methods receive data or callbacks
@@ -250,7 +252,8 @@ class Interpreter:
         turns = frame.turns if turns is None else turns
         if turns:
             turns = inside(self.control(frame).statements.get(number), turns)
-        key = (frame.id, number, "condition", *((loop.id, turn) for loop, turn in turns))
+        slot = f"condition {way}" if branch in frame.told_apart else "condition"
+        key = (frame.id, number, slot, *((loop.id, turn) for loop, turn in turns))
         node = self.graph.numbers.get(key)
         if node is None:
             place = Place(frame, None, "condition", (0, 0, 0, 0))
@@ -263,8 +266,19 @@ class Interpreter:
 
     def condition(self, frame: Frame, statement: ir.Stmt, turns: Turns | None = None) -> int:
         """Return the node of a statement's decision."""
-        turns = inside(statement, frame.turns if turns is None else turns)
-        node, _ = self.branch(frame, (statement.id, ""), turns)
+        return self._decision(
+            frame, statement, "", inside(statement, frame.turns if turns is None else turns)
+        )
+
+    def way(self, frame: Frame, statement: ir.Stmt, way: str) -> int:
+        """Return the node that decides only whether one branch of an `if` runs."""
+        if (statement.id, way) not in frame.told_apart:
+            frame.told_apart.add((statement.id, way))
+            frame.closures = {}
+        return self._decision(frame, statement, way, inside(statement, frame.turns))
+
+    def _decision(self, frame: Frame, statement: ir.Stmt, way: str, turns: Turns) -> int:
+        node, _ = self.branch(frame, (statement.id, way), turns)
         place = self.graph.places[node]
         if place.statement is None:
             self.graph.places[node] = Place(frame, statement, "condition", statement.pos)
@@ -272,7 +286,7 @@ class Interpreter:
             if statement.id in self.control(frame).far:
                 self.graph.control[node].update(b for b, _ in self.graph.branches[node])
             if turns:
-                self.condition(frame, statement, turns[:-1])
+                self._decision(frame, statement, way, turns[:-1])
         return node
 
     def control(self, frame: Frame) -> Control:
@@ -360,6 +374,10 @@ class Interpreter:
         for node in free:
             self.graph.reads.ask(self.graph.free, node)
         return frozenset(map(self.graph.unchosen, free))
+
+    def inserted_by(self, obj: Obj) -> int:
+        """Return the number of nodes that have put objects of an allocation site into containers."""
+        return len(self.inserted.get(obj.site, ()))
 
     def nothing_yet(self, value: Value) -> bool:
         """Return whether a value is still unset, or is None on all paths."""

@@ -1,8 +1,8 @@
 """Tags: in the branches of an `if` that tests one, variables hold only the objects with a matching tag.
 
 A tag tells objects of different kinds apart, as in `kind, value = queue.get()` with `if kind == "stop"`: the first
-element of a tuple, an entry of a mapping, an attribute, or the class of an object. Local variables that got their values
-from such objects are narrowed, for example `value`. After the `if`, they have their former values again.
+element of a tuple, an entry of a mapping, an attribute, or the class of an object. Local variables that got their
+values from such objects are narrowed, for example `value`. After the `if`, they have their former values again.
 """
 
 from __future__ import annotations
@@ -35,7 +35,9 @@ class Test:
     expr: ir.Expr
     tags: Tags
     holds: bool
-    exact: bool = True  # whether the expression is compared with all tags, so that it is none of them if this fails
+    exact: bool = (
+        True  # whether the expression is compared with all tags, so that it is none of them if this fails
+    )
     classes: Value | None = None
 
 
@@ -52,7 +54,9 @@ def note(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Value, slot:
             _remember(ctx, target, whole, of[1], slot, frame, key)
 
 
-def note_element(ctx: Interpreter, target: ir.Expr, whole: Value, number: int, slot: str, frame: Frame) -> None:
+def note_element(
+    ctx: Interpreter, target: ir.Expr, whole: Value, number: int, slot: str, frame: Frame
+) -> None:
     """Record that the current statement assigned an element of a value to a variable."""
     if isinstance(target, ir.Name) and _several(whole):
         _remember(ctx, target, whole, const(number), slot, frame)
@@ -79,7 +83,7 @@ def _remember(
 
 def _keep(frame: Frame, key: Key, taken: Taken) -> None:
     known = frame.taken.setdefault(key, [])
-    known[:] = [one for one in known if one.value is not taken.value][1 - MAX_TAKEN :] + [taken]
+    known[:] = [*[one for one in known if one.value is not taken.value][1 - MAX_TAKEN :], taken]
 
 
 def narrow(
@@ -100,6 +104,33 @@ def narrow(
             ctx.store.put(key, value)
     frame.statement = statement
     return found
+
+
+def decide(ctx: Interpreter, s: ir.If, frame: Frame, narrowed: Narrowed, *, holds: bool) -> None:
+    """Let a branch depend on the objects with a matching tag, and not on the others.
+
+    The conditions under which other objects came into the same queue do not decide whether the branch runs.
+    """
+    if not _without_calls(s.test):
+        return
+    node = ctx.way(frame, s, "then" if holds else "else")
+    value = ctx.ops.evaluate(ctx, s.test, frame)
+    frame.statement = s
+    ctx.graph.flow(operators.truth(ctx, value, frame, ("test", holds)), node)
+    for key in narrowed:
+        taken = _taken(ctx, key, frame)
+        ctx.graph.flow(narrowed[key].deps if taken is None else taken.before.deps, node)
+
+
+def _without_calls(test: ir.Expr) -> bool:
+    if isinstance(test, ir.Call):
+        named = isinstance(test.function, ir.Name) and test.function.name == "isinstance"
+        return named or _of_variable(test) is not None
+    if isinstance(test, ir.Operation):
+        return all(map(_without_calls, test.parts))
+    if isinstance(test, (ir.Attribute, ir.Item)):
+        return _without_calls(test.base)
+    return isinstance(test, (ir.Const, ir.Name, ir.SequenceDisplay))
 
 
 def restore(ctx: Interpreter, before: Narrowed, ways: Sequence[tuple[Narrowed, Delta]]) -> None:
@@ -218,7 +249,8 @@ def _tags(value: Value) -> Tags | None:
     if value.pts:
         known = value.consts == NO_CONSTANTS and all(map(enumerations.is_member, value.pts))
         return frozenset(value.pts) if known else None
-    return value.keys() or None
+    keys = value.keys()
+    return keys if keys and None not in keys else None  # whether a value is set is not a tag, see nullness.py
 
 
 # --- variables ----------------------------------------------------------------------------------------
@@ -288,12 +320,20 @@ def _with(ctx: Interpreter, key: Key, now: Value, kept: frozenset[Obj], frame: F
 
 
 def _field(ctx: Interpreter, value: Value, field: str | Value) -> Value:
-    return heap.read(ctx, value, field) if isinstance(field, str) else expressions.read_item(ctx, value, field)
+    return (
+        heap.read(ctx, value, field) if isinstance(field, str) else expressions.read_item(ctx, value, field)
+    )
 
 
 def _passed_only(ctx: Interpreter, all_of_them: frozenset[Obj], kept: frozenset[Obj]) -> Nodes:
     """Return the nodes that put only those objects into a container that are not kept."""
-    return NONE
+    for obj in all_of_them:
+        ctx.store.reads.ask(ctx.inserted_by, obj)
+    ours = [ctx.inserted.get(obj.site) for obj in kept]
+    if None in ours:
+        return NONE
+    theirs = (ctx.inserted.get(obj.site, ()) for obj in all_of_them - kept)
+    return NONE.union(*theirs).difference(*(nodes for nodes in ours if nodes is not None))
 
 
 def _matches(ctx: Interpreter, obj: Obj, field: str | Value, test: Test) -> bool:

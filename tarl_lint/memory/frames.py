@@ -123,6 +123,7 @@ class Frame(Obj):
         "steps",
         "taken",
         "thrown",
+        "told_apart",
         "tries",
         "turn",
         "turns",
@@ -166,6 +167,7 @@ class Frame(Obj):
             tuple[int, ...], dict[Key, Value]
         ] = {}  # loop and iterations of outer loops → state at the loop's head in its last fixpoint
         self.captured = False
+        self.told_apart: set[tuple[int, str]] = set()  # branches that have conditions of their own
         # variable → its values that are, or were parts of, one of several objects
         self.taken: dict[Key, list[Taken]] = {}
         self.returns: list[tuple[dict[Key, Value], Value]] = []

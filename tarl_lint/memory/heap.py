@@ -66,6 +66,7 @@ HOLLOW = frozenset(
         CLIENT,
     ]
 )
+INNER = frozenset(["queue", "_queue"])  # attributes of a queue: the list of its elements
 NAMESPACE = "types.SimpleNamespace"  # name of an object whose attributes are also the items of its `vars()`
 # kinds of objects whose attributes are stored elsewhere or under other names
 RENAMING = frozenset(["closure", VIEW, CLIENT])
@@ -136,6 +137,8 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
         return held_method(ctx, obj, name)
     if kind in ("message", "lib", "goal"):
         return _part(ctx, obj, name)
+    if kind == "sequence" and name in INNER:
+        return pointer(obj)
     if kind in ("sequence", "mapping"):
         return content(ctx, obj) if name.startswith("[") else BOTTOM
     if name == "__class__" and kind == "instance" and isinstance(obj.info, Obj):

@@ -13,7 +13,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import NEW
 from tarl_lint.memory.shared import BORN
 from tarl_lint.memory.store import AGING
-from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value, join
+from tarl_lint.memory.values import ABSENT, BOTTOM, OLDER, Obj, Value, join
 
 MAX_NESTING = 7
 # kinds of objects that may cease to represent one concrete object
@@ -90,9 +90,9 @@ def _age(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
     ]
     if not holders:
         return
-    older = ctx.objects.get((obj.kind, (obj.key, "older")))
+    older = ctx.objects.get((obj.kind, (obj.key, OLDER)))
     if older is None:
-        older = ctx.objects[obj.kind, (obj.key, "older")] = Obj(obj.kind, (obj.key, "older"))
+        older = ctx.objects[obj.kind, (obj.key, OLDER)] = Obj(obj.kind, (obj.key, OLDER))
         older.many = True
         older.name = obj.name
         if obj in ctx.chains:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Hashable, Iterable
 from dataclasses import dataclass, field
 from itertools import count
 from operator import attrgetter
@@ -28,6 +28,7 @@ MAX_DEPTH = 6  # maximum nesting depth of embedded objects
 MAX_ELEMENTS = 2
 MAX_CELLS = 16  # maximum number of nested elements tracked separately in a library object, such as a matrix
 DATA: Final = "<data>"  # entry of `Obj.changes`: the object received its first data
+OLDER: Final = "older"  # last part of the key of the summary of an allocation site's older objects
 MESSAGES = frozenset(["message", "goal"])  # kinds of objects that are data themselves
 
 
@@ -112,6 +113,13 @@ class Obj:
     def whole(self) -> Obj:
         """Return the outermost enclosing object."""
         return self.outermost or self
+
+    @property
+    def site(self) -> Hashable:
+        """Return the allocation site that an object shares with the summary of older objects."""
+        key = self.key
+        aged = isinstance(key, tuple) and len(key) == 2 and key[1] == OLDER
+        return (self.kind, key[0] if aged and isinstance(key, tuple) else key)
 
     def describe(self, info: object) -> None:
         """Set `info`, the meaning of this object, and increment its stamp if the meaning changed."""

@@ -234,6 +234,8 @@ def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: F
         return
     function = call.function
     news = through_statement(ctx, news, frame, call)
+    for obj in news.pts if news.deps else ():
+        ctx.inserted.setdefault(obj.site, set()).update(news.deps)
     change(ctx, base, news, [function.base] if isinstance(function, ir.Attribute) else [], frame)
 
 
