@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import BLOCKED
 from tarl_lint.ir.exception_types import UNKNOWN
 from tarl_lint.memory.frames import Attempt, Escape, Frame, Leaving
 from tarl_lint.memory.store import Delta
@@ -70,6 +71,18 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
         leave(
             ctx, Escape(frame, statement, raises, Value(deps), decision), frame
         )  # the text of the exception quotes the arguments
+
+
+def may_wait(ctx: Interpreter, decides: Nodes, frame: Frame) -> None:
+    """Make the rest of the function, or of a loop's iteration, depend on the event for which a call waits."""
+    statement = frame.statement
+    if not decides or statement is None or frame.cls is not None:
+        return
+    known = frame.function.raising.setdefault(statement.id, {})
+    if BLOCKED not in known:
+        known[BLOCKED] = None
+        frame.function.control = None
+    ctx.graph.depend(ctx.condition(frame, statement), decides)
 
 
 def _expected(ctx: Interpreter, frame: Frame) -> str:

@@ -139,6 +139,10 @@ class Operations(Protocol[Ctx]):
         """Make later statements depend on whether a library call raises for its arguments."""
         ...
 
+    def may_wait(self, ctx: Ctx, decides: Nodes, frame: Frame) -> None:
+        """Make the rest of the function, or of a loop's iteration, depend on the event for which a call waits."""
+        ...
+
     def missing(self, ctx: Ctx, mapping: Obj, name: str) -> Value:
         """Return the value that a mapping with a default creates for a missing key."""
         ...

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tarl_lint.interpret.calls import call, call_object, call_value
-from tarl_lint.interpret.exceptions import escaped, may_fail
+from tarl_lint.interpret.exceptions import escaped, may_fail, may_wait
 from tarl_lint.interpret.expressions import evaluate, holder, read_item
 from tarl_lint.interpret.imports import default, imported
 from tarl_lint.interpret.statements import assign, assign_fallback, bind_target, block, run
@@ -47,6 +47,7 @@ __all__ = [
     "imported",
     "launched_call",
     "may_fail",
+    "may_wait",
     "missing",
     "named_by_settings",
     "narrow_part",

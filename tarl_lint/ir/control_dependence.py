@@ -65,6 +65,10 @@ class Iteration:
     onward: frozenset[Branch]
 
 
+# what a call "raises" that waits, perhaps for ever: the rest of the function, or of the iteration, depends on it
+BLOCKED: Final = "<blocked>"
+
+
 @dataclass(slots=True)
 class _Graph:
     """Control-flow edges: statement → successors by outcome."""
@@ -188,6 +192,9 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
     else:
         graph.link(s.id, "", follow)
     for name in graph.raising.get(s.id, ()):
+        if name == BLOCKED:
+            graph.link(s.id, "waits", exits.on_continue)
+            continue
         graph.throw(s.id, f"raises {name}", name, exits)
     return s.id
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from tarl_lint import catalog
-from tarl_lint.interpret import call_contexts, expressions
+from tarl_lint.interpret import call_contexts, expressions, operators
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
@@ -47,6 +47,9 @@ MOVING = frozenset(
     ["insert", "appendleft", "extendleft", "sort"]
 )  # methods that move the elements of a sequence
 FLAGGING = frozenset(["set", "clear"])
+NOTIFYING = frozenset(["notify", "notify_all"])
+# method that takes an element out of a container → the exception that it raises if there is none; "" if unknown
+RAISED = {"get_nowait": "", "pop": "IndexError", "popleft": "IndexError"}
 IN_ORDER = frozenset(
     ["list", "tuple", "deque", "iter", "reversed"]
 )  # functions whose result tracks its elements separately if their argument does
@@ -67,7 +70,7 @@ def mutate(
     """Store arguments in the receiver."""
     plain, named = arguments
     if name in FLAGGING and not plain:
-        _flag(ctx, base, name, frame, call)
+        flag(ctx, base, name, frame, call)
     if name in catalog.DEVICE_WRITERS and all(map(is_device, base.pts)):
         _transmit(ctx, base, plain, frame, call)
         return
@@ -181,10 +184,10 @@ def _append_subscriber(ctx: Interpreter, base: Value, subscriber: Value, frame: 
     ctx.store.put((obj, APPENDED), const(first))
 
 
-def _flag(ctx: Interpreter, base: Value, name: str, frame: Frame, call: ir.Call) -> None:
-    """Set or clear an event; later queries of the event depend on the conditions of this call."""
+def flag(ctx: Interpreter, base: Value, name: str, frame: Frame, call: ir.Call) -> None:
+    """Set or clear an event, or notify a condition; later queries of it depend on the conditions of this call."""
     events = Value(base.deps, frozenset(o for o in base.pts if o.kind == "lib"))
-    updates.write_field(ctx, events, FLAG, through_statement(ctx, const(name == "set"), frame, call))
+    updates.write_field(ctx, events, FLAG, through_statement(ctx, const(name != "clear"), frame, call))
 
 
 def _transmit(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
@@ -258,9 +261,39 @@ def _read_get(ctx: Interpreter, it: Invocation) -> Value:
     return join(result, plain[1]) if len(plain) > 1 else result
 
 
+def _from_queue(ctx: Interpreter, it: Invocation) -> Value:
+    """Return an element of a queue, for which the call waits, or an entry of a mapping."""
+    if not it.base.pts or any(o.kind != "sequence" for o in it.base.pts):
+        return _read_get(ctx, it)
+    if it.arguments[0] or it.arguments[1]:
+        _may_be_empty(ctx, it, "")
+    else:
+        ctx.ops.may_wait(ctx, operators.chosen(ctx, it.base.pts, it.frame, ("got", it.call.slot)), it.frame)
+    return elements_of_any(ctx, it.base)
+
+
+def _may_be_empty(ctx: Interpreter, it: Invocation, raises: str) -> None:
+    """Let a handler run if nothing has been put into a container."""
+    if it.frame.tries or len(ctx.stack) > 1:
+        ours = frozenset(o for o in it.base.pts if o.kind in removal.CONTAINERS)
+        got = operators.chosen(ctx, ours, it.frame, ("got", it.call.slot))
+        ctx.ops.may_fail(ctx, got, raises, it.frame, named=raises != "")
+
+
+def wait_for_flag(ctx: Interpreter, it: Invocation) -> None:
+    """Wait until another thread sets an event, or notifies a condition."""
+    flags = [v for o in it.base.objects if (v := ctx.store.get((o, FLAG))) is not None]
+    if flags and not it.arguments[0] and not it.arguments[1]:
+        node = ctx.node(it.frame, ("awaited", it.call.slot), "condition")
+        ctx.graph.choice(NONE.union(*(v.deps for v in flags)), node)
+        ctx.ops.may_wait(ctx, ctx.kept(node), it.frame)
+
+
 def _take_out(ctx: Interpreter, it: Invocation) -> Value:
     """Remove an element and return it."""
     result, given = _read_get(ctx, it), it.arguments[0]
+    if it.name in RAISED and len(given) < 2:
+        _may_be_empty(ctx, it, RAISED[it.name])
     index = given[0] if given else const(0) if it.name in ("popleft", "get_nowait") else None
     decides = ctx.use(index) if index is not None else NONE
     decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=it.base.deps)
@@ -452,7 +485,7 @@ def is_device(obj: Obj) -> bool:
 
 
 READERS: Mapping[str, Callable[..., Value]] = {
-    "get": _read_get,
+    "get": _from_queue,
     "__getitem__": _read_get,
     "__setitem__": _write_entry,
     **dict.fromkeys(("pop", "popleft", "get_nowait", "popitem"), _take_out),

@@ -119,6 +119,10 @@ def _call_method(
         return UNKNOWN
     if name in catalog.WAITING_METHODS and not base.consts:
         ctx.ops.wait(ctx, frame)
+        if name == "wait":
+            containers.wait_for_flag(ctx, Invocation(name, base, arguments, frame, call))
+    if name in containers.NOTIFYING and kind == "lib" and not arguments[0]:
+        containers.flag(ctx, base, name, frame, call)
     if name in catalog.MUTATORS and not base.consts:
         return _store(ctx, target, Invocation(name, base, arguments, frame, call))
     if name in READERS and base.pts:
