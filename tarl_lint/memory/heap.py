@@ -17,6 +17,7 @@ from tarl_lint.memory.values import (
     BOTTOM,
     BY_CLASS,
     MAX_TEXTS,
+    MEMBER,
     NONE,
     UNKNOWN,
     ClassInfo,
@@ -339,7 +340,8 @@ def elements(ctx: Interpreter, value: Value) -> Value:
     ctx.graph.asked += len(value.pts)
     for obj in value.objects:
         if obj.kind == "instance":
-            result = join(result, Value(ctx.ops.deep(ctx, frozenset([obj]))))
+            names = attribute_names(ctx, obj)
+            result = join(result, Value(ctx.ops.deep(ctx, frozenset([obj]))) if names is None else names)
         elif obj.kind == "mapping":
             result = join(result, keys(ctx, obj, value.deps))
         elif obj.kind == "class":
@@ -348,6 +350,30 @@ def elements(ctx: Interpreter, value: Value) -> Value:
         else:
             result = join(result, arrive(ctx, read_any(ctx, obj), value.deps))
     return result
+
+
+def attribute_names(ctx: Interpreter, obj: Obj) -> Value | None:
+    """Return the names over which a loop over `vars(obj)` iterates; None if a loop over the object has other elements.
+
+    `vars(obj)` and `obj.__dict__` are represented by the object itself. Only an object whose class and base classes are
+    all analysed, and which has no attributes with computed names, certainly does not iterate in another way.
+    """
+    cls = obj.info if obj.kind == "instance" else None
+    infos = [one.info for one in lineage(cls)] if isinstance(cls, Obj) and obj.name != MEMBER else []
+    if not isinstance(cls, Obj) or not infos or any(_iterates(info) for info in infos):
+        return None
+    if attribute_of_item(obj, "name") != "name" or content(ctx, obj) is not BOTTOM:
+        return None
+    if any(through_class(ctx, obj, cls, name) is not None for name in ("__iter__", "__getitem__")):
+        return None
+    ctx.store.look(obj)
+    names = [n for n in list(obj.fields) if n.isidentifier() and ctx.store.get((obj, n)) is not None]
+    return Value(consts=frozenset(names)) if 0 < len(names) <= MAX_TEXTS else UNKNOWN
+
+
+def _iterates(info: object) -> bool:
+    """Return whether instances of a class may have elements: a named tuple, or a class with unknown base classes."""
+    return not isinstance(info, ClassInfo) or info.named or info.opaque
 
 
 def keys(ctx: Interpreter, mapping: Obj, carriers: Nodes) -> Value:

@@ -18,6 +18,7 @@ from tarl_lint.memory.values import (
     BOTTOM,
     NONE,
     UNKNOWN,
+    ClassInfo,
     Nodes,
     Obj,
     Value,
@@ -124,12 +125,23 @@ def _prepare(
     An element that equals another one does not count in a set.
     """
     decided = removal.decision(ctx, frame, call.slot, counts=base.deps) if name in MOVING else None
-    added = frozenset[int]().union(*(ctx.use(value) for value in news)) if name == "add" else NONE
+    added = frozenset[int]().union(*(_compared(ctx, value) for value in news)) if name == "add" else NONE
     for obj in base.objects if decided is not None or added else ():
         if obj.kind == "sequence" and decided is not None:
             removal.scatter(ctx, obj, decided, shorter=False)
         elif obj.kind == "sequence":
             sizes.decide_length(ctx, obj, added)
+
+
+def _compared(ctx: Interpreter, value: Value) -> Nodes:
+    """Return the data that decides whether an element equals others; an instance without `__eq__` equals none."""
+    own = frozenset(o for o in value.pts if o.kind == "instance" and not _equals(ctx, o))
+    return ctx.use(Value(value.deps, value.pts - own))
+
+
+def _equals(ctx: Interpreter, obj: Obj) -> bool:
+    cls = obj.info.info if isinstance(obj.info, Obj) else None
+    return not isinstance(cls, ClassInfo) or bool(cls.fields) or bool(heap.read_field(ctx, obj, "__eq__").pts)
 
 
 def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> None:
@@ -382,6 +394,13 @@ def _of_class(it: Invocation, obj: Obj) -> Value:
 
 
 def _read_pairs(ctx: Interpreter, it: Invocation) -> Value:
+    listed = _pairs(ctx, it)
+    for pair in heap.elements(ctx, listed).objects:
+        pair.name = iterators.ENTRY
+    return listed
+
+
+def _pairs(ctx: Interpreter, it: Invocation) -> Value:
     told = _known_entries(ctx, it)
     if told is not None:
         (obj,) = iterators.rows_of(ctx, told, it).pts

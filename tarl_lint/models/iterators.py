@@ -13,11 +13,14 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import LENGTH, item_field
-from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, join_all, pointer
+from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, in_order, join_all, pointer
 from tarl_lint.models import rows as possible_rows
 from tarl_lint.models import sizes
 
 COMPARED = frozenset(["sequence", "mapping", "instance"])  # kinds of objects that consist of what is compared
+ENTRY = (
+    "entry"  # name of the pair of a key and its value; keys differ, so comparisons do not reach the values
+)
 MAX_MAPPED = 8  # maximum number of elements to which `map` is applied one by one
 
 
@@ -185,7 +188,10 @@ def ordered(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
     key = it.arguments[1].get("key")
     if key is None or key.consts:
         inside = frozenset(o for o in elements.pts if o.kind in COMPARED)
-        return _decided(ctx, elements, ctx.use(Value(pts=inside)) if inside else NONE, it)
+        entries = [o for o in in_order(inside) if o.name == ENTRY]
+        keys = (ctx.use(heap.read_field(ctx, o, item_field(0))) for o in entries)
+        compared = ctx.use(Value(pts=inside.difference(entries))).union(*keys)
+        return _decided(ctx, elements, compared, it)
     return _decided(ctx, elements, ctx.use(_key(ctx, key, elements, it)), it)
 
 

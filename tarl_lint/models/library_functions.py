@@ -212,6 +212,8 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "eval": reflection.evaluated,
     **dict.fromkeys(containers.PIPES, containers.new_pipe),
     "dict": records.new_mapping,
+    "weakref.WeakSet": containers.new_container,
+    **dict.fromkeys(("weakref.WeakValueDictionary", "weakref.WeakKeyDictionary"), records.new_mapping),
     "logging.getLogger": logging_handlers.named_logger,
     "logging.Handler.__init__": logging_handlers.initialised,
     heap.NAMESPACE: objects.namespace,

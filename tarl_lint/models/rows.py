@@ -56,14 +56,14 @@ def entries(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | None:
 
 
 def attributes(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | None:
-    """Return the names and values in the body of one class, as `vars(cls)` has them; None for anything else."""
-    cls = next(iter(base.pts)) if len(base.pts) == 1 else None
-    if cls is None or cls.kind != "class":
+    """Return the names and values of one class or instance, as `vars(x)` has them; None for anything else."""
+    owner = next(iter(base.pts)) if len(base.pts) == 1 else None
+    if owner is None or (owner.kind != "class" and heap.attribute_names(ctx, owner) is None):
         return None
-    ctx.store.look(cls)
+    ctx.store.look(owner)
     found: list[tuple[Value, Value]] = []
-    for name in list(cls.fields):
-        value = ctx.store.get((cls, name)) if name.isidentifier() and not name.startswith("__") else None
+    for name in list(owner.fields):
+        value = ctx.store.get((owner, name)) if name.isidentifier() and not name.startswith("__") else None
         if value is not None:
             found.append((const(name), heap.arrive(ctx, value, base.deps)))
     return found if 0 < len(found) <= MAX_MEMBERS else None

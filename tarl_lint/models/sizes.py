@@ -219,7 +219,7 @@ def length(ctx: Interpreter, value: Value) -> Nodes:
             deps |= ctx.graph.through(made, value.deps)
         elif SENT in obj.fields:
             deps |= heap.content(ctx, obj).deps
-        else:
+        elif heap.attribute_names(ctx, obj) is None:
             deps |= ctx.use(Value(value.deps, frozenset([obj])))
     return deps
 

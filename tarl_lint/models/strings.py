@@ -11,7 +11,7 @@ from tarl_lint.interpret import call_contexts, operators
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import recency
+from tarl_lint.memory import heap, recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import MAX_TEXTS, UNKNOWN, Consts, Symbolic, Value, const, pointer
@@ -78,6 +78,8 @@ def keys_joined(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.C
     given = [
         Value(operators.membership(ctx, v, frame, ("joined", call.slot)))
         if any(o.kind == "mapping" for o in v.pts)
+        else heap.elements(ctx, v)
+        if any(heap.attribute_names(ctx, o) is not None for o in v.pts)
         else v
         for v in arguments[0]
     ]

@@ -280,7 +280,20 @@ def test_iteration_yields_elements_of_a_sequence_and_keys_of_a_mapping(ctx):
     assert heap.elements(ctx, ONE) == ONE
     obj = an_instance(ctx, a_class(ctx, "A"))
     ctx.store.put((obj, "inside"), TWO)
-    assert heap.elements(ctx, pointer(obj)).deps == {2}
+    ctx.store.put((obj, ANY), ONE)
+    assert heap.elements(ctx, pointer(obj)).deps == {1, 2}
+
+
+def test_iteration_over_the_attributes_of_an_object_yields_their_names(ctx):
+    obj = an_instance(ctx, a_class(ctx, "A"))
+    other = an_instance(ctx, a_class(ctx, "B", external=("Unknown",)), "other")
+    ctx.store.put((obj, "speed"), TWO)
+    names = heap.attribute_names(ctx, obj)
+    assert names is not None and names.texts() == ("speed",) and not names.deps
+    assert heap.elements(ctx, pointer(obj)) == names
+    assert heap.attribute_names(ctx, other) is None
+    ctx.store.put((obj, "*"), ONE)
+    assert heap.attribute_names(ctx, obj) is None
 
 
 @pytest.mark.parametrize(

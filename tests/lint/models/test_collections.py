@@ -382,6 +382,20 @@ out.publish(functools.reduce(lambda a, b: a + b, [1.0, msg.data]))  # data
 out.publish(functools.reduce(lambda a, b: a, [1.0, 2.0], msg.data))  # data
 out.publish(operator.add(1.0, msg.data))  # data
 out.publish(operator.itemgetter(1)([msg.data, 1.0]))  # clean
+### attributes of an object as a mapping
+class Side:
+    def __init__(self):
+        self.name, self.speed = "left", msg.data
+side = Side()
+for key, value in vars(side).items():
+    if key == "name":
+        out.publish(value)  # clean
+    else:
+        out.publish(value)  # data
+out.publish(" ".join(vars(side)))  # clean
+out.publish(" ".join(key for key, _ in sorted(vars(side).items())))  # clean
+out.publish(max(v for v in vars(side).values()))  # data
+out.publish(len(vars(side)))  # clean
 ### sorting by data
 l = [1.0, 2.0]
 l.sort(key=lambda x: x * msg.data)

@@ -95,6 +95,22 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME("far * 2"))  # clean
         out.publish(NAME(msg.text))  # data
     """,
+    ("weakref.WeakSet",): """
+        class Part:
+            def __init__(self):
+                self.x, self.y = msg.data, 1.0
+        kept = NAME()
+        kept.add(Part())
+        for part in kept:
+            out.publish(part.x)  # data
+            out.publish(part.y)  # clean
+    """,
+    ("weakref.WeakValueDictionary", "weakref.WeakKeyDictionary"): """
+        kept = NAME()
+        kept["a"], kept["b"] = msg.data, 1.0
+        out.publish(kept["a"])  # data
+        out.publish(kept["b"])  # clean
+    """,
     ("dict", "OrderedDict"): """
         kept = NAME({"a": msg.data}, b=0.0)
         out.publish(kept["a"])  # data
