@@ -192,11 +192,15 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
     else:
         graph.link(s.id, "", follow)
     for name in graph.raising.get(s.id, ()):
-        if name == BLOCKED:
-            graph.link(s.id, "waits", exits.on_continue)
-            continue
-        graph.throw(s.id, f"raises {name}", name, exits)
+        _raising(graph, s, name, exits)
     return s.id
+
+
+def _raising(graph: _Graph, s: ir.Stmt, name: str, exits: _Exits) -> None:
+    if name == BLOCKED:
+        graph.link(s.id, "waits", exits.on_continue)
+    else:
+        graph.throw(s.id, f"raises {name}", name, exits)
 
 
 def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:

@@ -48,7 +48,6 @@ MOVING = frozenset(
     ["insert", "appendleft", "extendleft", "sort"]
 )  # methods that move the elements of a sequence
 FLAGGING = frozenset(["set", "clear"])
-NOTIFYING = frozenset(["notify", "notify_all"])
 # method that takes an element out of a container → the exception that it raises if there is none; "" if unknown
 RAISED = {"get_nowait": "", "pop": "IndexError", "popleft": "IndexError"}
 IN_ORDER = frozenset(
@@ -71,7 +70,7 @@ def mutate(
     """Store arguments in the receiver."""
     plain, named = arguments
     if name in FLAGGING and not plain:
-        flag(ctx, base, name, frame, call)
+        flag(ctx, Invocation(name, base, arguments, frame, call))
     if name in catalog.DEVICE_WRITERS and all(map(is_device, base.pts)):
         _transmit(ctx, base, plain, frame, call)
         return
@@ -196,10 +195,11 @@ def _append_subscriber(ctx: Interpreter, base: Value, subscriber: Value, frame: 
     ctx.store.put((obj, APPENDED), const(first))
 
 
-def flag(ctx: Interpreter, base: Value, name: str, frame: Frame, call: ir.Call) -> None:
+def flag(ctx: Interpreter, it: Invocation) -> None:
     """Set or clear an event, or notify a condition; later queries of it depend on the conditions of this call."""
-    events = Value(base.deps, frozenset(o for o in base.pts if o.kind == "lib"))
-    updates.write_field(ctx, events, FLAG, through_statement(ctx, const(name != "clear"), frame, call))
+    events = Value(it.base.deps, frozenset(o for o in it.base.pts if o.kind == "lib"))
+    news = through_statement(ctx, const(it.name != "clear"), it.frame, it.call)
+    updates.write_field(ctx, events, FLAG, news)
 
 
 def _transmit(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
@@ -295,7 +295,7 @@ def _may_be_empty(ctx: Interpreter, it: Invocation, raises: str) -> None:
 def wait_for_flag(ctx: Interpreter, it: Invocation) -> None:
     """Wait until another thread sets an event, or notifies a condition."""
     flags = [v for o in it.base.objects if (v := ctx.store.get((o, FLAG))) is not None]
-    if flags and not it.arguments[0] and not it.arguments[1]:
+    if flags:
         node = ctx.node(it.frame, ("awaited", it.call.slot), "condition")
         ctx.graph.choice(NONE.union(*(v.deps for v in flags)), node)
         ctx.ops.may_wait(ctx, ctx.kept(node), it.frame)

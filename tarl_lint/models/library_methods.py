@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 from tarl_lint import catalog
 from tarl_lint.interpret import call_contexts
@@ -45,6 +46,8 @@ from tarl_lint.models.ros import behaviour_subscribers, senders
 from tarl_lint.models.smach import LATER
 from tarl_lint.models.strings import TEXT_METHODS
 
+# methods of events and conditions, without arguments
+SIGNALS: Final = {"wait": containers.wait_for_flag, "notify": containers.flag, "notify_all": containers.flag}
 OF_BASE = frozenset(["__new__", "__init__", "__setattr__"])  # methods of base classes that are not analysed
 SIGNALLING = frozenset(["connect", "emit"])
 
@@ -117,17 +120,21 @@ def _call_method(
         return ctx.ops.ros_call(ctx, Invocation(name, base, arguments, frame, call, fact))
     if name in catalog.LOGGING or name in catalog.CLOCKS:
         return UNKNOWN
-    if name in catalog.WAITING_METHODS and not base.consts:
-        ctx.ops.wait(ctx, frame)
-        if name == "wait":
-            containers.wait_for_flag(ctx, Invocation(name, base, arguments, frame, call))
-    if name in containers.NOTIFYING and kind == "lib" and not arguments[0]:
-        containers.flag(ctx, base, name, frame, call)
+    if name in catalog.WAITING_METHODS or name in SIGNALS:
+        _wait(ctx, Invocation(name, base, arguments, frame, call))
     if name in catalog.MUTATORS and not base.consts:
         return _store(ctx, target, Invocation(name, base, arguments, frame, call))
     if name in READERS and base.pts:
         return READERS[name](ctx, Invocation(name, base, arguments, frame, call))
     return _unknown_method(ctx, base, name, arguments, frame, call)
+
+
+def _wait(ctx: Interpreter, it: Invocation) -> None:
+    """Wait for other threads, or wake one up."""
+    if it.name in catalog.WAITING_METHODS and not it.base.consts:
+        ctx.ops.wait(ctx, it.frame)
+    if it.name in SIGNALS and not any(it.arguments) and any(o.kind == "lib" for o in it.base.pts):
+        SIGNALS[it.name](ctx, it)
 
 
 def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:

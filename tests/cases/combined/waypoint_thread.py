@@ -42,7 +42,7 @@ class Navigator(threading.Thread):
                 continue
             self.cancel.clear()
             self.drive(gx, gy)  # step plan
-            self.done.publish()  # clean
+            self.done.publish()  # sink ~plan
 
     def drive(self, gx, gy):
         rate = rospy.Rate(20)
@@ -59,9 +59,10 @@ class Navigator(threading.Thread):
             out.angular.z = math.atan2(dy, dx)  # step plan pose
             self.pub.publish(out)  # sink plan pose
             rate.sleep()
-        self.pub.publish(Twist())  # clean
+        self.pub.publish(Twist())  # sink ~plan
 
 
 rospy.init_node("nav")
+rospy.Publisher("/ready", Empty, queue_size=1).publish()  # clean
 Navigator().start()
 rospy.spin()
