@@ -295,6 +295,7 @@ MUTATORS: Final = frozenset(
     [
         "append", "appendleft", "extend", "extendleft", "insert", "add", "update", "put", "put_nowait", "push",
         "fill", "set", "setdefault", "itemset", "write", "push_back", "send", "send_nowait", "clear", "sort",
+        "writerow", "writerows",
     ]
 )  # fmt: skip
 
@@ -339,7 +340,9 @@ ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
 }  # fmt: skip
 # method of an object of a library → position of the argument that the method fills with data
 METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}
-DEVICE_WRITERS: Final = frozenset(["write", "writelines", "send", "sendall", "sendto"])
+DEVICE_WRITERS: Final = frozenset(
+    ["write", "writelines", "writerow", "writerows", "send", "sendall", "sendto"]
+)
 DEVICE_READERS: Final = frozenset(
     ["read", "readline", "readlines", "read_until", "read_all", "readinto", "recv", "recvfrom", "recv_into",
      "inWaiting"]

@@ -34,6 +34,9 @@ FAILS: Final = re.compile(
 )  # functions that raise for some arguments
 
 
+READS: Final = re.compile(r"_?(load|read|parse|open|deserialize|decode|from)", re.IGNORECASE)
+
+
 def changes(method: str, *, dropped: bool) -> bool:
     """Return whether a method changes its object by its arguments.
 
@@ -45,6 +48,11 @@ def changes(method: str, *, dropped: bool) -> bool:
 def only_tells(name: str) -> bool:
     """Return whether a function or method uses its arguments without storing them or writing into them."""
     return TELLS.match(name) is not None
+
+
+def reads(name: str) -> bool:
+    """Return whether a function or method reads from a stream that it gets, and writes nothing into it."""
+    return READS.match(name) is not None
 
 
 def keeps_callables(name: str) -> bool:

@@ -173,12 +173,14 @@ def call_value(
         return BOTTOM
     if not targets:
         return Value(function.deps | call_contexts.all_used(ctx, arguments))
+    decides = function.deps
     if len(targets) > 1 and ctx.dispatches:
         targets = single_dispatch.chosen(ctx, targets, arguments)
+        decides |= single_dispatch.decides(ctx, targets, arguments)
     if len(targets) == 1:
         return call_object(ctx, targets[0], arguments, frame, call, carriers)
     result, deltas = BOTTOM, []
-    guard = operators.guard(ctx, function.deps, frame, ("dispatch", call.slot))
+    guard = operators.guard(ctx, decides, frame, ("dispatch", call.slot))
     for number, target in enumerate(targets):
         ctx.store.push()
         ctx.guards.append((guard, str(number)))

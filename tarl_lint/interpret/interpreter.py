@@ -112,6 +112,8 @@ class Interpreter:
         self.groups: dict[Obj, Group[Obj]] = {}  # their containers
         # allocation site → nodes that put its objects into containers
         self.inserted: dict[Hashable, set[int]] = {}
+        # allocation site → nodes that put something into its containers, or set its events
+        self.filled: dict[Hashable, set[int]] = {}
         self.opened: list[Value] = []  # the context managers of the `with` statements that are running
         self.handed_over: set[Obj] = set()  # functions with a decorator of a package that is not analysed
         # names of classes outside the analysed files whose methods receive data or callbacks
@@ -378,6 +380,19 @@ class Interpreter:
     def inserted_by(self, obj: Obj) -> int:
         """Return the number of nodes that have put objects of an allocation site into containers."""
         return len(self.inserted.get(obj.site, ()))
+
+    def filled_by(self, obj: Obj) -> int:
+        """Return the number of nodes that put something into containers of an allocation site, or set its events."""
+        return len(self.filled.get(obj.site, ()))
+
+    def always_filled(self, objects: Iterable[Obj]) -> bool:
+        """Return whether some statement fills one of several queues, or sets an event, under no condition on data."""
+        found: set[int] = set()
+        for obj in objects:
+            self.store.reads.ask(self.filled_by, obj)
+            found |= self.filled.get(obj.site, set())
+        branches = (self.graph.branches[node] for node in sorted(found))
+        return any(not any(self.reached(decision) for decision, _ in sorted(one)) for one in branches)
 
     def nothing_yet(self, value: Value) -> bool:
         """Return whether a value is still unset, or is None on all paths."""

@@ -8,7 +8,7 @@ from tarl_lint.interpret.annotated import named_types, written
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory.values import NO_CONSTANTS, Obj, Value, closure_of, function_of, lineage
+from tarl_lint.memory.values import NO_CONSTANTS, NONE, Nodes, Obj, Value, closure_of, function_of, lineage
 
 RECEIVERS = ("self", "cls")
 
@@ -29,6 +29,12 @@ def chosen(ctx: Interpreter, targets: list[Obj], arguments: Arguments) -> list[O
     """Return the implementations that a call may run; all of them if the type of the argument is not known."""
     known = _types(ctx, arguments[0][0]) if arguments[0] else None
     return targets if known is None else for_types(ctx, targets, known)
+
+
+def decides(ctx: Interpreter, targets: list[Obj], arguments: Arguments) -> Nodes:
+    """Return the nodes that decide which implementation runs: those that chose the object that is the argument."""
+    registered = any(closure_of(one) in ctx.dispatches for one in targets)
+    return arguments[0][0].deps if registered and arguments[0] and arguments[0][0].pts else NONE
 
 
 def for_types(ctx: Interpreter, targets: list[Obj], known: Sequence[Sequence[str]]) -> list[Obj]:

@@ -109,9 +109,12 @@ def narrow(
 def decide(ctx: Interpreter, s: ir.If, frame: Frame, narrowed: Narrowed, *, holds: bool) -> None:
     """Let a branch depend on the objects with a matching tag, and not on the others.
 
-    The conditions under which other objects came into the same queue do not decide whether the branch runs.
+    The conditions under which other objects came into the same queue do not decide whether the branch runs. If the
+    test excludes constants, what chose among them decides both branches.
     """
-    if not _without_calls(s.test):
+    if not _without_calls(s.test) or any(
+        not value.pts and _taken(ctx, key, frame) is None for key, value in narrowed.items()
+    ):
         return
     node = ctx.way(frame, s, "then" if holds else "else")
     value = ctx.ops.evaluate(ctx, s.test, frame)
@@ -266,7 +269,21 @@ def _narrow(ctx: Interpreter, test: Test, frame: Frame) -> Iterator[tuple[Key, V
         if test.classes is not None:
             yield from _objects(ctx, test.expr, "", test, frame)
         else:
+            yield from _constants(ctx, test.expr, test, frame)
             yield from _companions(ctx, test.expr, test, frame)
+
+
+def _constants(ctx: Interpreter, name: ir.Name, test: Test, frame: Frame) -> Iterator[tuple[Key, Value]]:
+    """Yield a variable without the constants that do not match."""
+    key = (expressions.holder(name, frame), name.name)
+    now = ctx.store.get(key)
+    if now is None or now.pts or not now.keys() or _taken(ctx, key, frame) is not None:
+        return
+    known = now.keys() or frozenset()
+    kept = known & test.tags if test.holds else known - test.tags if test.exact else known
+    if kept and kept != known:
+        # a single constant is the same for all data for which the branch runs
+        yield key, Value(NONE if len(kept) == 1 else now.deps, consts=kept)
 
 
 def _objects(

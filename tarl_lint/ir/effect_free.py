@@ -44,6 +44,8 @@ def only_tells(expr: ast.expr, prints: bool) -> bool:
     """
     if not isinstance(expr, ast.Call) or not _tells(expr.func, prints):
         return False
+    if any(keyword.arg == "file" and isinstance(keyword.value, ast.Name) for keyword in expr.keywords):
+        return False  # the stream may be read again, unlike `sys.stderr`
     given = [*expr.args, *(k.value for k in expr.keywords)]
     return all(map(_pure, walk(*given)))
 

@@ -200,6 +200,8 @@ def flag(ctx: Interpreter, it: Invocation) -> None:
     events = Value(it.base.deps, frozenset(o for o in it.base.pts if o.kind == "lib"))
     news = through_statement(ctx, const(it.name != "clear"), it.frame, it.call)
     updates.write_field(ctx, events, FLAG, news)
+    if it.name != "clear":
+        _note_filling(ctx, events, it.frame, it.call)
 
 
 def _transmit(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
@@ -249,9 +251,17 @@ def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: F
         return
     function = call.function
     news = through_statement(ctx, news, frame, call)
+    _note_filling(ctx, base, frame, call)
     for obj in news.pts if news.deps else ():
         ctx.inserted.setdefault(obj.site, set()).update(news.deps)
     change(ctx, base, news, [function.base] if isinstance(function, ir.Attribute) else [], frame)
+
+
+def _note_filling(ctx: Interpreter, base: Value, frame: Frame, call: ir.Call) -> None:
+    """Record that the current statement fills containers or sets events, for code that waits for them."""
+    for obj in base.pts if frame.statement is not None else ():
+        if obj.kind in ("sequence", "lib"):
+            ctx.filled.setdefault(obj.site, set()).add(ctx.node(frame, ("stored", call.slot, 0), "call"))
 
 
 def through_statement(
@@ -279,14 +289,14 @@ def _from_queue(ctx: Interpreter, it: Invocation) -> Value:
         return _read_get(ctx, it)
     if it.arguments[0] or it.arguments[1]:
         _may_be_empty(ctx, it, "")
-    else:
+    elif not ctx.always_filled(it.base.objects):
         ctx.ops.may_wait(ctx, operators.chosen(ctx, it.base.pts, it.frame, ("got", it.call.slot)), it.frame)
     return elements_of_any(ctx, it.base)
 
 
 def _may_be_empty(ctx: Interpreter, it: Invocation, raises: str) -> None:
     """Let a handler run if nothing has been put into a container."""
-    if it.frame.tries or len(ctx.stack) > 1:
+    if (it.frame.tries or len(ctx.stack) > 1) and not ctx.always_filled(it.base.objects):
         ours = frozenset(o for o in it.base.pts if o.kind in removal.CONTAINERS)
         got = operators.chosen(ctx, ours, it.frame, ("got", it.call.slot))
         ctx.ops.may_fail(ctx, got, raises, it.frame, named=raises != "")
@@ -295,7 +305,7 @@ def _may_be_empty(ctx: Interpreter, it: Invocation, raises: str) -> None:
 def wait_for_flag(ctx: Interpreter, it: Invocation) -> None:
     """Wait until another thread sets an event, or notifies a condition."""
     flags = [v for o in it.base.objects if (v := ctx.store.get((o, FLAG))) is not None]
-    if flags:
+    if flags and not ctx.always_filled(it.base.objects):
         node = ctx.node(it.frame, ("awaited", it.call.slot), "condition")
         ctx.graph.choice(NONE.union(*(v.deps for v in flags)), node)
         ctx.ops.may_wait(ctx, ctx.kept(node), it.frame)

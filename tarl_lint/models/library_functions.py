@@ -210,6 +210,8 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(CONTAINERS, containers.new_container),
     **dict.fromkeys(QUEUES, containers.new_queue),
     "eval": reflection.evaluated,
+    **dict.fromkeys(("csv.writer", "csv.DictWriter"), filling.stream_itself),
+    "ChainMap": records.several_mappings,
     **dict.fromkeys(containers.PIPES, containers.new_pipe),
     "dict": records.new_mapping,
     "weakref.WeakSet": containers.new_container,

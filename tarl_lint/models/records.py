@@ -271,6 +271,11 @@ def new_mapping(ctx: Interpreter, it: Invocation) -> Value:
     return pointer(obj)
 
 
+def several_mappings(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the value of `ChainMap(first, second)`: an entry may be one of any of the mappings."""
+    return join_all(it.arguments[0]) if it.arguments[0] else new_mapping(ctx, it)
+
+
 def entries(ctx: Interpreter, obj: Obj, value: Value) -> None:
     """Copy the entries of a mapping or a sequence of pairs."""
     for source in value.objects:

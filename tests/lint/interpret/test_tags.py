@@ -105,6 +105,34 @@ if event.kind is Kind.LOAD:
     out.publish(event.value)  # load:data
 elif event.kind is Kind.HEAT:
     out.publish(event.value)  # heat:data
+### a constant
+def check():
+    value = pairs.get()[1]
+    return "good" if value > 1.0 else "bad"
+def either():
+    for answer in (check(), "good"):
+        if answer != "bad":
+            return answer
+    return "bad"
+if either() == "good":
+    out.publish(1.0)  # clean
+answer = check()
+if answer == "good":
+    out.publish(1.0)  # load:control heat:control
+### an implementation for a type
+from functools import singledispatch
+@singledispatch
+def handle(one):
+    out.publish(0.0)  # clean
+@handle.register
+def _(one: Load):
+    out.publish(1.0)  # number:control
+@handle.register
+def _(one: Heat):
+    out.publish(2.0)  # number:control
+def number(msg):
+    handle(Load(1.0) if msg.data > 1.0 else Heat(1.0))
+rospy.Subscriber("number", Float64, number)
 ### a pattern
 match dicts.get():
     case {"type": "heat" | "cold", "value": value}:

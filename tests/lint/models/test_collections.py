@@ -382,6 +382,19 @@ out.publish(functools.reduce(lambda a, b: a + b, [1.0, msg.data]))  # data
 out.publish(functools.reduce(lambda a, b: a, [1.0, 2.0], msg.data))  # data
 out.publish(operator.add(1.0, msg.data))  # data
 out.publish(operator.itemgetter(1)([msg.data, 1.0]))  # clean
+### streams in memory
+import io, json, pickle
+a, b, c, d, e = io.StringIO(), io.StringIO(), io.BytesIO(), io.BytesIO(), io.StringIO()
+json.dump({"x": msg.data}, a)
+out.publish(a.getvalue())  # data
+print("x", msg.data, file=b)
+out.publish(b.getvalue())  # data
+pickle.dump(msg.data, c)
+out.publish(c.getvalue())  # data
+msg.serialize(d)
+out.publish(d.getvalue())  # data
+json.dump({"x": 1.0}, e)
+out.publish(e.getvalue())  # clean
 ### attributes of an object as a mapping
 class Side:
     def __init__(self):

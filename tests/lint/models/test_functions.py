@@ -21,6 +21,7 @@ WHERE = {
     "OrderedDict": "collections.OrderedDict",
     "defaultdict": "collections.defaultdict",
     "Counter": "collections.Counter",
+    "ChainMap": "collections.ChainMap",
     "namedtuple": "collections.namedtuple",
     "operator.attrgetter.<made>": "operator.attrgetter",
     "operator.itemgetter.<made>": "operator.itemgetter",
@@ -94,6 +95,22 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME("near * 2"))  # data
         out.publish(NAME("far * 2"))  # clean
         out.publish(NAME(msg.text))  # data
+    """,
+    ("csv.writer", "csv.DictWriter"): """
+        import io
+        stream, other = io.StringIO(), io.StringIO()
+        rows = NAME(stream)
+        rows.writerow([msg.data])
+        NAME(other).writerow([1.0])
+        out.publish(stream.getvalue())  # data
+        out.publish(other.getvalue())  # clean
+    """,
+    ("ChainMap",): """
+        first, second = {}, {"a": 0.0, "b": 0.0}
+        both = NAME(first, second)
+        first["a"] = msg.data
+        out.publish(both["a"])  # data
+        out.publish(both["b"])  # clean
     """,
     ("weakref.WeakSet",): """
         class Part:
