@@ -25,6 +25,7 @@ IDLE = 2
 # a named constant with a sharp peak is refined if the factors on both sides of the peak have at least this ratio
 WIDE = 1.4
 AMID = 6  # maximum number of constants that are tried at once between two steps
+GIVES_WAY = 0.75  # factor on the gain of a unit for each refinement without progress, when units are compared
 MORE = 0.05  # minimum increase of the gain, as a share of the wanted gain
 
 
@@ -75,7 +76,7 @@ class Adjusting:
             open_to = self._open()
             if not search.proposed:
                 open_to = plateau.nearby(open_to, search.gains, PROMISING * wanted) or open_to
-            best = max(open_to, key=search.gains.most, default=None)
+            best = max(open_to, key=self._hopeful, default=None)
             before = search.gains.most(best) if best is not None else 0.0
             if best is None or before <= search.slack:
                 return
@@ -85,6 +86,10 @@ class Adjusting:
             self._idle[best] = self._idle[best] + 1 if gained <= before + MORE * wanted else 0
             if gained <= max(before, PROMISING * wanted) and gained < ALMOST * wanted:
                 return
+
+    def _hopeful(self, key: tuple[Unit, Guard]) -> float:
+        """Return the gain of a unit, less for each refinement without progress: others may be closer to their best."""
+        return self.search.gains.most(key) * GIVES_WAY ** self._idle[key]
 
     def _open(self) -> list[tuple[Unit, Guard]]:
         """Return the units and guards that may be refined further, of uses that act alike only the first."""

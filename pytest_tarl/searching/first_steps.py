@@ -153,11 +153,20 @@ class FirstSteps:
         if among and not idle and not tries.gains.anything():
             tries.turn += 1
             yield from tries.sweep(NEAR[1], guard, among)
+            yield from self._at_once(guard, among)
             yield from self._laws(self._unconditional(guard))
             yield from self.crossing.across(guard, plateau.STEPS[:2])
             yield from self._closely(guard, among)
         if among and not idle and not tries.gains.anything(HALF * tries.goal.wanted):
             yield from self._limits(self._unconditional(guard))
+
+    def _at_once(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Try smaller steps on the named constants that lose in both directions: their good values are close."""
+        tries, pair = self.attempts, self.attempts.pair
+        lost = tries.gains.lost_both_ways(guard, among, NEAR)
+        for factor in BETWEEN if lost else ():
+            yield from tries.each(factor, guard, lost, pair)
+            yield from tries.adjusting.refine(pair)
 
     def _closely(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """If nothing gained clearly, try a smaller step on the few named constants of which the smallest is the best.

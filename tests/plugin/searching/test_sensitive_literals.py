@@ -62,6 +62,29 @@ def test_a_named_constant_gets_a_smaller_step_before_literals_if_its_smallest_st
     assert (trials.spent <= 14) is early
 
 
+@pytest.mark.parametrize(("lost", "early"), [(5.0, True), (-1.0, False)])
+def test_a_named_constant_that_loses_both_ways_gets_smaller_steps_before_literals(
+    lost: float, early: bool
+) -> None:
+    def constant(line: int, name: str) -> Operand:
+        return replace(operand(line, name, 1.0), definition=operand(line - 20, "1.0", 1.0).span)
+
+    culprit, other = constant(30, "AIR"), constant(31, "BAND")
+
+    def run(candidate: Candidate, _: int) -> Outcome:
+        by = factor(candidate, culprit)
+        if 0.6 < by < 0.7:
+            return Outcome(10.0, True)
+        if by == 1.0 and factor(candidate, other) == 0.4:
+            return Outcome(6.0, True)  # gains much, but never enough
+        return Outcome(0.0 if by == 1.0 else -lost, False)
+
+    trials = Trials(run, 300)
+    found = next(Sweep((*OTHERS, culprit, other), mutations, (ALWAYS,), trials, GOAL).candidates())
+    assert culprit in [one.operand for one in found.mutations]
+    assert (trials.spent <= 20) is early
+
+
 def test_a_value_of_a_table_is_changed_where_it_is_used_if_the_change_of_the_table_is_refused() -> None:
     table = replace(NARROW, site=replace(NARROW.site, qualname=""))
     use = replace(operand(9, "factor", 1.0), value=None, definition=None)
