@@ -16,6 +16,7 @@ import yaml
 
 from tarl_lint.workspace.cfg_files import configurations
 from tarl_lint.workspace.examination import Examined, examined
+from tarl_lint.workspace.interface_syntax import mistakes
 from tarl_lint.workspace.launch_read import read_launch
 from tarl_lint.workspace.message_files import fields
 from tarl_lint.workspace.model import Problem
@@ -226,6 +227,29 @@ BROKEN = {
     "eye/launch/c.launch.xml": ("<launch><node></launch>", r"it is not XML: "),
     "eye/launch/d.launch.yaml": ("launch: [\n", r"it is not YAML: "),
 }
+
+
+@pytest.mark.parametrize(
+    ("line", "valid"),
+    [
+        ("int32 A =", False),
+        ("int32 A = x  # 1", False),
+        ("float64 G=", False),
+        ("uint8 N = 1.5", False),
+        ("Pose P = 1", False),
+        ("int32[] L = 1", False),
+        ("bool B =", False),
+        ("int32 A = 0x1F  # mask", True),
+        ("int8 N=-1", True),
+        ("float32 G = 1e-3", True),
+        ("bool B = True", True),
+        ("string S = # kept", True),
+        ("string<=5 S =", True),
+        ("uint32 LEADING = 010", True),
+    ],
+)
+def test_a_constant_has_a_value_of_its_type(line: str, valid: bool) -> None:
+    assert [number for number, _ in mistakes(f"{line}\n", ".msg")] == ([] if valid else [1])
 
 
 @pytest.mark.parametrize("name", BROKEN)
