@@ -223,17 +223,32 @@ def _fixed_names(kind: Kind, package: str, part: Part) -> frozenset[str]:
 
 
 def parse(kind: Kind, package: str, name: str, text: str) -> Definition:
-    """Parse a message definition: a `.msg` file, or one section of a `.srv` or `.action` file."""
+    """Parse a message definition: a `.msg` file, or one section of a `.srv` or `.action` file.
+
+    Raises:
+        UnsupportedApiError: A line has no name, or a constant has no value of its type.
+    """
     fields, constants = [], []
     for line in text.splitlines():
         line = _without_comment(kind, line)
         if not line:
             continue
-        kind_of_value, rest = line.split(None, 1)
+        kind_of_value, *more = line.split(None, 1)
+        if not more:
+            raise UnsupportedApiError(
+                f"{package}/{name}: `{line}` is neither a field nor a constant: correct the definition."
+            )
+        rest = more[0]
         left, assigned, value = rest.partition("=")
         if assigned:
             text = f"{kind_of_value} {left.strip()}={value.strip()}"
-            constants.append(Constant(left.strip(), _constant(kind_of_value, value.strip()), text))
+            try:
+                constant = _constant(kind_of_value, value.strip())
+            except ValueError:
+                raise UnsupportedApiError(
+                    f"{package}/{name}: the constant `{text}` has no value of its type: correct the definition."
+                ) from None
+            constants.append(Constant(left.strip(), constant, text))
         elif rest.strip() != _FILLER:
             fields.append(_field(kind, kind_of_value, rest, package))
     return Definition(kind, package, name, tuple(fields), tuple(constants))
@@ -277,7 +292,12 @@ def _constant(type_text: str, value: str) -> Any:
         return float(value)
     if type_text.startswith(("string", "wstring")):
         return value.strip("'\"")
-    return value.lower() in ("true", "1") if type_text == "bool" else int(value, 0)
+    if type_text == "bool":
+        return value.lower() in ("true", "1")
+    try:
+        return int(value)  # ROS allows leading zeros, which base 0 refuses
+    except ValueError:
+        return int(value, 0)
 
 
 @cache
