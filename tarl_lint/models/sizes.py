@@ -187,6 +187,8 @@ def absorb(ctx: Interpreter, obj: Obj, value: Value, expr: ir.Expr | None = None
                 arrived = heap.arrive(ctx, stored, value.deps)
                 if name in certain:
                     ctx.store.put((obj, field), arrived)
+                elif name == ANY:
+                    updates.add_element(ctx, pointer(obj), arrived)
                 else:
                     updates.weaken(ctx, obj, field, arrived)
         content = heap.content(ctx, source)

@@ -77,6 +77,14 @@ out.publish(f["x"])  # data
 h = f if rospy.get_time() > 3.0 else e
 h.update({"x": 1.0})
 out.publish(f["x"])  # data
+### a mapping whose keys are not known may replace any entry
+words = {item[0]: item[1] for item in msg.items}
+d = {"x": 1.0, "y": 2.0}
+d.update(words)
+out.publish(d["x"])  # data
+out.publish(({"x": 1.0} | words)["x"])  # data
+out.publish({"x": 1.0, **words}["x"])  # data
+out.publish({**words, "x": 1.0}["x"])  # clean
 ### lists shrink
 l = [msg.data, 1.0]
 out.publish(l.pop())  # data
