@@ -56,6 +56,10 @@ def zipped_elements(ctx: Interpreter, it: Invocation) -> Value:
     if rows and len(rows) <= sizes.MAX_KNOWN:
         return rows_of(ctx, rows, it)
     length = lengths(ctx, given)
+    if any(k is not None for k in known):
+        length = gate(
+            ctx, length, it.frame, ("zipped", it.call.slot)
+        )  # the other sequence only ends it early
     if counting and given and (several := possible_rows.of(ctx, given[0])):
         return rows_in_any_order(ctx, [(UNKNOWN, one) for one in several], it, length)
     parts = [heap.elements(ctx, v) for v in given]

@@ -85,6 +85,12 @@ out.publish(d["x"])  # data
 out.publish(({"x": 1.0} | words)["x"])  # data
 out.publish({"x": 1.0, **words}["x"])  # data
 out.publish({**words, "x": 1.0}["x"])  # clean
+### what is zipped with known elements only ends them early
+d = dict(zip(("a", "b", "c", "d", "e"), msg.items))
+out.publish(d["a"])  # data
+out.publish([key for key in d])  # control
+out.publish([key for key, value in d.items() if value > 6.0])  # control
+out.publish(len(list(zip(msg.items, msg.items))))  # data
 ### lists shrink
 l = [msg.data, 1.0]
 out.publish(l.pop())  # data
