@@ -159,6 +159,10 @@ class Operations(Protocol[Ctx]):
         """Return an element; a tainted index taints it."""
         ...
 
+    def receiver(self, ctx: Ctx, base: Value) -> Value:
+        """Return what a publish call is called on, without the decisions between publishers that are all alike."""
+        ...
+
     def register_filter(self, ctx: Ctx, target: Obj | None, it: Invocation) -> Value:
         """Run a callback with one message of each subscriber."""
         ...

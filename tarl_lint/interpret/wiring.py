@@ -16,7 +16,7 @@ from tarl_lint.models.library_methods import call_method
 from tarl_lint.models.records import entries, fill, missing
 from tarl_lint.models.ros.catalog_calls import ros_call
 from tarl_lint.models.ros.clients import launched_call
-from tarl_lint.models.ros.publications import send
+from tarl_lint.models.ros.publications import receiver, send
 from tarl_lint.models.ros.services import serve
 from tarl_lint.models.ros.subscriptions import call_later, register_filter
 from tarl_lint.models.sizes import unpacked
@@ -52,6 +52,7 @@ __all__ = [
     "named_by_settings",
     "narrow_part",
     "read_item",
+    "receiver",
     "register_filter",
     "remainder",
     "root_frame",

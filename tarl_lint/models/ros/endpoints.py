@@ -83,7 +83,10 @@ class Acceptance:
 
 @dataclass(slots=True, eq=False)
 class Publisher:
-    """A publisher: its topics, types (as in SourceRecord), the place of its creation, and whether it is used."""
+    """A publisher: its topics, types (as in SourceRecord), the place of its creation, and whether it is used.
+
+    `nodes` are the objects whose method made it.
+    """
 
     topics: set[str] = field(default_factory=set)
     types: set[str] = field(default_factory=set)
@@ -94,3 +97,4 @@ class Publisher:
     used: bool = False
     kind: Kind = "topic"
     methods: frozenset[str] = frozenset(["publish"])  # names of the methods that send a message
+    nodes: set[Obj] = field(default_factory=set)

@@ -27,6 +27,7 @@ def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
         info = Publisher(api=it.fact.api, path=it.frame.program.path, pos=it.call.pos)
     obj.info = info
     info.topics.update(topics(ctx, it))
+    info.nodes |= it.base.pts
     info.types.update(type_names(it.argument(it.fact.type)))
     info.whole_types.update(whole_type_names(it.argument(it.fact.type)))
     return pointer(obj)
@@ -53,9 +54,28 @@ def topics(ctx: Interpreter, it: Invocation) -> list[str]:
     return [kind(names.get(text.lstrip("/"), text)) for text in given.names()]
 
 
-def names_of(info: Publisher) -> tuple[int, int]:
-    """Return the number of possible topics and types of a publisher; it never decreases."""
-    return len(info.topics), len(info.types)
+def names_of(info: Publisher) -> tuple[int, int, int]:
+    """Return the numbers of possible topics, types and nodes of a publisher; they never decrease."""
+    return len(info.topics), len(info.types), len(info.nodes)
+
+
+def receiver(ctx: Interpreter, base: Value) -> Value:
+    """Return what a publish call is called on, without the decisions between publishers that are all alike.
+
+    Publishers of one topic and one node are alike, such as those that a program makes when it first needs one.
+    """
+    infos = [o.info for o in base.pts if o.kind == "publisher" and isinstance(o.info, Publisher)]
+    if not base.deps or not infos or len(infos) < len(base.pts):
+        return base
+    for info in infos:
+        ctx.store.reads.ask(names_of, info)
+    names = {topic for info in infos for topic in info.topics}
+    nodes = {node for info in infos for node in info.nodes}
+    known = all(info.topics for info in infos) and not any(isinstance(name, DefaultName) for name in names)
+    alike = known and len(names) == 1 and len(nodes) < 2
+    if not alike or not all(recency.single(ctx, node) for node in nodes):
+        return base
+    return Value(pts=base.pts, consts=base.consts)
 
 
 def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
