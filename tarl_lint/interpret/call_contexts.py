@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarl_lint.interpret import annotated, context_selection, literals, nullness, replay, shared_contexts
+from tarl_lint.interpret import (
+    annotated,
+    context_selection,
+    generators,
+    literals,
+    nullness,
+    replay,
+    shared_contexts,
+)
 from tarl_lint.interpret.budget import IRRELEVANT_CALL_LIMIT, IRRELEVANT_CALLS_LIMIT
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
@@ -102,7 +110,9 @@ def _invoke(
     if frame.function.generator:
         collected = recency.allocate(ctx, "sequence", caller, ("generator", call.slot))
         collected.name = heap.GENERATOR
+        collected.describe(generators.mailbox(ctx, frame))
         updates.add_element(ctx, pointer(collected), frame.yielded)
+        ctx.store.put((collected, heap.RESULT), result)
         return pointer(collected)
     return result
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from tarl_lint.catalog import fact
-from tarl_lint.interpret import descriptors, dunder_methods, literals, operators, short_circuits
+from tarl_lint.interpret import descriptors, dunder_methods, generators, literals, operators, short_circuits
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, generations, heap, properties, recency
@@ -267,12 +267,15 @@ def _yield(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
     if expr.kind == "await":
         ctx.ops.wait(ctx, frame)
         return _awaited(ctx, value)
-    value = heap.elements(ctx, value) if expr.kind == "from" else value
+    inner, value = value, heap.elements(ctx, value) if expr.kind == "from" else value
     value = ctx.carry(value, ctx.node(frame, ("yield", expr.pos), "return"))
     frame.yielded = join(frame.yielded, value)
     if frame.caller is not None and frame.caller.statement is None:
         ctx.ops.wait(ctx, frame)  # a library runs the generator, and anything may happen before it goes on
-    return UNKNOWN
+        return UNKNOWN
+    if expr.kind == "from":
+        return generators.delegated(ctx, expr, inner, frame)
+    return generators.suspended(ctx, expr, frame)
 
 
 def _awaited(ctx: Interpreter, value: Value) -> Value:

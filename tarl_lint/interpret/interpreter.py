@@ -118,6 +118,11 @@ class Interpreter:
         self.handed_over: set[Obj] = set()  # functions with a decorator of a package that is not analysed
         # names of classes outside the analysed files whose methods receive data or callbacks
         self.ended: set[str] = set()
+        # mailbox of generators → data that each root has sent
+        self.posted: dict[Obj, dict[Root, Nodes]] = {}
+        self.receivers: dict[
+            Obj, dict[Root, None]
+        ] = {}  # mailbox → roots that have executed a generator's body
         self.checking = os.environ.get(CHECK, "") not in ("", "0")
         # ROS parameters whose values are names of topics or nodes; None if the run does not collect them
         self.parameter_names: list[ParameterName] | None = None
@@ -411,6 +416,11 @@ class Interpreter:
     def hopes(self) -> bool:
         """Return whether a later root may still store values that are unknown now."""
         return self.patient
+
+    def sendings(self, mailbox: Obj) -> tuple[int, int]:
+        """Return how many roots have sent data to generators, and how many nodes; neither number decreases."""
+        sent = self.posted.get(mailbox, {})
+        return len(sent), sum(map(len, sent.values()))
 
     def release(self) -> None:
         """Drop all references, to break reference cycles. The interpreter cannot be used afterwards."""

@@ -67,6 +67,8 @@ class Iteration:
 
 # what a call "raises" that waits, perhaps for ever: the rest of the function, or of the iteration, depends on it
 BLOCKED: Final = "<blocked>"
+# what a `yield` "raises" at which a generator waits for `send`, perhaps for ever: all the rest depends on it
+SUSPENDED: Final = "<suspended>"
 
 
 @dataclass(slots=True)
@@ -199,6 +201,8 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
 def _raising(graph: _Graph, s: ir.Stmt, name: str, exits: _Exits) -> None:
     if name == BLOCKED:
         graph.link(s.id, "waits", exits.on_continue)
+    elif name == SUSPENDED:
+        graph.link(s.id, "waits", EXIT)
     else:
         graph.throw(s.id, f"raises {name}", name, exits)
 

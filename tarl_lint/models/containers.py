@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from tarl_lint import catalog
-from tarl_lint.interpret import call_contexts, expressions, operators
+from tarl_lint.interpret import call_contexts, expressions, generators, operators
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
@@ -292,6 +292,13 @@ def _from_queue(ctx: Interpreter, it: Invocation) -> Value:
     elif not ctx.always_filled(it.base.objects):
         ctx.ops.may_wait(ctx, operators.chosen(ctx, it.base.pts, it.frame, ("got", it.call.slot)), it.frame)
     return elements_of_any(ctx, it.base)
+
+
+def sent(ctx: Interpreter, generator: Obj, it: Invocation) -> None:
+    """Send a value to a generator, which may have ended."""
+    for value in it.arguments[0][:1]:
+        generators.send(ctx, generator, through_statement(ctx, value, it.frame, it.call))
+    _may_be_empty(ctx, it, "StopIteration")
 
 
 def _may_be_empty(ctx: Interpreter, it: Invocation, raises: str) -> None:

@@ -146,6 +146,9 @@ def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
     kind = target.kind if target is not None else ""
     if kind == "lib":
         callables.call_back(ctx, it.arguments, it.frame, it.call)
+    if it.name == "send" and target is not None and target.name == heap.GENERATOR:
+        containers.sent(ctx, target, it)
+        return heap.arrive(ctx, heap.read_any(ctx, target), it.base.deps)
     containers.mutate(ctx, it.base, it.name, it.arguments, it.frame, it.call)
     given_back = it.name == "setdefault" or (it.name == "send" and kind == "sequence")
     if given_back and target is not None:

@@ -1,0 +1,72 @@
+"""Generators that get values by `send`: whoever sends a value runs the statements up to the next `yield`.
+
+The body of a generator is executed once, when it is made, with all values that are ever sent. Its caller may go on at
+every `yield`, and the rest of the body may never run.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import SUSPENDED
+from tarl_lint.memory import heap, recency, updates
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import BOTTOM, NONE, UNKNOWN, Obj, Value, const, join
+
+VALUE: Final = "<value>"  # field of a mailbox: the values that other roots have sent
+
+
+def mailbox(ctx: Interpreter, frame: Frame) -> Obj:
+    """Return the object that holds what the generators of a call context get."""
+    return recency.intern(ctx, "lib", ("mailbox", frame.id), "mailbox")
+
+
+def send(ctx: Interpreter, generator: Obj, value: Value) -> None:
+    """Send a value to a generator; what has executed its body runs again if the value is new.
+
+    A root does not see its own stores when it runs again, so the data that it sends is also kept apart.
+    """
+    box = generator.info
+    if not isinstance(box, Obj):
+        return
+    updates.weaken(ctx, box, VALUE, value)
+    sent = ctx.posted.setdefault(box, {})
+    known = sent.get(ctx.store.root)
+    both = ctx.use(value) | (known or NONE)
+    if both != known:
+        sent[ctx.store.root] = both
+        ctx.pending.update(ctx.receivers.get(box, {}))
+
+
+def suspended(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
+    """Return the value of a `yield`; the caller goes on here if anything is ever sent to the generator."""
+    box, statement = mailbox(ctx, frame), frame.statement
+    ctx.receivers.setdefault(box, {})[ctx.store.root] = None
+    ctx.store.reads.ask(ctx.sendings, box)
+    unused = isinstance(statement, ir.Evaluate) and statement.value is expr
+    if statement is None or (unused and box not in ctx.posted):
+        return UNKNOWN
+    # even if nothing has been sent yet: nodes keep the conditions that are known when they are made
+    known = frame.function.raising.setdefault(statement.id, {})
+    if SUSPENDED not in known:
+        known[SUSPENDED] = None
+        frame.function.control = None
+    if box not in ctx.posted:
+        return UNKNOWN
+    frame.returns.append((ctx.store.since(frame.depth_of_layers), const(None)))
+    stored = ctx.store.get((box, VALUE)) or BOTTOM
+    return join(stored, Value(ctx.posted[box].get(ctx.store.root, NONE)))
+
+
+def delegated(ctx: Interpreter, expr: ir.Yield, inner: Value, frame: Frame) -> Value:
+    """Return the value of `yield from`: what inner generators return. What is sent is passed on to them."""
+    sent, result = suspended(ctx, expr, frame), UNKNOWN
+    for obj in inner.objects:
+        if obj.name == heap.GENERATOR:
+            if sent is not UNKNOWN:
+                send(ctx, obj, sent)
+            returned = ctx.store.get((obj, heap.RESULT))
+            result = join(result, heap.arrive(ctx, returned or BOTTOM, inner.deps))
+    return result
