@@ -442,6 +442,7 @@ def new_container(ctx: Interpreter, it: Invocation) -> Value:
     known = sizes.unpacked(ctx, given[0]) if given and it.name in IN_ORDER else None
     known = known[::-1] if known is not None and it.name == "reversed" else known
     element = join_all(heap.elements(ctx, v) for v in given)
+    unordered = element
     if it.name == "sorted":
         element = iterators.ordered(ctx, element, it)
     length = sizes.length(ctx, given[0]) if given else NONE
@@ -454,6 +455,8 @@ def new_container(ctx: Interpreter, it: Invocation) -> Value:
             ctx.store.put((obj, item_field(number)), value)
     elif given:
         updates.add_element(ctx, pointer(obj), element)
+    if element is not unordered:
+        ctx.store.put((obj, iterators.UNORDERED), unordered)
     ctx.store.put((obj, LENGTH), Value(length))
     return pointer(obj)
 

@@ -21,6 +21,7 @@ COMPARED = frozenset(["sequence", "mapping", "instance"])  # kinds of objects th
 ENTRY = (
     "entry"  # name of the pair of a key and its value; keys differ, so comparisons do not reach the values
 )
+UNORDERED = "<unordered>"  # field of a sorted list: its elements without what decided their order
 MAX_MAPPED = 8  # maximum number of elements to which `map` is applied one by one
 
 
@@ -229,8 +230,25 @@ def grouped(ctx: Interpreter, it: Invocation) -> Value:
     key = plain[1] if len(plain) > 1 else named.get("key", const(None))
     found = element if key.consts else _key(ctx, key, element, it)
     compared = ctx.use(found)
+    if (unordered := _unordered(ctx, plain[0], element)) is not None:
+        # a list that is sorted for the groups: its order does not decide how many there are
+        again = replace(it, call=replace(it.call, slot=-1000 * (abs(it.call.slot) + 1)))
+        compared = ctx.use(unordered if key.consts else _key(ctx, key, unordered, again))
     group = listed(ctx, _decided(ctx, element, compared, it), length | compared, it)
     return pairs(ctx, [found, group], it.frame, it.call, length | compared)
+
+
+def _unordered(ctx: Interpreter, value: Value, element: Value) -> Value | None:
+    """Return the elements of sorted lists without what decided their order; None if other lists are among them.
+
+    The elements differ from these by the node of this decision only, unless something was added to a list later.
+    """
+    held = [ctx.store.get((o, UNORDERED)) for o in value.objects]
+    known = [heap.arrive(ctx, one, value.deps) for one in held if one is not None]
+    if not known or len(known) < len(held):
+        return None
+    before = join_all(known)
+    return before if before.pts == element.pts and len(element.deps - before.deps) == len(known) else None
 
 
 def asked(ctx: Interpreter, it: Invocation) -> Value:

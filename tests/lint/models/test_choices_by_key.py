@@ -62,6 +62,18 @@ for near, group in itertools.groupby(goals, key=lambda goal: goal.x < now["pose"
     out.publish(near)  # pose:data
     for goal in group:
         out.publish(goal.name)  # pose:control
+### the order of a sorted list decides what is in a group, but not how many groups there are
+found = [("a", now["pose"]), ("b", scores["a"])]
+for name, group in itertools.groupby(sorted(found), key=itemgetter(0)):
+    out.publish(1.0)  # clean
+    for goal in group:
+        out.publish(goal[1])  # pose:data score:data
+for x, group in itertools.groupby(sorted(found, key=itemgetter(1)), key=itemgetter(1)):
+    out.publish(1.0)  # pose:control score:control
+longer = sorted(found)
+longer.append((ranges[0], 0.0))
+for name, group in itertools.groupby(longer, key=itemgetter(0)):
+    out.publish(1.0)  # pose:control score:control scan:control
 ### the place of a number is computed from the numbers
 out.publish(bisect.bisect([1.0, 2.0], now["pose"]))  # pose:data
 out.publish(bisect.bisect([1.0, 2.0], 1.0, key=lambda x: x - now["pose"]))  # pose:data
