@@ -33,6 +33,12 @@ def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
     return pointer(obj)
 
 
+def _expects_none(ctx: Interpreter) -> bool:
+    """Return whether a handler names the exception of a call on None: then the first use is a decision."""
+    handlers = (handled for frame in ctx.stack for attempt in frame.tries for handled in attempt.handlers)
+    return any(ctx.exception_types.names(handled, "AttributeError") for handled in handlers)
+
+
 def image_publisher(ctx: Interpreter, it: Invocation) -> Value:
     """Return a new publisher of image_transport; images are also on topics below its own."""
     made = made_publisher(ctx, it)
@@ -65,7 +71,7 @@ def receiver(ctx: Interpreter, base: Value) -> Value:
     Publishers of one topic and one node are alike, such as those that a program makes when it first needs one.
     """
     infos = [o.info for o in base.pts if o.kind == "publisher" and isinstance(o.info, Publisher)]
-    if not base.deps or not infos or len(infos) < len(base.pts):
+    if not base.deps or not infos or len(infos) < len(base.pts) or _expects_none(ctx):
         return base
     for info in infos:
         ctx.store.reads.ask(names_of, info)

@@ -59,6 +59,15 @@ BODIES = """\
     def tick(self):
         if self.pub is not None:
             self.pub.publish(1.0)  # control
+### a handler for the case that there is none
+    def on(self, msg):
+        if msg.data > 3.0:
+            self.pub = self.make("c")
+    def tick(self):
+        try:
+            self.pub.publish(1.0)  # control
+        except AttributeError:
+            pass
 ### a choice between a publisher and an object without one
     def start(self):
         class Quiet:

@@ -210,6 +210,20 @@ CHANGED: dict[tuple[str, ...], str] = {
         out.publish(kept.pop())  # data
         out.publish(other.pop())  # clean
     """,
+    ("writerow",): """
+        kept, other = io.StringIO(), io.StringIO()
+        csv.writer(kept).NAME([msg.data])
+        csv.writer(other).NAME([0.0])
+        out.publish(kept.getvalue())  # data
+        out.publish(other.getvalue())  # clean
+    """,
+    ("writerows",): """
+        kept, other = io.StringIO(), io.StringIO()
+        csv.writer(kept).NAME([[msg.data], [0.0]])
+        csv.writer(other).NAME([[0.0]])
+        out.publish(kept.getvalue())  # data
+        out.publish(other.getvalue())  # clean
+    """,
     ("extend", "extendleft"): """
         kept, other = [0.0], [0.0]
         kept.NAME([msg.data])
@@ -351,7 +365,7 @@ WRITING: dict[tuple[str, ...], str] = {
 HEAD = "\n".join(
     f"import {name}"
     for name in (
-        *("asyncio", "bisect", "collections", "concurrent.futures", "cv2", "genpy.message", "heapq", "io"),
+        *("asyncio", "bisect", "collections", "concurrent.futures", "csv", "cv2", "genpy.message", "heapq", "io"),
         *("numpy", "queue", "random", "roslib.message", "rosidl_runtime_py.set_message", "serial", "struct"),
         "threading",
     )
