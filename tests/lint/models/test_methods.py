@@ -365,9 +365,9 @@ WRITING: dict[tuple[str, ...], str] = {
 HEAD = "\n".join(
     f"import {name}"
     for name in (
-        *("asyncio", "bisect", "collections", "concurrent.futures", "csv", "cv2", "genpy.message", "heapq", "io"),
-        *("numpy", "queue", "random", "roslib.message", "rosidl_runtime_py.set_message", "serial", "struct"),
-        "threading",
+        *("asyncio", "bisect", "collections", "concurrent.futures", "csv", "cv2", "genpy.message", "heapq"),
+        *("io", "numpy", "queue", "random", "roslib.message", "rosidl_runtime_py.set_message", "serial"),
+        *("struct", "threading"),
     )
 )
 HEAD += "\nfrom shop.msg import Made"
