@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -376,8 +377,11 @@ def test_a_template_states_which_factors_weaken_its_parameter(
     assert structures.weaker(one, factor) is expected
 
 
-def test_examining_a_candidate_may_take_more_episodes_than_its_group_of_templates_has() -> None:
+def test_examining_a_candidate_may_take_more_episodes_than_its_group_of_templates_has(tmp_path: Path) -> None:
     structures = Structures.__new__(Structures)
+    order: Any = SimpleNamespace(root=tmp_path, goal=None)
+    structures.order = order
+    structures._scaled = set()
     structures.trials = Trials(lambda *_: Outcome(1.0, True), budget=10, reserve=4)
     steps = structures._beyond_its_share(ONE, whole=30)
     assert next(steps) == ONE

@@ -58,7 +58,7 @@ def asked(folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Any, Operand]:
     order: Any = SimpleNamespace(
         analysis=analyse([Path("follower.py")]),
         comparison=SimpleNamespace(culprits=()),
-        online=SimpleNamespace(recorded=SimpleNamespace(sample="drifted")),
+        online=SimpleNamespace(recorded=SimpleNamespace(sample="drifted", parameters={})),
     )
     monkeypatch.setattr(variables_in_scope, "TypicalSizes", Sizes)
     (used,) = (one for one in operands(order) if one.code == "AHEAD")
