@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached_param")
 # name of the method of rclpy that declares several parameters: its arguments are a namespace and (name, default) pairs
 SEVERAL = "declare_parameters"
+_CONVERSIONS = ("int", "float", "round")
 ENTRY = "get"  # name of the method that reads an entry of a parameter that is a mapping
 _FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
 _MOST_FILES = 400  # maximum number of configuration files to read per package
@@ -119,7 +120,7 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
     if operand.setting or span is None or span.path not in analysis.sources:
         return operand.setting
     source = document(span.path, analysis.sources[span.path])
-    node = source.at(span)
+    node = _converted(source.at(span))
     around = [node, *source.ancestors(node)] if node is not None else []
     entry = next((each for each in around if isinstance(each, ast.Tuple | ast.List)), None)
     for each in around:
@@ -134,6 +135,13 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
         if isinstance(each, ast.stmt):
             break
     return ""
+
+
+def _converted(node: ast.expr | None) -> ast.expr | None:
+    """Return the expression inside conversions to a number: the call that reads in `int(get_param("~times"))`."""
+    while isinstance(node, ast.Call) and called(node) in _CONVERSIONS and len(node.args) == 1:
+        node = node.args[0]
+    return node
 
 
 def package_files(root: Path, node: Path) -> Mapping[str, str]:

@@ -132,6 +132,15 @@ def test_the_default_of_an_entry_is_the_definition_and_its_key_the_parameter(
     assert (place.name, parameter(analysis, operand)) == (name or "value", name)
 
 
+@pytest.mark.parametrize("definition", ["{}", "int({})", "round(float({}))", "rospy.get_param(int({}))"])
+def test_a_parameter_without_a_default_is_known_inside_a_conversion(tmp_path: Path, definition: str) -> None:
+    path = tmp_path / "mast.py"
+    path.write_text(ENTRIES.format(definition=definition.format('rospy.get_param("~times")')))
+    analysis = analyse([path], root=tmp_path)
+    (operand,) = {one for step in analysis.sites for one in analysis.operands(step.site)}
+    assert parameter(analysis, operand) == ("" if "(int" in definition else "~times")
+
+
 def test_a_file_outside_the_analysis_is_read_when_it_is_changed(tmp_path: Path) -> None:
     path, file = tmp_path / "mast.py", tmp_path / "mast.yaml"
     path.write_text(NODE.format(use="self.ki"))
