@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from tarl_lint.files import shown
 from tarl_lint.report.dot import quoted
-from tarl_lint.system.drawing import Drawing, drawing
+from tarl_lint.system.drawing import BoxKind, Drawing, EdgeKind, drawing
 from tarl_lint.system.model import System
 
 _HEAD: Final = (
@@ -18,9 +18,17 @@ _HEAD: Final = (
     ' node [fontname="Helvetica", fontsize=11, height=0.3, margin="0.12,0.05"];',
     ' edge [color="#555555", arrowsize=0.6];',
 )
-_TOPIC: Final = 'shape=ellipse, style=filled, fillcolor="#dbeafe", color="#3b82f6"'
-_NODE: Final = 'shape=box, style="rounded,filled", fillcolor=white, color="#777777"'
-_UNREAD: Final = 'shape=box, style="rounded,filled,dashed", fillcolor="#f8f8f8", color="#777777"'
+_BOXES: Final[Mapping[BoxKind, str]] = {
+    "topic": 'shape=ellipse, style=filled, fillcolor="#dbeafe", color="#3b82f6"',
+    "node": 'shape=box, style="rounded,filled", fillcolor=white, color="#777777"',
+    "unread": 'shape=box, style="rounded,filled,dashed", fillcolor="#f8f8f8", color="#777777"',
+}
+_EDGES: Final[Mapping[EdgeKind, str]] = {
+    "solid": "",
+    "dashed": " [style=dashed]",
+    "faint": " [style=dashed]",
+    "touching": " [style=dashed, dir=none]",
+}
 
 
 def report(systems: Sequence[System], origin: str = "", target: str = "") -> Iterator[str]:
@@ -38,15 +46,8 @@ def report(systems: Sequence[System], origin: str = "", target: str = "") -> Ite
 
 
 def _graph(drawn: Drawing, prefix: str) -> Iterator[str]:
-    nodes = {name: f"{prefix}n{number}" for number, name in enumerate(drawn.nodes)}
-    topics = {name: f"{prefix}t{number}" for number, name in enumerate(drawn.topics)}
-    for name, short in topics.items():
-        yield f"  {short} [label={quoted(name)}, {_TOPIC}];"
-    for name, short in nodes.items():
-        yield f"  {short} [label={quoted(name)}, {_UNREAD if name in drawn.unread else _NODE}];"
-    for topic, node, kind in drawn.inputs:
-        yield f"  {topics[topic]} -> {nodes[node]}{'' if kind == 'explicit' else ' [style=dashed]'};"
-    for node, topic in drawn.outputs:
-        yield f"  {nodes[node]} -> {topics[topic]}{' [style=dashed]' if node in drawn.unread else ''};"
-    for node, topic in drawn.touching:
-        yield f"  {nodes[node]} -> {topics[topic]} [style=dashed, dir=none];"
+    names = drawn.short_names(prefix)
+    for box, name in names.items():
+        yield f"  {name} [label={quoted(box[2:])}, {_BOXES[drawn.kind(box)]}];"
+    for start, end, kind in drawn.edges():
+        yield f"  {names[start]} -> {names[end]}{_EDGES[kind]};"

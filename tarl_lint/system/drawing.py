@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 from tarl_lint.system.chains import chains
 from tarl_lint.system.compose import SERVER, UNKNOWN
 from tarl_lint.system.model import Chain, System
+
+BoxKind = Literal["topic", "node", "unread"]
+# solid: data is published; dashed: data is used only in conditions, or the node was not read; faint: the node does not
+# publish anything of the topic; touching: dashed without an arrowhead
+EdgeKind = Literal["solid", "dashed", "faint", "touching"]
 
 
 @dataclass(frozen=True)
@@ -16,7 +22,7 @@ class Drawing:
 
     An edge from a topic to a node is `(topic, node, kind)`. `kind` is that of the strongest flow that takes the
     topic's data out of the node; "" if there is none. `touching` are pairs of a node that was not read and a topic
-    that its remappings name.
+    that its remappings name. The key of a box is `n ` and the name of the node, or `t ` and the name of the topic.
     """
 
     nodes: tuple[str, ...]
@@ -25,6 +31,25 @@ class Drawing:
     inputs: tuple[tuple[str, str, str], ...]
     outputs: tuple[tuple[str, str], ...]
     touching: tuple[tuple[str, str], ...]
+
+    def kind(self, box: str) -> BoxKind:
+        """Return the kind of the box with this key."""
+        return "topic" if box.startswith("t ") else "unread" if box[2:] in self.unread else "node"
+
+    def short_names(self, prefix: str) -> dict[str, str]:
+        """Return an identifier of letters and digits for the key of each box, topics first."""
+        topics = {f"t {name}": f"{prefix}t{number}" for number, name in enumerate(self.topics)}
+        nodes = {f"n {name}": f"{prefix}n{number}" for number, name in enumerate(self.nodes)}
+        return topics | nodes
+
+    def edges(self) -> Iterator[tuple[str, str, EdgeKind]]:
+        """Yield each edge: the keys of the boxes where it starts and ends, and its kind."""
+        for topic, node, kind in self.inputs:
+            yield f"t {topic}", f"n {node}", "solid" if kind == "explicit" else "dashed" if kind else "faint"
+        for node, topic in self.outputs:
+            yield f"n {node}", f"t {topic}", "dashed" if node in self.unread else "solid"
+        for node, topic in self.touching:
+            yield f"n {node}", f"t {topic}", "touching"
 
 
 def drawing(system: System, origin: str = "", target: str = "") -> Drawing:
@@ -79,12 +104,8 @@ def _everything(system: System) -> Drawing:
 
 
 def layers(drawn: Drawing) -> list[list[str]]:
-    """Return nodes and topics in columns from left to right, each after its predecessors as far as cycles allow.
-
-    Names of nodes begin with `n `; names of topics begin with `t `.
-    """
-    edges = [(f"t {topic}", f"n {node}") for topic, node, _ in drawn.inputs]
-    edges += [(f"n {node}", f"t {topic}") for node, topic in (*drawn.outputs, *drawn.touching)]
+    """Return the keys of boxes in columns from left to right, each after its predecessors as far as cycles allow."""
+    edges = [(start, end) for start, end, _ in drawn.edges()]
     every = [*(f"n {one}" for one in drawn.nodes), *(f"t {one}" for one in drawn.topics)]
     forward = _without_cycles(every, edges)
     depth = dict.fromkeys(every, 0)

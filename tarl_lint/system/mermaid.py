@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from tarl_lint.files import shown
 from tarl_lint.report.mermaid import quoted
-from tarl_lint.system.drawing import Drawing, drawing
+from tarl_lint.system.drawing import Drawing, EdgeKind, drawing
 from tarl_lint.system.model import System
 
 _CLASSES: Final = (
@@ -15,6 +15,12 @@ _CLASSES: Final = (
     "  classDef node fill:#fff,stroke:#777,color:#111",
     "  classDef unread fill:#f8f8f8,stroke:#777,color:#111,stroke-dasharray:4 3",
 )
+_ARROWS: Final[Mapping[EdgeKind, str]] = {
+    "solid": "-->",
+    "dashed": "-.->",
+    "faint": "-.->",
+    "touching": "-.-",
+}
 
 
 def report(systems: Sequence[System], origin: str = "", target: str = "") -> Iterator[str]:
@@ -32,15 +38,9 @@ def report(systems: Sequence[System], origin: str = "", target: str = "") -> Ite
 
 
 def _graph(drawn: Drawing, prefix: str) -> Iterator[str]:
-    nodes = {name: f"{prefix}n{number}" for number, name in enumerate(drawn.nodes)}
-    topics = {name: f"{prefix}t{number}" for number, name in enumerate(drawn.topics)}
-    for name, short in topics.items():
-        yield f"  {short}([{quoted(name)}]):::topic"
-    for name, short in nodes.items():
-        yield f"  {short}[{quoted(name)}]:::{'unread' if name in drawn.unread else 'node'}"
-    for topic, node, kind in drawn.inputs:
-        yield f"  {topics[topic]} {'-->' if kind == 'explicit' else '-.->'} {nodes[node]}"
-    for node, topic in drawn.outputs:
-        yield f"  {nodes[node]} {'-.->' if node in drawn.unread else '-->'} {topics[topic]}"
-    for node, topic in drawn.touching:
-        yield f"  {nodes[node]} -.- {topics[topic]}"
+    names = drawn.short_names(prefix)
+    for box, name in names.items():
+        kind, label = drawn.kind(box), quoted(box[2:])
+        yield f"  {name}{f'([{label}])' if kind == 'topic' else f'[{label}]'}:::{kind}"
+    for start, end, edge in drawn.edges():
+        yield f"  {names[start]} {_ARROWS[edge]} {names[end]}"

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 from xml.sax.saxutils import escape
 
 from tarl_lint.files import shown
-from tarl_lint.system.drawing import Drawing, drawing, layers
+from tarl_lint.system.drawing import Drawing, EdgeKind, drawing, layers
 from tarl_lint.system.model import System
 
 CHARACTER: Final = 7.2  # mean width of a character at font size 12 (pixels)
@@ -22,6 +22,12 @@ _STYLE: Final = (
     ".unread{fill:#f8f8f8;stroke:#777;stroke-dasharray:5 3}path{fill:none;stroke:#555}"
     ".dashed{stroke-dasharray:5 3}.pure{stroke:#aaa}"
 )
+_CLASSES: Final[Mapping[EdgeKind, str]] = {
+    "solid": "",
+    "dashed": ' class="dashed"',
+    "faint": ' class="dashed pure"',
+    "touching": ' class="dashed"',
+}
 
 
 @dataclass(frozen=True)
@@ -66,40 +72,28 @@ def _system(drawn: Drawing, top: float) -> tuple[list[str], float, float]:
             own = (len(name) - 2) * CHARACTER + 24
             boxes[name] = _Box(left + (width - own) / 2, start + number * ROW, own)
         left += width + GAP
-    lines = list(_edges(drawn, boxes))
+    lines = [_edge(boxes[one], boxes[other], kind) for one, other, kind in drawn.edges()]
     lines += [line for name, box in boxes.items() for line in _box(name, box, drawn)]
     return lines, left - GAP, top + tallest * ROW
 
 
-def _edges(drawn: Drawing, boxes: dict[str, _Box]) -> Iterator[str]:
-    for topic, node, kind in drawn.inputs:
-        style = "" if kind == "explicit" else "dashed pure" if not kind else "dashed"
-        yield _edge(boxes[f"t {topic}"], boxes[f"n {node}"], style)
-    for node, topic in drawn.outputs:
-        yield _edge(boxes[f"n {node}"], boxes[f"t {topic}"], "dashed" if node in drawn.unread else "")
-    for node, topic in drawn.touching:
-        yield _edge(boxes[f"n {node}"], boxes[f"t {topic}"], "dashed", arrow=False)
-
-
-def _edge(one: _Box, other: _Box, style: str, *, arrow: bool = True) -> str:
+def _edge(one: _Box, other: _Box, kind: EdgeKind) -> str:
     x1, y1 = one.x + one.width, one.y + BOX / 2
     x2, y2 = other.x, other.y + BOX / 2
     bend = GAP if x2 < x1 else max(GAP / 2, (x2 - x1) / 2)
     below = 2 * BOX if x2 < x1 else 0.0  # a backward edge passes below the boxes in between
-    marker = ' marker-end="url(#arrow)"' if arrow else ""
-    kind = f' class="{style}"' if style else ""
+    marker = "" if kind == "touching" else ' marker-end="url(#arrow)"'
     return (
-        f'<path{kind} d="M{x1:.0f},{y1:.0f} C{x1 + bend:.0f},{y1 + below:.0f} {x2 - bend:.0f},{y2 + below:.0f} '
-        f'{x2:.0f},{y2:.0f}"{marker}/>'
+        f'<path{_CLASSES[kind]} d="M{x1:.0f},{y1:.0f} C{x1 + bend:.0f},{y1 + below:.0f} '
+        f'{x2 - bend:.0f},{y2 + below:.0f} {x2:.0f},{y2:.0f}"{marker}/>'
     )
 
 
 def _box(name: str, box: _Box, drawn: Drawing) -> Iterator[str]:
-    topic, text = name.startswith("t "), name[2:]
-    kind = "topic" if topic else "unread" if text in drawn.unread else "node"
-    radius = BOX / 2 if topic else 4
+    kind = drawn.kind(name)
+    radius = BOX / 2 if kind == "topic" else 4
     yield (
         f'<rect class="{kind}" x="{box.x:.0f}" y="{box.y:.0f}" width="{box.width:.0f}" height="{BOX:.0f}" '
         f'rx="{radius:.0f}"/>'
     )
-    yield f'<text x="{box.x + box.width / 2:.0f}" y="{box.y + BOX / 2:.0f}">{escape(text)}</text>'
+    yield f'<text x="{box.x + box.width / 2:.0f}" y="{box.y + BOX / 2:.0f}">{escape(name[2:])}</text>'
