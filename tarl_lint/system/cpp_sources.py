@@ -18,7 +18,7 @@ from tarl_lint.system.cpp_qos import after_name
 from tarl_lint.system.image_transport import CAMERA, IMAGE
 from tarl_lint.system.model import Endpoint, Role
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
-from tarl_lint.workspace.cmake import EXECUTABLES, commands
+from tarl_lint.workspace.cmake import EXECUTABLES, commands, renamed
 from tarl_lint.workspace.model import Package
 
 LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
@@ -66,14 +66,14 @@ def _programs(folder: Path, package: str) -> tuple[tuple[str, Path], ...]:
     except UnreadableError:
         return ()
     found: list[tuple[str, Path]] = []
-    renamed: dict[str, str] = {}
+    names: dict[str, str] = {}
     for command in commands(text, folder, package):
         if command.name in EXECUTABLES and command.words:
             name, *files = command.words
             found += [(name, folder / file) for file in files if file.endswith(_SUFFIXES)]
-        elif command.name == "set_target_properties" and "OUTPUT_NAME" in command.words[:-1]:
-            renamed[command.words[0]] = command.words[command.words.index("OUTPUT_NAME") + 1]
-    inside = [(renamed.get(name, name), path) for name, path in found if path.is_relative_to(folder)]
+        else:
+            names |= renamed(command)
+    inside = [(names.get(name, name), path) for name, path in found if path.is_relative_to(folder)]
     return tuple(one for one in inside if one[1].is_file())
 
 

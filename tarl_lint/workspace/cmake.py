@@ -127,15 +127,13 @@ class _Build:
             self.programs |= dict(_programs(self.folder, self._known(command, _sources(words))))
         elif name == "ament_python_install_package" and self._known(command, words[:1]):
             first, *rest = words
-            place = rest[rest.index("PACKAGE_DIR") + 1] if "PACKAGE_DIR" in rest[:-1] else first
-            self.packages[first] = place
+            self.packages[first] = _after(rest, "PACKAGE_DIR", first)
         elif name in EXECUTABLES or name.startswith("rclcpp_components_register_node"):
             self._compiled(command)
         elif "gtest" in name or "gmock" in name:
             self.tests |= set(words[:1])
-        elif name == "set_target_properties" and "OUTPUT_NAME" in words[:-1]:
-            self.renamed[words[0]] = words[words.index("OUTPUT_NAME") + 1]
         else:
+            self.renamed |= renamed(command)
             self._declared(command)
 
     def _declared(self, command: Command) -> None:
@@ -146,9 +144,7 @@ class _Build:
         elif name == "generate_dynamic_reconfigure_options":
             self.configurations |= {one for one in words if self._exists(command, one)}
         elif name in _INTERFACES:
-            place = (
-                words[words.index("DIRECTORY") + 1] if "DIRECTORY" in words[:-1] else _PLACES.get(name, "")
-            )
+            place = _after(words, "DIRECTORY", _PLACES.get(name, ""))
             for one in words:
                 if one.endswith((".msg", ".srv", ".action")):
                     self._exists(command, f"{place}/{one}" if place else one)
@@ -161,7 +157,7 @@ class _Build:
             return
         self.components |= {one for one in words if "::" in one}
         if "EXECUTABLE" in words[:-1]:
-            self.compiled.add(words[words.index("EXECUTABLE") + 1])
+            self.compiled.add(_after(words, "EXECUTABLE"))
 
     def _known(self, command: Command, words: Sequence[str]) -> tuple[str, ...]:
         """Return the words without unknown variables; record a problem for each of the others."""
@@ -207,22 +203,28 @@ def _sources(words: tuple[str, ...]) -> tuple[str, ...]:
     """Return the words of an `install` command that name programs, with the keywords and the place of installation."""
     if words[:1] == ("TARGETS",):
         return ()
-    if "PROGRAMS" in words or _PROGRAMS.search(" ".join(_after(words, "DESTINATION"))):
+    if "PROGRAMS" in words or _PROGRAMS.search(_after(words, "DESTINATION")):
         return words
     return ()
 
 
-def _after(words: tuple[str, ...], keyword: str) -> tuple[str, ...]:
-    place = words.index(keyword) + 1 if keyword in words else len(words)
-    return words[place : place + 1]
+def _after(words: Sequence[str], keyword: str, default: str = "") -> str:
+    """Return the word after a keyword."""
+    return words[words.index(keyword) + 1] if keyword in words[:-1] else default
+
+
+def renamed(command: Command) -> dict[str, str]:
+    """Return the target that a command gives the name of a file, with this name; empty if there is none."""
+    words = command.words
+    if command.name != "set_target_properties" or "OUTPUT_NAME" not in words[:-1]:
+        return {}
+    return {words[0]: _after(words, "OUTPUT_NAME")}
 
 
 def _unclosed(text: str) -> Iterator[tuple[int, str]]:
     """Yield the lines at which a call, a text or a block begins that does not end."""
-    line, depth, start, last = 1, 0, 0, 0
-    for token in _TOKEN.finditer(text):
-        line += text.count("\n", last, token.start())
-        last = token.start()
+    depth, start = 0, 0
+    for line, token in _tokens(text):
         if token["stray"]:
             yield line, "a quoted text is not closed"
             return
@@ -257,10 +259,8 @@ def commands(text: str, folder: Path, package: str) -> Iterator[Command]:
 
 def _calls(text: str) -> Iterator[Call]:
     name, depth, words = "", 0, list[str]()
-    line, started, last = 1, 1, 0
-    for token in _TOKEN.finditer(text):
-        line += text.count("\n", last, token.start())
-        last = token.start()
+    started = 1
+    for line, token in _tokens(text):
         if token["open"]:
             depth += 1
         elif token["close"]:
@@ -272,6 +272,15 @@ def _calls(text: str) -> Iterator[Call]:
             words.append(token["word"])
         elif token["word"]:
             name, started = token["word"], line
+
+
+def _tokens(text: str) -> Iterator[tuple[int, re.Match[str]]]:
+    """Yield the tokens of a text, each with its line."""
+    line, last = 1, 0
+    for token in _TOKEN.finditer(text):
+        line += text.count("\n", last, token.start())
+        last = token.start()
+        yield line, token
 
 
 def _all_replaced(words: Sequence[str], variables: dict[str, list[str]]) -> tuple[str, ...]:
