@@ -35,6 +35,7 @@ from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.parameter_yaml import (
     SECTION,
+    YAML,
     NoYamlError,
     content,
     dotted,
@@ -233,7 +234,7 @@ def _absolute(setting: Setting) -> Iterator[str]:
 
 def _untitled(setting: Setting, instances: list[Instance]) -> Iterator[Finding]:
     """Yield a hazard for each node whose section of a parameter file of ROS 2 has no `ros__parameters`."""
-    parsed = _parsed(setting) if setting.file.suffix in (".yaml", ".yml") else None
+    parsed = _parsed(setting) if setting.file.suffix in YAML else None
     if not isinstance(parsed, dict) or list(sections(parsed)):
         return
     for key in (str(key) for key, values in parsed.items() if isinstance(values, dict)):

@@ -36,8 +36,7 @@ from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.message_files import fields
 from tarl_lint.workspace.model import Problem, Workspace
 from tarl_lint.workspace.node_programs import Program, program
-from tarl_lint.workspace.parameter_yaml import ENDINGS as YAML
-from tarl_lint.workspace.parameter_yaml import NoYamlError, content
+from tarl_lint.workspace.parameter_yaml import YAML, NoYamlError, content
 from tarl_lint.workspace.ros_names import resolved
 
 UNKNOWN: Final = "?"

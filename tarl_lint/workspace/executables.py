@@ -13,15 +13,13 @@ from tarl_lint.workspace.setup_files import Setup, setup
 
 
 def installed(
-    folder: Path, manifest: Manifest, scripts: list[Path], built: Cmake | None = None
+    folder: Path, manifest: Manifest, scripts: list[Path], built: Cmake
 ) -> tuple[tuple[Executable, ...], tuple[ImportRoot, ...], list[Problem]]:
     """Return the Python programs and modules of a package.
 
     `scripts` are its executable files with a Python shebang, and `built` is what its `CMakeLists.txt` installs.
     """
     declared = setup(folder)
-    if built is None:
-        built = build(folder, manifest)
     programs = {one.name: one for one in _programs(folder, declared, built)}
     # rosrun also starts files in the source folder that have the executable bit
     if manifest.kind == "catkin":

@@ -18,9 +18,9 @@ from tarl_lint.workspace.launch_script import is_script, read_script
 from tarl_lint.workspace.launch_values import Context
 from tarl_lint.workspace.launch_xml import read_xml
 from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.parameter_yaml import YAML
 from tarl_lint.workspace.python.values import SpentError
 
-_YAML: Final = (".yaml", ".yml")
 _OF_ROS2: Final = re.compile(
     r"<(?:node|executable)\b[^>]*\s(?:exec|cmd)\s*=|\$\((?:var|find-pkg-share|find-pkg-prefix)\s|"
     r"<(?:push[-_]ros[-_]namespace|node_container|let|set_remap|set_parameter)\b"
@@ -53,7 +53,7 @@ def read_launch(path: Path, workspace: Workspace, arguments: Mapping[str, str] |
 
 
 def _launch(path: Path, workspace: Workspace, arguments: dict[str, str]) -> Launch:
-    if path.suffix not in (".py", *_YAML) and not is_ros2_xml(path, workspace):
+    if path.suffix not in (".py", *YAML) and not is_ros2_xml(path, workspace):
         return read_xml(path, workspace, arguments)
     if path.suffix == ".py" and is_script(_text(path)):
         return read_script(path, workspace)
@@ -90,7 +90,7 @@ def _opened(path: Path, context: Context, problems: list[Problem]) -> Any:
         return ()
     if path.suffix == ".py":
         return actions_of_python(path, context.workspace, problems)
-    if path.suffix in _YAML:
+    if path.suffix in YAML:
         return actions(of_yaml(path, problems))
     root: Element | None = xml_root(path, problems)
     return actions(of_xml(root)) if root is not None else ()

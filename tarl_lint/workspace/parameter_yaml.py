@@ -13,7 +13,7 @@ from tarl_lint.workspace.python.elements import bounded
 
 DEEPEST: Final = 50  # maximum nesting of parameters; needed because a YAML mapping may contain itself
 MOST: Final = 300_000  # maximum number of values of a YAML text
-ENDINGS: Final = (".yaml", ".yml")  # endings of YAML files
+YAML: Final = (".yaml", ".yml")  # endings of YAML files
 SECTION: Final = "ros__parameters"
 
 

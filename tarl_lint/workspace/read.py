@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Final
 
 from tarl_lint.workspace.executables import build, installed, may_be_started
 from tarl_lint.workspace.folders import folders
 from tarl_lint.workspace.launch_lookup import ENDINGS, TEST, is_launch_name
 from tarl_lint.workspace.manifests import Manifest, manifest, plugins
 from tarl_lint.workspace.model import INTERFACES, Hidden, Package, Problem, Workspace
-
-_YAML: Final = (".yaml", ".yml")
+from tarl_lint.workspace.parameter_yaml import YAML
 
 
 @dataclass
@@ -35,7 +33,7 @@ class _Found:
             self.launch_files.append(path)
         elif path.suffix == ".cfg" and _mentions(path, b"dynamic_reconfigure"):
             self.configurations.append(path)
-        elif path.suffix in _YAML:
+        elif path.suffix in YAML:
             self.parameter_files.append(path)
         elif path.suffix in ("", ".py") and may_be_started(path):
             self.scripts.append(path)
@@ -150,7 +148,7 @@ def _is_launch_file(path: Path) -> bool:
     """Return whether a file in a folder `launch` is a launch file despite an unusual ending."""
     if path.suffix == ".xml":
         return _mentions(path, b"<launch")
-    if path.suffix in _YAML:
+    if path.suffix in YAML:
         return is_launch_name(path.name) and _mentions(path, b"launch:")
     return path.suffix == ".py" and _mentions(path, b"def generate_launch_description(")
 

@@ -9,7 +9,7 @@ import pytest
 
 from tarl_lint.workspace.cfg_files import configurations
 from tarl_lint.workspace.cmake import cmake, commands
-from tarl_lint.workspace.executables import installed
+from tarl_lint.workspace.executables import build, installed
 from tarl_lint.workspace.folders import folders, is_ignored, workspace_root
 from tarl_lint.workspace.launch_model import LaunchedNode
 from tarl_lint.workspace.launch_py import actions_of_python
@@ -18,6 +18,11 @@ from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.read import read
 from tarl_lint.workspace.ros_arguments import Given, first_of_each, ros1, ros2
 from tarl_lint.workspace.setup_files import setup
+
+
+def contents(folder, manifest, scripts):
+    """Return what a package installs; its `CMakeLists.txt` is read first."""
+    return installed(folder, manifest, scripts, build(folder, manifest))
 
 
 def written(folder: Path, files: dict[str, str]) -> Path:
@@ -116,15 +121,15 @@ def test_the_modules_that_setup_files_install_are_found(tmp_path, given, modules
             "setup.py": SETUP.format(given),
         },
     )
-    found = installed(tmp_path, Manifest("arm", "ament_python"), [])[1]
+    found = contents(tmp_path, Manifest("arm", "ament_python"), [])[1]
     assert {one.name: one.path.relative_to(tmp_path).as_posix() for one in found} == modules
 
 
 def test_a_package_of_unknown_kind_has_the_module_with_the_name_of_the_package(tmp_path):
     written(tmp_path, {"arm/__init__.py": ""})
-    assert [one.name for one in installed(tmp_path, Manifest("arm", "unknown"), [])[1]] == ["arm"]
-    assert installed(tmp_path, Manifest("arm", "catkin"), [])[1] == ()
-    assert installed(tmp_path, Manifest("leg", "unknown"), [])[1] == ()
+    assert [one.name for one in contents(tmp_path, Manifest("arm", "unknown"), [])[1]] == ["arm"]
+    assert contents(tmp_path, Manifest("arm", "catkin"), [])[1] == ()
+    assert contents(tmp_path, Manifest("leg", "unknown"), [])[1] == ()
 
 
 def test_the_programs_of_a_package_are_console_scripts_scripts_and_installed_files(tmp_path):
@@ -143,7 +148,7 @@ def test_the_programs_of_a_package_are_console_scripts_scripts_and_installed_fil
         },
     )
     scripts = [tmp_path / "nodes/a.py", tmp_path / "other"]
-    programs, _, problems = installed(tmp_path, Manifest("arm", "catkin"), scripts)
+    programs, _, problems = contents(tmp_path, Manifest("arm", "catkin"), scripts)
     assert [(one.name, one.path and one.path.name, one.entry, one.module) for one in programs] == [
         ("a.py", "a.py", None, ""),
         ("gone", None, None, ""),
@@ -159,7 +164,7 @@ def test_the_programs_of_a_package_are_console_scripts_scripts_and_installed_fil
         "gone is installed, but its file gone does not exist",
         "gone.py is installed, but its file nodes/gone.py does not exist",
     ]
-    python = installed(tmp_path, Manifest("arm", "ament_python"), scripts)[0]
+    python = contents(tmp_path, Manifest("arm", "ament_python"), scripts)[0]
     assert [one.name for one in python] == ["gone", "m", "n", "run"]
 
 
