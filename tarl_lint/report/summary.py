@@ -239,11 +239,7 @@ def statistics(result: Result) -> Iterator[Line]:
     steps = Counter(step.dependence for flow in flows for step in flow.steps)
     lengths = sorted(sum(s.dependence != "context" for s in flow.steps) for flow in flows)
     rows = [
-        *sorted(Counter(f.code for f in result.findings).items()),
-        (UNREADABLE, len(result.errors)),
-        ("silenced by comments", len(result.silenced)),
-        ("silenced by per-file-ignores", result.left_out),
-        ("accepted in the baseline", sum(f.status == "accepted" for f in result.findings)),
+        *counts_of_findings(result),
         ("subscriptions that reach a publish call", len({flow.source.id for flow in flows})),
         ("publish calls reached", len({flow.sink.id for flow in flows})),
         ("steps that pass on the value", steps["data"]),
@@ -256,6 +252,17 @@ def statistics(result: Result) -> Iterator[Line]:
     if flows:
         yield (("Publish calls reached, by subscribed topic:", ""),)
         yield from counted(_reach(flows))
+
+
+def counts_of_findings(result: Result) -> list[tuple[str, int]]:
+    """Return rows for `counted`: the findings of each rule, the unreadable files, and what was silenced or accepted."""
+    return [
+        *sorted(Counter(f.code for f in result.findings).items()),
+        (UNREADABLE, len(result.errors)),
+        ("silenced by comments", len(result.silenced)),
+        ("silenced by per-file-ignores", result.left_out),
+        ("accepted in the baseline", sum(f.status == "accepted" for f in result.findings)),
+    ]
 
 
 def counted(rows: Sequence[tuple[str, int]]) -> Iterator[Line]:

@@ -12,7 +12,7 @@ from tarl_lint.system.model import Chain, Hop
 _KINDS: Final[Mapping[str, Style]] = {"explicit": "explicit", "implicit": "implicit", "not read": "quiet"}
 
 
-def heading(chain: Chain, glyphs: Glyphs) -> Line:
+def in_line(chain: Chain, glyphs: Glyphs) -> Line:
     """Return the topics and nodes of a flow, with its kind."""
     arrow = f" {glyphs.arrow} "
     pieces: list[tuple[str, Style]] = [(chain.hops[0].source, "place")]

@@ -37,9 +37,10 @@ def chains(
     return tuple(sorted(found, key=lambda c: [(h.source, h.node, h.sink) for h in c.hops])), False
 
 
-def needs_every(most: int) -> bool:
-    """Return whether a report of at most `most` chains, 0 for all, needs more chains than `MOST`."""
-    return most == 0 or most > MOST
+def visible(hops: Sequence[Hop], origin: str, target: str, most: int) -> tuple[Sequence[Chain], str]:
+    """Return at most `most` chains between two topics, 0 for all, and a remark on the others; "" if there are none."""
+    found, more = chains(hops, origin, target, every=most == 0 or most > MOST)
+    return limited(found, most, more=more)
 
 
 def limited(found: Sequence[Chain], most: int, *, more: bool) -> tuple[Sequence[Chain], str]:
@@ -47,14 +48,14 @@ def limited(found: Sequence[Chain], most: int, *, more: bool) -> tuple[Sequence[
 
     `more` says that the search ended before all chains were found.
     """
-    visible = found[:most] if most else found
-    rest = len(found) - len(visible)
+    shown = found[:most] if most else found
+    rest = len(found) - len(shown)
     if not (rest or more):
-        return visible, ""
+        return shown, ""
     least = "more than " if more else ""
     number = f"{least}{rest} more flow{'' if rest == 1 else 's'}" if rest else "more"
     way = "" if more and not most else ", or show all with --max-paths 0"
-    return visible, f"… and {number}: select them with --from and --to{way}."
+    return shown, f"… and {number}: select them with --from and --to{way}."
 
 
 def _first(hops: Sequence[Hop]) -> list[str]:

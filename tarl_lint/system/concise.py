@@ -10,8 +10,8 @@ from tarl_lint.report import summary
 from tarl_lint.report.line import Line, View, one_line
 from tarl_lint.report.text import errors, heading
 from tarl_lint.run.runner import Result
-from tarl_lint.system.chain_lines import heading as in_line
-from tarl_lint.system.chains import chains, limited, needs_every
+from tarl_lint.system.chain_lines import in_line
+from tarl_lint.system.chains import visible
 from tarl_lint.system.model import System
 from tarl_lint.system.statistics import statistics
 
@@ -40,10 +40,9 @@ def github(
 def flows(systems: Sequence[System], view: View, origin: str, target: str) -> Iterator[Line]:
     """Yield a line for each flow across nodes: the launch file, then topics and nodes."""
     for system in systems:
-        found, more = chains(system.hops, origin, target, every=needs_every(view.most_flows))
-        visible, rest = limited(found, view.most_flows, more=more)
+        found, rest = visible(system.hops, origin, target, view.most_flows)
         place = one_line(shown(system.file))
-        for chain in visible:
+        for chain in found:
             yield ((f"{place}: ", "place"), *in_line(chain, view.glyphs))
         if rest:
             yield ((f"{place}: ", "place"), (rest, "quiet"))

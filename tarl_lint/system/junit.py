@@ -8,7 +8,7 @@ from tarl_lint.files import shown
 from tarl_lint.report.junit import Case, cases, written
 from tarl_lint.report.line import ASCII, Line, View, plain
 from tarl_lint.run.runner import Result
-from tarl_lint.system.chain_lines import heading, statements
+from tarl_lint.system.chain_lines import in_line, statements
 from tarl_lint.system.chains import chains
 from tarl_lint.system.model import Chain, System
 
@@ -22,6 +22,6 @@ def report(systems: Sequence[System], result: Result, origin: str = "", target: 
 
 
 def _case(system: System, chain: Chain) -> Case:
-    text = [heading(chain, ASCII), *statements(chain, _VIEW)]
+    text = [in_line(chain, ASCII), *statements(chain, _VIEW)]
     name = f"flow {plain(text[0])}"
     return Case(shown(system.file), name, "passed", "", "\n".join(map(plain, text)))

@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from tarl_lint.report.line import Line
-from tarl_lint.report.summary import counted
-from tarl_lint.run.runner import UNREADABLE, Result
+from tarl_lint.report.summary import counted, counts_of_findings
+from tarl_lint.run.runner import Result
 from tarl_lint.system.chains import chains
 from tarl_lint.system.model import System
 from tarl_lint.system.one_sided import one_sided
@@ -20,11 +20,7 @@ def statistics(systems: Sequence[System], result: Result) -> Iterator[Line]:
     lonely = Counter(one.missing for system in systems for one in one_sided(system))
     yield from counted(
         [
-            *sorted(Counter(one.code for one in result.findings).items()),
-            (UNREADABLE, len(result.errors)),
-            ("silenced by comments", len(result.silenced)),
-            ("silenced by per-file-ignores", result.left_out),
-            ("accepted in the baseline", sum(one.status == "accepted" for one in result.findings)),
+            *counts_of_findings(result),
             ("launch files", sum(not one.file.is_dir() for one in systems)),
             ("nodes", len(nodes)),
             ("nodes that were not read", sum(one.interface is None for one in nodes)),

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from tarl_lint.files import shown
-from tarl_lint.model import Finding
 from tarl_lint.report import summary
-from tarl_lint.report.line import Glyphs, Line, View, location
-from tarl_lint.report.text import errors
+from tarl_lint.report.line import Glyphs, Line, View
+from tarl_lint.report.summary import many
+from tarl_lint.report.text import errors, heading
 from tarl_lint.run.runner import Result
-from tarl_lint.system.chain_lines import heading, statements
-from tarl_lint.system.chains import chains, limited, needs_every, slashed
+from tarl_lint.system.chain_lines import in_line, statements
+from tarl_lint.system.chains import slashed, visible
 from tarl_lint.system.details import details
 from tarl_lint.system.model import Instance, Role, System
 from tarl_lint.system.one_sided import one_sided
@@ -65,18 +65,17 @@ def _closing(systems: Sequence[System], result: Result, view: View, *, brief: bo
 def _system(system: System, view: View, origin: str, target: str) -> Iterator[Line]:
     tests = sum(one.node.kind == "test" for one in system.instances)
     unread = sum(one.interface is None for one in system.instances) - tests
-    count = counted(len(system.instances) - tests, "node") + (f", {counted(tests, 'test')}" if tests else "")
+    count = many(len(system.instances) - tests, "node") + (f", {many(tests, 'test')}" if tests else "")
     name = f"{shown(system.file)}, names as in the code" if system.file.is_dir() else shown(system.file)
     yield ((name, "strong"), (f": {count}{f', {unread} not read' if unread else ''}", ""))
     if not (origin or target):
         yield from _table(system, view.glyphs)
-    found, more = chains(system.hops, origin, target, every=needs_every(view.most_flows))
-    visible, rest = limited(found, view.most_flows, more=more)
+    found, rest = visible(system.hops, origin, target, view.most_flows)
     yield ()
-    if found or more:
+    if found or rest:
         yield (("Flows across nodes:", "strong"),)
-        for chain in visible:
-            yield (("  ", ""), *heading(chain, view.glyphs))
+        for chain in found:
+            yield (("  ", ""), *in_line(chain, view.glyphs))
             if view.show_paths or view.all_steps:
                 yield from statements(chain, view)
         if rest:
@@ -87,11 +86,6 @@ def _system(system: System, view: View, origin: str, target: str) -> Iterator[Li
     if not (origin or target):
         yield from _lonely(system)
         yield from _problems(system)
-
-
-def counted(number: int, noun: str) -> str:
-    """Return a number with its noun in singular or plural."""
-    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def _nothing(system: System, origin: str, target: str) -> str:
@@ -150,19 +144,10 @@ def _findings(system: System) -> Iterator[Line]:
     if new:
         yield ()
         yield (("Hazards:", "strong"),)
-        yield from map(_finding, new)
+        yield from ((("  ", ""), *heading(one)) for one in new)
     accepted = len(system.findings) - len(new)
     if accepted:
         yield ((f"{accepted} accepted by the baseline.", "quiet"),)
-
-
-def _finding(finding: Finding) -> Line:
-    return (
-        ("  ", ""),
-        (location(finding.span), "place"),
-        (f" {finding.code} ", "hazard"),
-        (finding.message, ""),
-    )
 
 
 def _lonely(system: System) -> Iterator[Line]:
