@@ -9,7 +9,7 @@ from xml.parsers import expat
 
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.launch_entities import Entity
-from tarl_lint.workspace.model import Problem
+from tarl_lint.workspace.model import Problem, unreadable
 
 LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
 MOST: Final = 5_000  # maximum number of elements of a file
@@ -40,18 +40,14 @@ def xml_tree(text: str) -> Element:
     return builder.close()
 
 
-def _unreadable(path: Path, line: int, reason: str) -> Problem:
-    return Problem(path, line, reason, hides=True, unreadable=True)
-
-
 def xml_root(path: Path, problems: list[Problem]) -> Element | None:
     """Return the root element of a file; if the file cannot be read, record a problem and return None."""
     try:
         return xml_tree(read_text(path, LARGEST))
     except UnreadableError as reason:
-        problems.append(_unreadable(path, 0, str(reason)))
+        problems.append(unreadable(path, 0, str(reason)))
     except (expat.ExpatError, AssertionError) as error:
-        problems.append(_unreadable(path, getattr(error, "lineno", 0), f"it is not XML: {error}"))
+        problems.append(unreadable(path, getattr(error, "lineno", 0), f"it is not XML: {error}"))
     return None
 
 
@@ -73,19 +69,19 @@ def of_yaml(path: Path, problems: list[Problem]) -> list[Entity]:
     try:
         import yaml
     except ModuleNotFoundError:
-        problems.append(_unreadable(path, 0, "reading YAML needs PyYAML: run pip install PyYAML"))
+        problems.append(unreadable(path, 0, "reading YAML needs PyYAML: run pip install PyYAML"))
         return []
     try:
         root = yaml.compose(read_text(path, LARGEST), Loader=yaml.SafeLoader)
     except UnreadableError as reason:
-        problems.append(_unreadable(path, 0, str(reason)))
+        problems.append(unreadable(path, 0, str(reason)))
         return []
     except (yaml.YAMLError, RecursionError) as error:
-        problems.append(_unreadable(path, 0, f"it is not YAML: {' '.join(str(error).split())[:200]}"))
+        problems.append(unreadable(path, 0, f"it is not YAML: {' '.join(str(error).split())[:200]}"))
         return []
     launch = next((value for key, value in _pairs(root) if key.value == "launch"), None)
     if launch is None:
-        problems.append(_unreadable(path, 0, "it is not a launch file: it has no `launch:`"))
+        problems.append(unreadable(path, 0, "it is not a launch file: it has no `launch:`"))
         return []
     return _named(launch, [MOST])
 

@@ -17,7 +17,7 @@ from tarl_lint.workspace.launch_run import Runner
 from tarl_lint.workspace.launch_script import is_script, read_script
 from tarl_lint.workspace.launch_values import Context
 from tarl_lint.workspace.launch_xml import read_xml
-from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.model import Problem, Workspace, unreadable
 from tarl_lint.workspace.parameter_yaml import YAML
 from tarl_lint.workspace.python.values import SpentError
 
@@ -38,18 +38,8 @@ def read_launch(path: Path, workspace: Workspace, arguments: Mapping[str, str] |
     try:
         return _launch(path, workspace, dict(arguments or {}))
     except (RecursionError, SpentError):
-        return Launch(
-            path,
-            problems=(
-                Problem(
-                    path,
-                    0,
-                    "it nests too deeply, contains itself, or has too many parts",
-                    hides=True,
-                    unreadable=True,
-                ),
-            ),
-        )
+        reason = "it nests too deeply, contains itself, or has too many parts"
+        return Launch(path, problems=(unreadable(path, 0, reason),))
 
 
 def _launch(path: Path, workspace: Workspace, arguments: dict[str, str]) -> Launch:

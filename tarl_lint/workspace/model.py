@@ -29,6 +29,11 @@ class Problem:
     unreadable: bool = False
 
 
+def unreadable(file: Path, line: int, reason: str) -> Problem:
+    """Return the problem of a file that may start nodes, of which nothing could be read."""
+    return Problem(file, line, reason, hides=True, unreadable=True)
+
+
 @dataclass(frozen=True, slots=True)
 class Executable:
     """A Python program of a package: name for `ros2 run` or `rosrun`, file, and function of the entry point.
