@@ -30,7 +30,11 @@ class Sensor:
 
 
 def _sensor(packages: str, signs: str, types: str, words: str) -> Sensor:
-    return Sensor(*(frozenset(one.split()) for one in (packages, signs, types, words)))
+    return Sensor(*map(_set, (packages, signs, types, words)))
+
+
+def _set(text: str) -> frozenset[str]:
+    return frozenset(text.split())
 
 
 # what drivers of all sensors have
@@ -40,17 +44,14 @@ _TYPES: Final = frozenset(
     + [f"{kind}{form}" for kind in ("Float32", "Float64", "Int8", "Int16", "Int32", "Int64", "UInt8", "UInt16",
                                     "UInt32", "UInt64", "Byte", "Char") for form in ("", "MultiArray")]
 )  # fmt: skip
-_WORDS: Final = _sensor(
-    "",
-    "",
-    "",
+_WORDS: Final = _set(
     "raw data info status state states diagnostics device sensor config configuration settings parameters "
     "firmware version temperature start stop enable disable enabled reset restart reboot power standby resume "
     "pause set get send command cmd request response trigger sync time reference stamp count seq frame id "
     "packet packets datagram telegram stream output out input in marker markers error errors fault health "
     "heartbeat connected front rear back left right top bottom center centre middle upper lower main primary "
-    "secondary corrected calibrated calibration calibrate",
-).words
+    "secondary corrected calibrated calibration calibrate"
+)
 
 SENSORS: Final = (
     _sensor(
