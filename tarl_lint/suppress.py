@@ -17,8 +17,9 @@ _COMMENT: Final = (  # a string that is compiled at first use, since most runs n
     r"(?i:#\s*(?:tarl:\s*ignore\b\s*(?:\[(?P<own>[^\]]*)\]?)?"
     r"|noqa:\s*(?P<noqa>[A-Z]+[0-9]+(?:[\s,]+[A-Z]+[0-9]+)*)))"
 )
-_XML: Final = (".launch", ".xml", ".test")
-_YAML: Final = (".yaml", ".yml")
+# endings of launch files that are not Python
+XML: Final = (".launch", ".xml", ".test")
+YAML: Final = (".yaml", ".yml")
 
 
 @dataclass(frozen=True)
@@ -74,11 +75,11 @@ def _codes(comment: re.Match[str]) -> tuple[str, ...]:
 
 def _in_file(path: str, text: str) -> Iterator[tuple[int, int, str]]:
     """Yield (line, column, text) of each comment of a Python, XML or YAML file; the text begins with `#`."""
-    if path.endswith(_XML):
+    if path.endswith(XML):
         for found in re.finditer(r"<!--(.*?)-->", text, re.DOTALL):
             start = found.start()
             yield text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start), f"#{found[1]}"
-    elif path.endswith(_YAML):
+    elif path.endswith(YAML):
         for number, line in enumerate(text.split("\n"), 1):
             if comment := re.search(r"(?:^|(?<=\s))#.*", line):
                 yield number, comment.start() + 1, comment[0]

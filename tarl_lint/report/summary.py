@@ -13,10 +13,9 @@ from tarl_lint.fingerprints import OfFlow, OfHazard, topic_text
 from tarl_lint.model import Cut, Finding, Flow
 from tarl_lint.report.line import Line, View, one_line
 from tarl_lint.run.runner import UNREADABLE, Result
-from tarl_lint.suppress import Suppression
+from tarl_lint.suppress import XML, YAML, Suppression
 
 _CLASSES: Final = 5  # maximum number of classes from outside the analysed files that are named individually
-_LAUNCH: Final = (".launch", ".xml", ".test", ".yaml", ".yml")  # launch files that are not Python
 _SHOWN: Final = 20  # maximum number of vanished findings that are named individually
 
 
@@ -148,7 +147,7 @@ def _missed(result: Result) -> Iterator[str]:
     notes = result.statistics.notes
     if result.errors:
         verb = "is" if len(result.errors) == 1 else "are"
-        python = "" if any(e.path.endswith(_LAUNCH) for e in result.errors) else " as Python 3"
+        python = "" if any(e.path.endswith((*XML, *YAML)) for e in result.errors) else " as Python 3"
         yield f"{many(len(result.errors), 'file')} that {verb} not readable{python} ({UNREADABLE})"
     if cut := result.statistics.cut:
         yield f"parts of {many(len(cut), 'large program')} ({_named(cut)})"
