@@ -35,7 +35,9 @@ def table(found: Examined) -> Iterator[str]:
     """Yield the lines of the table, then what launch files start from elsewhere, and what could not be read."""
     workspace = found.workspace
     rows = [HEADINGS, *map(_row, workspace.packages)]
-    used = [column for column in range(len(HEADINGS)) if column != 3 or any(row[column] for row in rows[1:])]
+    optional = HEADINGS.index("C++ nodes")
+    filled = any(row[optional] for row in rows[1:])
+    used = [column for column in range(len(HEADINGS)) if column != optional or filled]
     widths = {column: max(len(row[column]) for row in rows) for column in used}
     for row in rows:
         yield "  ".join(row[column].ljust(widths[column]) for column in used).rstrip()
