@@ -61,16 +61,12 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
     if not here and not any(_takes(ctx, t, raises, named) for f in ctx.stack for t in f.tries):
         return
     raises = raises or _expected(ctx, frame)
-    known = frame.function.raising.setdefault(statement.id, {})
-    if raises not in known:
-        known[raises] = None
-        frame.function.control = None
+    frame.function.may_leave(statement, raises)
     decision = ctx.condition(frame, statement)
     ctx.graph.depend(decision, deps)
     if not any(e.decision == decision and e.name == raises for e in frame.escapes):
-        leave(
-            ctx, Escape(frame, statement, raises, Value(deps), decision), frame
-        )  # the text of the exception quotes the arguments
+        # the text of the exception quotes the arguments
+        leave(ctx, Escape(frame, statement, raises, Value(deps), decision), frame)
 
 
 def may_wait(ctx: Interpreter, decides: Nodes, frame: Frame) -> None:
@@ -78,10 +74,7 @@ def may_wait(ctx: Interpreter, decides: Nodes, frame: Frame) -> None:
     statement = frame.statement
     if not decides or statement is None or frame.cls is not None:
         return
-    known = frame.function.raising.setdefault(statement.id, {})
-    if BLOCKED not in known:
-        known[BLOCKED] = None
-        frame.function.control = None
+    frame.function.may_leave(statement, BLOCKED)
     ctx.graph.depend(ctx.condition(frame, statement), decides)
 
 
@@ -113,10 +106,8 @@ def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
     for escape in frame.escapes:
         if (caller.jumps or _bare(escape.statement)) and not _handled(ctx, escape.name):
             continue
-        known = caller.function.raising.setdefault(statement.id, {})
-        if escape.name not in known and caller.cls is None:
-            known[escape.name] = None
-            caller.function.control = None
+        if caller.cls is None:
+            caller.function.may_leave(statement, escape.name)
         decision = ctx.condition(caller, statement)
         publications.under(ctx, escape.frame, escape.statement, decision)
         if escape.decision is not None:

@@ -49,10 +49,7 @@ def suspended(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
     if statement is None or (unused and box not in ctx.posted):
         return UNKNOWN
     # even if nothing has been sent yet: nodes keep the conditions that are known when they are made
-    known = frame.function.raising.setdefault(statement.id, {})
-    if SUSPENDED not in known:
-        known[SUSPENDED] = None
-        frame.function.control = None
+    frame.function.may_leave(statement, SUSPENDED)
     if box not in ctx.posted:
         return UNKNOWN
     frame.returns.append((ctx.store.since(frame.depth_of_layers), const(None)))

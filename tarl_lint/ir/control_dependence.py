@@ -23,6 +23,9 @@ Raising = Mapping[int, Iterable[str]]
 NEAR: Final = 100
 NOTHING_RAISES: Raising = {}
 NEXT: Final = -2  # number of a pseudo-statement: the beginning of the next iteration
+# names beside those of exceptions, for statements that may wait for ever:
+BLOCKED: Final = "<blocked>"  # a call that waits; the rest of the function or iteration depends on it
+SUSPENDED: Final = "<suspended>"  # a `yield` that waits for `send`; the rest of the generator depends on it
 
 
 @dataclass(slots=True)
@@ -63,12 +66,6 @@ class Iteration:
     closure: Mapping[int, frozenset[Branch]]
     always: frozenset[int]
     onward: frozenset[Branch]
-
-
-# what a call "raises" that waits, perhaps for ever: the rest of the function, or of the iteration, depends on it
-BLOCKED: Final = "<blocked>"
-# what a `yield` "raises" at which a generator waits for `send`, perhaps for ever: all the rest depends on it
-SUSPENDED: Final = "<suspended>"
 
 
 @dataclass(slots=True)

@@ -175,12 +175,19 @@ class Function:
     pos: Pos
     body: Sequence[Stmt] | None = None
     control: object = None
-    # number of a statement → names of the exceptions that its calls raise
+    # number of a statement → names of the exceptions that its calls raise, BLOCKED or SUSPENDED
     raising: dict[int, dict[str, None]] = field(default_factory=dict)
     generator: bool = False  # whether the function yields; only known once the body is lowered
     # whether the function registers something or starts a node; None until computed
     starts: bool | None = None
     answers: bool | None = None  # whether the function returns anything but None; None until computed
+
+    def may_leave(self, statement: Stmt, name: str) -> None:
+        """Record that a statement may not complete, and why; drop the control dependence if this is new."""
+        known = self.raising.setdefault(statement.id, {})
+        if name not in known:
+            known[name] = None
+            self.control = None
 
 
 @dataclass(slots=True, eq=False)
