@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 Pos = tuple[int, int, int, int]  # (line, column, end line, end column) as `ast` counts them
@@ -68,6 +68,14 @@ class Call:
     keywords: Sequence[tuple[str | None, Expr]]
     pos: Pos
     slot: int
+
+    def inner(self, number: int = 0) -> Call:
+        """Return a call that a library makes during this one, with a slot of its own; `number` counts such calls."""
+        return replace(self, slot=-1000 * (abs(self.slot) + 1) - number)
+
+    def inner_bare(self, number: int = 0) -> Call:
+        """Return an inner call without the arguments that the source text has."""
+        return replace(self.inner(number), arguments=(), keywords=())
 
 
 @dataclass(slots=True, eq=False)

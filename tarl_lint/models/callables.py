@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Sequence, Set
-from dataclasses import replace
 from typing import Final
 
 from tarl_lint.interpret import call_contexts, calls
@@ -82,7 +81,7 @@ def make_instances(
     for value in (*arguments[0], *arguments[1].values()):
         for cls in value.objects:
             if cls.kind == "class" and isinstance(cls.info, ClassInfo) and cls.info.opaque:
-                inner = replace(call, arguments=(), keywords=(), slot=-1000 * (abs(call.slot) + 1))
+                inner = call.inner_bare()
                 made = calls.call_object(ctx, cls, ([], {}), frame, inner)
                 updates.write_field(ctx, made, SERVER, server)
 
@@ -148,8 +147,7 @@ def returned(
     found = NONE
     opaque = _opaque(ctx, arguments, base, frozenset(targets)) if targets else BOTTOM
     for number, target in enumerate(targets[:KEPT_APART]):
-        slot = -1000 * (abs(call.slot) + 1) - KEPT_APART - number
-        inner = replace(call, arguments=(), keywords=(), slot=slot)
+        inner = call.inner_bare(KEPT_APART + number)
         ctx.store.push()
         said = calls.call_object(ctx, target, _wanted(ctx, target, opaque), frame, inner)
         found |= ctx.use(said)

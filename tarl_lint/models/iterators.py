@@ -122,8 +122,7 @@ def _each(ctx: Interpreter, function: Value, rows: Sequence[Sequence[Value]], it
     """Return the results of a function for known elements, one by one."""
     obj = recency.allocate(ctx, "sequence", it.frame, ("values", it.call.slot))
     for number, row in enumerate(rows):
-        call = replace(it.call, slot=-1000 * (abs(it.call.slot) + 1) - number)
-        said = calls.call_value(ctx, function, (list(row), {}), it.frame, call)
+        said = calls.call_value(ctx, function, (list(row), {}), it.frame, it.call.inner(number))
         ctx.store.put((obj, item_field(number)), said)
     return pointer(obj)
 
@@ -159,8 +158,7 @@ def reduced(ctx: Interpreter, it: Invocation) -> Value:
         known = [element, element, element] if start else [element] * 4
     result, *rest = [*start, *known] or [UNKNOWN]
     for number, part in enumerate(rest):
-        slot = -1000 * (abs(it.call.slot) + 1) - number
-        call = replace(it.call, arguments=(), keywords=(), slot=slot)
+        call = it.call.inner_bare(number)
         result = calls.call_value(ctx, function, ([result, part], {}), it.frame, call)
     return result
 
@@ -232,7 +230,7 @@ def grouped(ctx: Interpreter, it: Invocation) -> Value:
     compared = ctx.use(found)
     if (unordered := _unordered(ctx, plain[0], element)) is not None:
         # a list that is sorted for the groups: its order does not decide how many there are
-        again = replace(it, call=replace(it.call, slot=-1000 * (abs(it.call.slot) + 1)))
+        again = replace(it, call=it.call.inner())
         compared = ctx.use(unordered if key.consts else _key(ctx, key, unordered, again))
     group = listed(ctx, _decided(ctx, element, compared, it), length | compared, it)
     return pairs(ctx, [found, group], it.frame, it.call, length | compared)

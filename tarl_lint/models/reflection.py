@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from dataclasses import replace
 
 from tarl_lint.interpret import call_contexts, calls, descriptors, expressions
 from tarl_lint.interpret.call_contexts import CALLABLE
@@ -111,11 +110,8 @@ def _fulfils(ctx: Interpreter, predicate: Value, value: Value, it: Invocation, n
     """Return whether a member may be selected: by a predicate of `inspect` if it is a method, else by its result."""
     if any(o.kind == "ext" for o in predicate.pts):
         return any(o.kind in CALLABLE for o in value.pts)
-    call = replace(it.call, slot=-1000 * (abs(it.call.slot) + 1) - number)
-    return calls.call_value(ctx, predicate, ([value], {}), it.frame, call).constant() not in (
-        (True, False),
-        (True, None),
-    )
+    found = calls.call_value(ctx, predicate, ([value], {}), it.frame, it.call.inner(number))
+    return found.constant() not in ((True, False), (True, None))
 
 
 def _members(ctx: Interpreter, plain: Sequence[Value]) -> list[str] | None:
