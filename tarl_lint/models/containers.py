@@ -27,7 +27,7 @@ from tarl_lint.memory.values import (
     join_all,
     pointer,
 )
-from tarl_lint.models import iterators, launched, object_lists, removal, rows, sizes
+from tarl_lint.models import iterators, launched, object_lists, ordering, removal, rows, sizes
 
 QUEUES = frozenset(
     f"{module}.{name}"
@@ -82,7 +82,7 @@ def mutate(
         _set_default(ctx, base, plain[0], through_statement(ctx, plain[1], frame, call))
     elif name == "sort":
         before = heap.elements(ctx, base)
-        order = iterators.ordered(ctx, before, Invocation(name, base, arguments, frame, call))
+        order = ordering.ordered(ctx, before, Invocation(name, base, arguments, frame, call))
         insert_elements(ctx, base, [order] if order is not before else [], frame, call)
     elif name == "update" and base.pts:
         _update(ctx, base, plain, named, frame, call)
@@ -413,7 +413,7 @@ def _of_class(it: Invocation, obj: Obj) -> Value:
 def _read_pairs(ctx: Interpreter, it: Invocation) -> Value:
     listed = _pairs(ctx, it)
     for pair in heap.elements(ctx, listed).objects:
-        pair.name = iterators.ENTRY
+        pair.name = ordering.ENTRY
     return listed
 
 
@@ -444,7 +444,7 @@ def new_container(ctx: Interpreter, it: Invocation) -> Value:
     element = join_all(heap.elements(ctx, v) for v in given)
     unordered = element
     if it.name == "sorted":
-        element = iterators.ordered(ctx, element, it)
+        element = ordering.ordered(ctx, element, it)
     length = sizes.length(ctx, given[0]) if given else NONE
     if it.name in ("set", "frozenset"):
         # a set keeps only one of several equal elements, so its length depends on the elements
@@ -456,7 +456,7 @@ def new_container(ctx: Interpreter, it: Invocation) -> Value:
     elif given:
         updates.add_element(ctx, pointer(obj), element)
     if element is not unordered:
-        ctx.store.put((obj, iterators.UNORDERED), unordered)
+        ctx.store.put((obj, ordering.UNORDERED), unordered)
     ctx.store.put((obj, LENGTH), Value(length))
     return pointer(obj)
 
@@ -499,23 +499,6 @@ def new_pipe(ctx: Interpreter, it: Invocation) -> Value:
     for number in range(2):
         ctx.store.put((obj, item_field(number)), end)
     return pointer(obj)
-
-
-def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
-    """Return one of the arguments' elements, chosen by `key=` or by itself; with a default, whether there is one."""
-    plain, named = it.arguments
-    several = [*plain, named["*"]] if "*" in named and plain else plain
-    values = [heap.elements(ctx, plain[0])] if len(several) == 1 else several
-    if len(several) == 1 and "default" in named:
-        empty = iterators.gate(ctx, sizes.length(ctx, plain[0]), it.frame, ("default", it.call.slot))
-        values += [named["default"], Value(empty)]
-    result = iterators.ordered(ctx, join_all(values), it)
-    if "key" in named:
-        return Value(result.deps, result.pts)
-    if not any(o.kind in iterators.COMPARED for o in result.pts):
-        return Value(result.deps | call_contexts.all_used(ctx, it.arguments), result.pts)
-    numbers = (Value(v.deps, frozenset(o for o in v.pts if o.kind not in iterators.COMPARED)) for v in values)
-    return Value(result.deps.union(*(ctx.use(value) for value in numbers)), result.pts)
 
 
 def is_device(obj: Obj) -> bool:

@@ -8,7 +8,7 @@ from tarl_lint.interpret import call_contexts
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory.values import UNKNOWN, Value
-from tarl_lint.models import containers, iterators, removal
+from tarl_lint.models import containers, ordering, removal
 
 TAKING: Final = frozenset(["heapq.heappushpop", "heapq.heapreplace"])
 
@@ -30,5 +30,5 @@ def popped(ctx: Interpreter, it: Invocation) -> Value:
     result = containers.elements_of_any(ctx, base)
     decided = removal.decision(ctx, it.frame, it.call.slot, ctx.use(result), counts=base.deps)
     containers.take_any(ctx, base, decided, it.frame, it.call)
-    result = iterators.ordered(ctx, result, it)
+    result = ordering.ordered(ctx, result, it)
     return Value(result.deps | base.deps, result.pts, result.consts)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import replace
 from functools import partial
 
 from tarl_lint.interpret import calls, operators
@@ -13,15 +12,10 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import LENGTH, item_field
-from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, in_order, join_all, pointer
+from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, join_all, pointer
 from tarl_lint.models import rows as possible_rows
 from tarl_lint.models import sizes
 
-COMPARED = frozenset(["sequence", "mapping", "instance"])  # kinds of objects that consist of what is compared
-ENTRY = (
-    "entry"  # name of the pair of a key and its value; keys differ, so comparisons do not reach the values
-)
-UNORDERED = "<unordered>"  # field of a sorted list: its elements without what decided their order
 MAX_MAPPED = 8  # maximum number of elements to which `map` is applied one by one
 
 
@@ -58,9 +52,8 @@ def zipped_elements(ctx: Interpreter, it: Invocation) -> Value:
         return rows_of(ctx, rows, it)
     length = lengths(ctx, given)
     if any(k is not None for k in known):
-        length = gate(
-            ctx, length, it.frame, ("zipped", it.call.slot)
-        )  # the other sequence only ends it early
+        # the other sequences only end it early
+        length = gate(ctx, length, it.frame, ("zipped", it.call.slot))
     if counting and given and (several := possible_rows.of(ctx, given[0])):
         return rows_in_any_order(ctx, [(UNKNOWN, one) for one in several], it, length)
     parts = [heap.elements(ctx, v) for v in given]
@@ -180,73 +173,6 @@ def next_element(ctx: Interpreter, it: Invocation) -> Value:
         return element
     decides = gate(ctx, sizes.length(ctx, plain[0]), it.frame, ("next", it.call.slot))
     return join_all([element, plain[1], Value(decides)])
-
-
-def ordered(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
-    """Return elements that a call chooses or sorts: what it compares decides which one is where.
-
-    What it compares are the results of `key=`, or else the data inside elements that are containers or instances. The
-    results are not data of the elements, just as the condition of an `if` is not data of what it chooses.
-    """
-    key = it.arguments[1].get("key")
-    if key is None or key.consts:
-        inside = frozenset(o for o in elements.pts if o.kind in COMPARED)
-        entries = [o for o in in_order(inside) if o.name == ENTRY]
-        keys = (ctx.use(heap.read_field(ctx, o, item_field(0))) for o in entries)
-        compared = ctx.use(Value(pts=inside.difference(entries))).union(*keys)
-        return _decided(ctx, elements, compared, it)
-    return _decided(ctx, elements, ctx.use(_key(ctx, key, elements, it)), it)
-
-
-def _key(ctx: Interpreter, key: Value, elements: Value, it: Invocation) -> Value:
-    """Return what a key function returns for an element."""
-    if not elements.deps | elements.pts | key.pts:
-        return UNKNOWN
-    return calls.call_value(ctx, key, ([elements], {}), it.frame, it.call)
-
-
-def _decided(ctx: Interpreter, elements: Value, compared: Nodes, it: Invocation) -> Value:
-    decides = gate(ctx, compared, it.frame, ("ordered", it.call.slot))
-    return Value(elements.deps | decides, elements.pts, elements.consts) if decides else elements
-
-
-def first_elements(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the list that `heapq.nlargest` and `heapq.nsmallest` make."""
-    plain = it.arguments[0]
-    if len(plain) < 2:
-        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
-    element = ordered(ctx, heap.elements(ctx, plain[1]), it)
-    return listed(ctx, element, sizes.length(ctx, plain[1]) | ctx.use(plain[0]), it)
-
-
-def grouped(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the pairs of `itertools.groupby`: what the key function returns, and the elements that it selects."""
-    plain, named = it.arguments
-    if not plain:
-        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
-    element, length = heap.elements(ctx, plain[0]), sizes.length(ctx, plain[0])
-    key = plain[1] if len(plain) > 1 else named.get("key", const(None))
-    found = element if key.consts else _key(ctx, key, element, it)
-    compared = ctx.use(found)
-    if (unordered := _unordered(ctx, plain[0], element)) is not None:
-        # a list that is sorted for the groups: its order does not decide how many there are
-        again = replace(it, call=it.call.inner())
-        compared = ctx.use(unordered if key.consts else _key(ctx, key, unordered, again))
-    group = listed(ctx, _decided(ctx, element, compared, it), length | compared, it)
-    return pairs(ctx, [found, group], it.frame, it.call, length | compared)
-
-
-def _unordered(ctx: Interpreter, value: Value, element: Value) -> Value | None:
-    """Return the elements of sorted lists without what decided their order; None if other lists are among them.
-
-    The elements differ from these by the node of this decision only, unless something was added to a list later.
-    """
-    held = [ctx.store.get((o, UNORDERED)) for o in value.objects]
-    known = [heap.arrive(ctx, one, value.deps) for one in held if one is not None]
-    if not known or len(known) < len(held):
-        return None
-    before = join_all(known)
-    return before if before.pts == element.pts and len(element.deps - before.deps) == len(known) else None
 
 
 def asked(ctx: Interpreter, it: Invocation) -> Value:

@@ -1,0 +1,103 @@
+"""Models of functions that compare elements to order, choose or group them: `sorted`, `min`, `groupby` and others."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tarl_lint.interpret import call_contexts, calls
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.memory import heap
+from tarl_lint.memory.heap import item_field
+from tarl_lint.memory.values import UNKNOWN, Nodes, Value, const, in_order, join_all
+from tarl_lint.models import sizes
+from tarl_lint.models.iterators import gate, listed, pairs
+
+COMPARED = frozenset(["sequence", "mapping", "instance"])  # kinds of objects that consist of what is compared
+# name of the pair of a key and its value; keys differ, so comparisons do not reach the values
+ENTRY = "entry"
+UNORDERED = "<unordered>"  # field of a sorted list: its elements without what decided their order
+
+
+def ordered(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
+    """Return elements that a call chooses or sorts: what it compares decides which one is where.
+
+    What it compares are the results of `key=`, or else the data inside elements that are containers or instances. The
+    results are not data of the elements, just as the condition of an `if` is not data of what it chooses.
+    """
+    key = it.arguments[1].get("key")
+    if key is None or key.consts:
+        inside = frozenset(o for o in elements.pts if o.kind in COMPARED)
+        entries = [o for o in in_order(inside) if o.name == ENTRY]
+        keys = (ctx.use(heap.read_field(ctx, o, item_field(0))) for o in entries)
+        compared = ctx.use(Value(pts=inside.difference(entries))).union(*keys)
+        return _decided(ctx, elements, compared, it)
+    return _decided(ctx, elements, ctx.use(_key(ctx, key, elements, it)), it)
+
+
+def _key(ctx: Interpreter, key: Value, elements: Value, it: Invocation) -> Value:
+    """Return what a key function returns for an element."""
+    if not elements.deps | elements.pts | key.pts:
+        return UNKNOWN
+    return calls.call_value(ctx, key, ([elements], {}), it.frame, it.call)
+
+
+def _decided(ctx: Interpreter, elements: Value, compared: Nodes, it: Invocation) -> Value:
+    decides = gate(ctx, compared, it.frame, ("ordered", it.call.slot))
+    return Value(elements.deps | decides, elements.pts, elements.consts) if decides else elements
+
+
+def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
+    """Return one of the arguments' elements, chosen by `key=` or by itself; with a default, whether there is one."""
+    plain, named = it.arguments
+    several = [*plain, named["*"]] if "*" in named and plain else plain
+    values = [heap.elements(ctx, plain[0])] if len(several) == 1 else several
+    if len(several) == 1 and "default" in named:
+        empty = gate(ctx, sizes.length(ctx, plain[0]), it.frame, ("default", it.call.slot))
+        values += [named["default"], Value(empty)]
+    result = ordered(ctx, join_all(values), it)
+    if "key" in named:
+        return Value(result.deps, result.pts)
+    if not any(o.kind in COMPARED for o in result.pts):
+        return Value(result.deps | call_contexts.all_used(ctx, it.arguments), result.pts)
+    numbers = (Value(v.deps, frozenset(o for o in v.pts if o.kind not in COMPARED)) for v in values)
+    return Value(result.deps.union(*(ctx.use(value) for value in numbers)), result.pts)
+
+
+def first_elements(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the list that `heapq.nlargest` and `heapq.nsmallest` make."""
+    plain = it.arguments[0]
+    if len(plain) < 2:
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    element = ordered(ctx, heap.elements(ctx, plain[1]), it)
+    return listed(ctx, element, sizes.length(ctx, plain[1]) | ctx.use(plain[0]), it)
+
+
+def grouped(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the pairs of `itertools.groupby`: what the key function returns, and the elements that it selects."""
+    plain, named = it.arguments
+    if not plain:
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    element, length = heap.elements(ctx, plain[0]), sizes.length(ctx, plain[0])
+    key = plain[1] if len(plain) > 1 else named.get("key", const(None))
+    found = element if key.consts else _key(ctx, key, element, it)
+    compared = ctx.use(found)
+    if (unordered := _unordered(ctx, plain[0], element)) is not None:
+        # a list that is sorted for the groups: its order does not decide how many there are
+        again = replace(it, call=it.call.inner())
+        compared = ctx.use(unordered if key.consts else _key(ctx, key, unordered, again))
+    group = listed(ctx, _decided(ctx, element, compared, it), length | compared, it)
+    return pairs(ctx, [found, group], it.frame, it.call, length | compared)
+
+
+def _unordered(ctx: Interpreter, value: Value, element: Value) -> Value | None:
+    """Return the elements of sorted lists without what decided their order; None if other lists are among them.
+
+    The elements differ from these by the node of this decision only, unless something was added to a list later.
+    """
+    held = [ctx.store.get((o, UNORDERED)) for o in value.objects]
+    known = [heap.arrive(ctx, one, value.deps) for one in held if one is not None]
+    if not known or len(known) < len(held):
+        return None
+    before = join_all(known)
+    return before if before.pts == element.pts and len(element.deps - before.deps) == len(known) else None
