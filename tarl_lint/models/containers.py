@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from tarl_lint import catalog
-from tarl_lint.interpret import call_contexts, expressions, generators, operators
+from tarl_lint.interpret import call_contexts, expressions, generators
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
@@ -27,7 +27,7 @@ from tarl_lint.memory.values import (
     join_all,
     pointer,
 )
-from tarl_lint.models import iterators, launched, object_lists, ordering, removal, rows, sizes
+from tarl_lint.models import iterators, launched, object_lists, ordering, removal, rows, sizes, waiting
 
 QUEUES = frozenset(
     f"{module}.{name}"
@@ -42,14 +42,11 @@ NAMED = (
     "subprocess.Popen",
     "pexpect.spawn",
 )  # library classes whose objects record the name of their class
-FLAG = "<flag>"  # field of an event: whether it is set
 APPENDED = "<appended>"  # field of a list: its length before the first subscriber was appended
 MOVING = frozenset(
     ["insert", "appendleft", "extendleft", "sort"]
 )  # methods that move the elements of a sequence
 FLAGGING = frozenset(["set", "clear"])
-# method that takes an element out of a container → the exception that it raises if there is none; "" if unknown
-RAISED = {"get_nowait": "", "pop": "IndexError", "popleft": "IndexError"}
 IN_ORDER = frozenset(
     ["list", "tuple", "deque", "iter", "reversed"]
 )  # functions whose result tracks its elements separately if their argument does
@@ -199,9 +196,9 @@ def flag(ctx: Interpreter, it: Invocation) -> None:
     """Set or clear an event, or notify a condition; later queries of it depend on the conditions of this call."""
     events = Value(it.base.deps, frozenset(o for o in it.base.pts if o.kind == "lib"))
     news = through_statement(ctx, const(it.name != "clear"), it.frame, it.call)
-    updates.write_field(ctx, events, FLAG, news)
+    updates.write_field(ctx, events, waiting.FLAG, news)
     if it.name != "clear":
-        _note_filling(ctx, events, it.frame, it.call)
+        waiting.note_filling(ctx, events, it.frame, it.call)
 
 
 def _transmit(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
@@ -251,17 +248,10 @@ def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: F
         return
     function = call.function
     news = through_statement(ctx, news, frame, call)
-    _note_filling(ctx, base, frame, call)
+    waiting.note_filling(ctx, base, frame, call)
     for obj in news.pts if news.deps else ():
         ctx.inserted.setdefault(obj.site, set()).update(news.deps)
     change(ctx, base, news, [function.base] if isinstance(function, ir.Attribute) else [], frame)
-
-
-def _note_filling(ctx: Interpreter, base: Value, frame: Frame, call: ir.Call) -> None:
-    """Record that the current statement fills containers or sets events, for code that waits for them."""
-    for obj in base.pts if frame.statement is not None else ():
-        if obj.kind in ("sequence", "lib"):
-            ctx.filled.setdefault(obj.site, set()).add(ctx.node(frame, ("stored", call.slot, 0), "call"))
 
 
 def through_statement(
@@ -287,10 +277,10 @@ def _from_queue(ctx: Interpreter, it: Invocation) -> Value:
     """Return an element of a queue, for which the call waits, or an entry of a mapping."""
     if not it.base.pts or any(o.kind != "sequence" for o in it.base.pts):
         return _read_get(ctx, it)
-    if it.arguments[0] or it.arguments[1]:
-        _may_be_empty(ctx, it, "")
-    elif not ctx.always_filled(it.base.objects):
-        ctx.ops.may_wait(ctx, operators.chosen(ctx, it.base.pts, it.frame, ("got", it.call.slot)), it.frame)
+    if any(it.arguments):
+        waiting.may_be_empty(ctx, it, "")
+    else:
+        waiting.wait_for_element(ctx, it)
     return elements_of_any(ctx, it.base)
 
 
@@ -298,31 +288,14 @@ def sent(ctx: Interpreter, generator: Obj, it: Invocation) -> None:
     """Send a value to a generator, which may have ended."""
     for value in it.arguments[0][:1]:
         generators.send(ctx, generator, through_statement(ctx, value, it.frame, it.call))
-    _may_be_empty(ctx, it, "StopIteration")
-
-
-def _may_be_empty(ctx: Interpreter, it: Invocation, raises: str) -> None:
-    """Let a handler run if nothing has been put into a container."""
-    if (it.frame.tries or len(ctx.stack) > 1) and not ctx.always_filled(it.base.objects):
-        ours = frozenset(o for o in it.base.pts if o.kind in removal.CONTAINERS)
-        got = operators.chosen(ctx, ours, it.frame, ("got", it.call.slot))
-        ctx.ops.may_fail(ctx, got, raises, it.frame, named=raises != "")
-
-
-def wait_for_flag(ctx: Interpreter, it: Invocation) -> None:
-    """Wait until another thread sets an event, or notifies a condition."""
-    flags = [v for o in it.base.objects if (v := ctx.store.get((o, FLAG))) is not None]
-    if flags and not ctx.always_filled(it.base.objects):
-        node = ctx.node(it.frame, ("awaited", it.call.slot), "condition")
-        ctx.graph.choice(NONE.union(*(v.deps for v in flags)), node)
-        ctx.ops.may_wait(ctx, ctx.kept(node), it.frame)
+    waiting.may_be_empty(ctx, it, "StopIteration")
 
 
 def _take_out(ctx: Interpreter, it: Invocation) -> Value:
     """Remove an element and return it."""
     result, given = _read_get(ctx, it), it.arguments[0]
-    if it.name in RAISED and len(given) < 2:
-        _may_be_empty(ctx, it, RAISED[it.name])
+    if it.name in waiting.RAISED and len(given) < 2:
+        waiting.may_be_empty(ctx, it, waiting.RAISED[it.name])
     index = given[0] if given else const(0) if it.name in ("popleft", "get_nowait") else None
     decides = ctx.use(index) if index is not None else NONE
     decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=it.base.deps)

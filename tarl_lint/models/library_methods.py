@@ -38,6 +38,7 @@ from tarl_lint.models import (
     reflection,
     smach,
     strings,
+    waiting,
 )
 from tarl_lint.models.containers import is_device
 from tarl_lint.models.futures import READERS
@@ -47,7 +48,7 @@ from tarl_lint.models.smach import LATER
 from tarl_lint.models.strings import TEXT_METHODS
 
 # methods of events and conditions, without arguments
-SIGNALS: Final = {"wait": containers.wait_for_flag, "notify": containers.flag, "notify_all": containers.flag}
+SIGNALS: Final = {"wait": waiting.wait_for_flag, "notify": containers.flag, "notify_all": containers.flag}
 OF_BASE = frozenset(["__new__", "__init__", "__setattr__"])  # methods of base classes that are not analysed
 SIGNALLING = frozenset(["connect", "emit"])
 

@@ -1,0 +1,55 @@
+"""Calls that need what other code provides: an element of a queue, or an event that is set.
+
+The conditions under which the other code runs decide what follows a call that waits. If the call raises an exception
+instead, they decide whether its handler runs.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tarl_lint.interpret import operators
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import NONE, Nodes, Obj, Value
+from tarl_lint.models import removal
+
+FLAG: Final = "<flag>"  # field of an event: whether it is set
+# method that takes an element out of a container → the exception that it raises if there is none; "" if unknown
+RAISED: Final = {"get_nowait": "", "pop": "IndexError", "popleft": "IndexError"}
+
+
+def note_filling(ctx: Interpreter, base: Value, frame: Frame, call: ir.Call) -> None:
+    """Record that the current statement fills containers or sets events, for code that waits for them."""
+    for obj in base.pts if frame.statement is not None else ():
+        if obj.kind in ("sequence", "lib"):
+            ctx.filled.setdefault(obj.site, set()).add(ctx.node(frame, ("stored", call.slot, 0), "call"))
+
+
+def wait_for_element(ctx: Interpreter, it: Invocation) -> None:
+    """Wait until another thread puts an element into a queue."""
+    if not ctx.always_filled(it.base.objects):
+        ctx.ops.may_wait(ctx, _got(ctx, it.base.pts, it), it.frame)
+
+
+def may_be_empty(ctx: Interpreter, it: Invocation, raises: str) -> None:
+    """Let a handler run if nothing has been put into a container."""
+    if (it.frame.tries or len(ctx.stack) > 1) and not ctx.always_filled(it.base.objects):
+        ours = frozenset(o for o in it.base.pts if o.kind in removal.CONTAINERS)
+        ctx.ops.may_fail(ctx, _got(ctx, ours, it), raises, it.frame, named=raises != "")
+
+
+def wait_for_flag(ctx: Interpreter, it: Invocation) -> None:
+    """Wait until another thread sets an event, or notifies a condition."""
+    flags = [v for o in it.base.objects if (v := ctx.store.get((o, FLAG))) is not None]
+    if flags and not ctx.always_filled(it.base.objects):
+        node = ctx.node(it.frame, ("awaited", it.call.slot), "condition")
+        ctx.graph.choice(NONE.union(*(v.deps for v in flags)), node)
+        ctx.ops.may_wait(ctx, ctx.kept(node), it.frame)
+
+
+def _got(ctx: Interpreter, containers: frozenset[Obj], it: Invocation) -> Nodes:
+    """Return the node that decides whether a call gets an element; empty if no data decides it."""
+    return operators.chosen(ctx, containers, it.frame, ("got", it.call.slot))
