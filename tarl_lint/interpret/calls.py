@@ -83,7 +83,7 @@ def _call_attribute(
     """Call a method of every possible receiver."""
     if ctx.nothing_yet(base):
         return BOTTOM
-    if base.deps and function.name in heap.METHODS_OF["publisher"]:
+    if function.name in heap.METHODS_OF["publisher"]:
         base = ctx.ops.receiver(ctx, base)
     if not base.pts:
         return ctx.ops.call_method(ctx, base, None, function.name, arguments, frame, expr)

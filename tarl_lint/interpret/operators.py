@@ -203,12 +203,11 @@ def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
             result = join(result, value)
         if decided:
             break
-        if not last and not known and isinstance(expr.parts[number + 1], CALLING):
-            ctx.guards.append((guard(ctx, decides, frame, (expr.pos, number)), "rest"))
         if not last and not known:
+            if isinstance(expr.parts[number + 1], CALLING):
+                ctx.guards.append((guard(ctx, decides, frame, (expr.pos, number)), "rest"))
             former += ctx.ops.narrow_part(ctx, part, frame, holds=expr.operator == "and")
-    if former:
-        ctx.ops.widen(ctx, former)
+    ctx.ops.widen(ctx, former)
     del ctx.guards[guards:]
     false = decided and expr.operator == "and" and result.consts is None and not result.pts
     return Value(result.deps | deps, result.pts, FALSE if false else result.consts)

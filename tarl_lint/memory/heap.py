@@ -358,9 +358,8 @@ def attribute_names(ctx: Interpreter, obj: Obj) -> Value | None:
     `vars(obj)` and `obj.__dict__` are represented by the object itself. Only an object whose class and base classes are
     all analysed, and which has no attributes with computed names, certainly does not iterate in another way.
     """
-    cls = obj.info if obj.kind == "instance" else None
-    infos = [one.info for one in lineage(cls)] if isinstance(cls, Obj) and obj.name != MEMBER else []
-    if not isinstance(cls, Obj) or not infos or any(_iterates(info) for info in infos):
+    cls = obj.info if obj.kind == "instance" and obj.name != MEMBER else None
+    if not isinstance(cls, Obj) or any(_iterates(one.info) for one in lineage(cls)):
         return None
     if attribute_of_item(obj, "name") != "name" or content(ctx, obj) is not BOTTOM:
         return None

@@ -75,15 +75,17 @@ def pieces(ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, ca
 
 def keys_joined(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> Arguments:
     """Return the value of `text.join(mapping)`, which joins keys only."""
-    given = [
-        Value(operators.membership(ctx, v, frame, ("joined", call.slot)))
-        if any(o.kind == "mapping" for o in v.pts)
-        else heap.elements(ctx, v)
-        if any(heap.attribute_names(ctx, o) is not None for o in v.pts)
-        else v
-        for v in arguments[0]
-    ]
-    return given, arguments[1]
+    plain, named = arguments
+    return [_keys(ctx, value, frame, call) for value in plain], named
+
+
+def _keys(ctx: Interpreter, value: Value, frame: Frame, call: ir.Call) -> Value:
+    """Return the keys of a mapping or of `vars(x)`; other values themselves."""
+    if any(o.kind == "mapping" for o in value.pts):
+        return Value(operators.membership(ctx, value, frame, ("joined", call.slot)))
+    if any(heap.attribute_names(ctx, o) is not None for o in value.pts):
+        return heap.elements(ctx, value)
+    return value
 
 
 def _made(ctx: Interpreter, function: Callable[..., object], values: Sequence[Value]) -> Consts:

@@ -33,12 +33,6 @@ def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
     return pointer(obj)
 
 
-def _expects_none(ctx: Interpreter) -> bool:
-    """Return whether a handler names the exception of a call on None: then the first use is a decision."""
-    handlers = (handled for frame in ctx.stack for attempt in frame.tries for handled in attempt.handlers)
-    return any(ctx.exception_types.names(handled, "AttributeError") for handled in handlers)
-
-
 def image_publisher(ctx: Interpreter, it: Invocation) -> Value:
     """Return a new publisher of image_transport; images are also on topics below its own."""
     made = made_publisher(ctx, it)
@@ -78,10 +72,14 @@ def receiver(ctx: Interpreter, base: Value) -> Value:
     names = {topic for info in infos for topic in info.topics}
     nodes = {node for info in infos for node in info.nodes}
     known = all(info.topics for info in infos) and not any(isinstance(name, DefaultName) for name in names)
-    alike = known and len(names) == 1 and len(nodes) < 2
-    if not alike or not all(recency.single(ctx, node) for node in nodes):
-        return base
-    return Value(pts=base.pts, consts=base.consts)
+    alike = known and len(names) == 1 and len(nodes) < 2 and all(recency.single(ctx, one) for one in nodes)
+    return Value(pts=base.pts, consts=base.consts) if alike else base
+
+
+def _expects_none(ctx: Interpreter) -> bool:
+    """Return whether a handler names the exception of a call on None; then whether a publisher exists is a decision."""
+    handlers = (handled for frame in ctx.stack for attempt in frame.tries for handled in attempt.handlers)
+    return any(ctx.exception_types.names(handled, "AttributeError") for handled in handlers)
 
 
 def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
