@@ -32,8 +32,7 @@ FAILS: Final = re.compile(
     r"(?:loads?|parse|decode|literal_eval|fromisoformat|strptime|unpack|from_?[Ss]tring|look_?up|transform|do_transform"
     r"|convert|index|Decimal|Fraction|ip_address|UUID|inv|solve)(?:_|[A-Z]|$)|lookup"
 )  # functions that raise for some arguments
-
-
+# functions that read from a stream among their arguments
 READS: Final = re.compile(r"_?(load|read|parse|open|deserialize|decode|from)", re.IGNORECASE)
 
 

@@ -24,9 +24,9 @@ def mailbox(ctx: Interpreter, frame: Frame) -> Obj:
 
 
 def send(ctx: Interpreter, generator: Obj, value: Value) -> None:
-    """Send a value to a generator; what has executed its body runs again if the value is new.
+    """Send a value to a generator; the roots that have executed its body run again if the value is new.
 
-    A root does not see its own stores when it runs again, so the data that it sends is also kept apart.
+    A root that runs again does not see its own stores, so `ctx.posted` also holds the data that each root sends.
     """
     box = generator.info
     if not isinstance(box, Obj):

@@ -120,9 +120,8 @@ class Interpreter:
         self.ended: set[str] = set()
         # mailbox of generators → data that each root has sent
         self.posted: dict[Obj, dict[Root, Nodes]] = {}
-        self.receivers: dict[
-            Obj, dict[Root, None]
-        ] = {}  # mailbox → roots that have executed a generator's body
+        # mailbox → roots that have executed the body of one of these generators
+        self.receivers: dict[Obj, dict[Root, None]] = {}
         self.checking = os.environ.get(CHECK, "") not in ("", "0")
         # ROS parameters whose values are names of topics or nodes; None if the run does not collect them
         self.parameter_names: list[ParameterName] | None = None
@@ -273,9 +272,8 @@ class Interpreter:
 
     def condition(self, frame: Frame, statement: ir.Stmt, turns: Turns | None = None) -> int:
         """Return the node of a statement's decision."""
-        return self._decision(
-            frame, statement, "", inside(statement, frame.turns if turns is None else turns)
-        )
+        turns = inside(statement, frame.turns if turns is None else turns)
+        return self._decision(frame, statement, "", turns)
 
     def way(self, frame: Frame, statement: ir.Stmt, way: str) -> int:
         """Return the node that decides only whether one branch of an `if` runs."""

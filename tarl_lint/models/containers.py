@@ -37,11 +37,9 @@ QUEUES = frozenset(
 PIPES = ("multiprocessing.Pipe", "trio.open_memory_channel", "anyio.create_memory_object_stream")
 PROCESSES = frozenset(["subprocess.Popen", "pexpect.spawn", "pexpect.spawnu"])
 STREAMS = frozenset(["stdin", "stdout", "stderr"])
-NAMED = (
-    "io.",
-    "subprocess.Popen",
-    "pexpect.spawn",
-)  # library classes whose objects record the name of their class
+IN_MEMORY = "io."  # beginning of the names of the classes of streams in memory
+# beginnings of the names of library classes whose objects record the name of their class
+NAMED = (IN_MEMORY, "subprocess.Popen", "pexpect.spawn")
 APPENDED = "<appended>"  # field of a list: its length before the first subscriber was appended
 MOVING = frozenset(
     ["insert", "appendleft", "extendleft", "sort"]
@@ -476,7 +474,7 @@ def new_pipe(ctx: Interpreter, it: Invocation) -> Value:
 
 def is_device(obj: Obj) -> bool:
     """Return whether reading from a library object returns data other than what was written to it."""
-    return obj.kind == "lib" and not obj.name.startswith("io.") and obj.name not in PROCESSES
+    return obj.kind == "lib" and not obj.name.startswith(IN_MEMORY) and obj.name not in PROCESSES
 
 
 READERS: Mapping[str, Callable[..., Value]] = {

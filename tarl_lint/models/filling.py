@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from tarl_lint.interpret import call_contexts
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
@@ -13,8 +11,6 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import Value
 from tarl_lint.method_effects import only_tells, reads
 from tarl_lint.models import arrays, containers, sizes
-
-STREAM: Final = "io."  # beginning of the names of the classes of streams in memory
 
 
 def fill(ctx: Interpreter, name: str, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
@@ -43,7 +39,7 @@ def fill(ctx: Interpreter, name: str, base: Value, arguments: Arguments, frame: 
 
 def _is_stream(value: Value) -> bool:
     """Return whether a value is a stream in memory, such as an `io.StringIO`."""
-    return all(o.kind == "lib" and o.name.startswith(STREAM) for o in value.pts)
+    return all(o.kind == "lib" and o.name.startswith(containers.IN_MEMORY) for o in value.pts)
 
 
 def stream_itself(ctx: Interpreter, it: Invocation) -> Value:

@@ -91,9 +91,10 @@ def grouped(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _unordered(ctx: Interpreter, value: Value, element: Value) -> Value | None:
-    """Return the elements of sorted lists without what decided their order; None if other lists are among them.
+    """Return the elements of sorted lists without what decided their order.
 
-    The elements differ from these by the node of this decision only, unless something was added to a list later.
+    None if other lists are among them, or if something was added to a list later: then `element` has more data than the
+    node of the decision that each `sorted` adds.
     """
     held = [ctx.store.get((o, UNORDERED)) for o in value.objects]
     known = [heap.arrive(ctx, one, value.deps) for one in held if one is not None]
