@@ -133,5 +133,5 @@ def _bare(statement: ir.Stmt) -> bool:
 def _takes(ctx: Interpreter, attempt: Attempt, raises: str, named: bool) -> bool:
     """Return whether a `try` may handle an exception; with `named`, by its name."""
     if named:
-        return any(ctx.exception_types.names(handled, raises) for handled in attempt.handlers)
+        return attempt.names(raises, ctx.exception_types)
     return attempt.catches(raises, ctx.exception_types) is not False

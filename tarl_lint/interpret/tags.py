@@ -106,9 +106,9 @@ def decide(ctx: Interpreter, s: ir.If, frame: Frame, narrowed: Narrowed, *, hold
     value = ctx.ops.evaluate(ctx, s.test, frame)
     frame.statement = s
     ctx.graph.flow(operators.truth(ctx, value, frame, ("test", holds)), node)
-    for key in narrowed:
+    for key, now in narrowed.items():
         taken = _taken(ctx, key, frame)
-        ctx.graph.flow(narrowed[key].deps if taken is None else taken.before.deps, node)
+        ctx.graph.flow((now if taken is None else taken.before).deps, node)
 
 
 def restore(ctx: Interpreter, before: Narrowed, ways: Sequence[tuple[Narrowed, Delta]]) -> None:
@@ -148,9 +148,9 @@ def _constants(ctx: Interpreter, name: ir.Name, test: Test, frame: Frame) -> Ite
     """Yield a variable without the constants that do not match."""
     key = _key(name, frame)
     now = ctx.store.get(key)
-    if now is None or now.pts or not now.keys() or _taken(ctx, key, frame) is not None:
+    known = now.keys() if now is not None else None
+    if now is None or now.pts or not known or _taken(ctx, key, frame) is not None:
         return
-    known = now.keys() or frozenset()
     kept = known & test.tags if test.holds else known - test.tags if test.exact else known
     if kept and kept != known:
         # a single constant is the same for all data for which the branch runs

@@ -33,6 +33,10 @@ class Attempt:
         answers = [types.catches(handled, name) for handled in self.handlers]
         return True if True in answers else None if None in answers else False
 
+    def names(self, name: str, types: ExceptionTypes) -> bool:
+        """Return whether one of the handlers catches a builtin exception by its name or that of a base class."""
+        return any(types.names(handled, name) for handled in self.handlers)
+
     def caught(self, handled: Handled, types: ExceptionTypes) -> dict[str, Value]:
         """Return the exceptions that one of the handlers may catch, by their names."""
         return {n: v for n, v in self.raised.items() if types.catches(handled, n) is not False}

@@ -78,8 +78,7 @@ def receiver(ctx: Interpreter, base: Value) -> Value:
 
 def _expects_none(ctx: Interpreter) -> bool:
     """Return whether a handler names the exception of a call on None; then whether a publisher exists is a decision."""
-    handlers = (handled for frame in ctx.stack for attempt in frame.tries for handled in attempt.handlers)
-    return any(ctx.exception_types.names(handled, "AttributeError") for handled in handlers)
+    return any(t.names("AttributeError", ctx.exception_types) for f in ctx.stack for t in f.tries)
 
 
 def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
