@@ -17,7 +17,7 @@ def keys_above(place: Place, text: str) -> tuple[str, ...] | None:
     """Return the keys of a number in a file with this text, without wildcards; None for a launch file, for example."""
     if not place.path.endswith((".yaml", ".yml", ".json")):
         return None
-    return _keys(place.path, text).get(place.start)
+    return _keys(text).get(place.start)
 
 
 def belongs(name: str, keys: Sequence[str]) -> bool:
@@ -26,7 +26,7 @@ def belongs(name: str, keys: Sequence[str]) -> bool:
 
 
 @lru_cache(_MOST_FILES)
-def _keys(path: str, text: str) -> dict[int, tuple[str, ...]]:  # noqa: ARG001 (a file has its own entry)
+def _keys(text: str) -> dict[int, tuple[str, ...]]:
     """Return the keys above each number of a file, by its offset, without wildcards; empty without PyYAML."""
     try:
         import yaml
