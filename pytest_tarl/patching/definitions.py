@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.document import Document, Edit, called, document, parse
+from pytest_tarl.patching.document import Document, Edit, called, document, parse, strings
 from pytest_tarl.patching.expressions import number
-from pytest_tarl.patching.launch_numbers import computed, numerals
+from pytest_tarl.patching.launch_numbers import computed, key_of, numerals
 from tarl_lint.model import Operand, Span
 
 if TYPE_CHECKING:
@@ -127,9 +127,7 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
         if isinstance(each, ast.Call) and called(each) == SEVERAL:
             return _entry_name(each, entry)
         if isinstance(each, ast.Call) and called(each) in PARAMETER_CALLS:
-            first = each.args[0] if each.args else None
-            named = isinstance(first, ast.Constant) and isinstance(first.value, str)
-            return str(first.value) if named and isinstance(first, ast.Constant) else ""
+            return next(iter(strings(each.args[:1])), "")
         if isinstance(each, ast.Call) and node in each.args[1:] and called(each) == ENTRY:
             return _entry_of_parameter(each)
         if isinstance(each, ast.stmt):
@@ -162,7 +160,7 @@ def package_files(root: Path, node: Path) -> Mapping[str, str]:
 
 def configured(name: str, files: Mapping[str, str]) -> Iterator[Place]:
     """Yield the numbers that configuration files assign to the parameter `name`."""
-    key = _last(name)
+    key = key_of(name)
     for path, text in files.items():
         if _kind(Path(path)) == "launch.py":
             yield from _launched(path, key, text)
@@ -198,7 +196,7 @@ def _target(source: Document, node: ast.expr) -> str:
 
 def computed_at(name: str, files: Mapping[str, str]) -> str:
     """Return where a Python launch file computes a parameter in a way that cannot be changed, as a string, or ""."""
-    key = _last(name)
+    key = key_of(name)
     for path, text in files.items():
         source = _python(path, text) if _kind(Path(path)) == "launch.py" else None
         node = next(computed(key, source.tree), None) if source is not None else None
@@ -274,39 +272,28 @@ def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
     """Return the other places that use the constant of these operands, as `path:line`, in order."""
     mine = {(operand.span.path, operand.span.line) for operand in used}
     spans = {span for operand in used for span in (operand.definition, *operand.definitions)} - {None}
-    names = {_last(parameter(analysis, operand)) for operand in used} - {""}
+    names = {key_of(parameter(analysis, operand)) for operand in used} - {""}
     found: dict[str, None] = {}
     for step in analysis.sites:
         for operand in analysis.operands(step.site):
             theirs = {operand.definition, *operand.definitions}
-            shared = not spans.isdisjoint(theirs) or _last(parameter(analysis, operand)) in names
+            shared = not spans.isdisjoint(theirs) or key_of(parameter(analysis, operand)) in names
             if shared and (operand.span.path, operand.span.line) not in mine:
                 found[f"{operand.span.path}:{operand.span.line}"] = None
     return list(found)
 
 
-def _last(name: str) -> str:
-    """Return the last part of a parameter's name."""
-    return re.split(r"[/.~]", name)[-1]
-
-
 def _entry_of_parameter(call: ast.Call) -> str:
     """Return the last part of the parameter's name in `get_param("~", {}).get("gain", 0.3)`: `gain`."""
-    key = call.args[0]
     of_environment = ast.unparse(call.func) in ENVIRONMENT
-    text = key.value if isinstance(key, ast.Constant) and isinstance(key.value, str) else ""
-    return "" if of_environment else text
+    return "" if of_environment else next(iter(strings(call.args[:1])), "")
 
 
 def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
     """Return the parameter declared by an entry of `declare_parameters`, including its namespace."""
     elements = entry.elts if isinstance(entry, ast.Tuple | ast.List) else []
     namespace = [*call.args[:1], *(one.value for one in call.keywords if one.arg == "namespace")]
-    texts = [
-        one.value
-        for one in (*namespace[:1], *elements[:1])
-        if isinstance(one, ast.Constant) and isinstance(one.value, str)
-    ]
+    texts = strings((*namespace[:1], *elements[:1]))
     return ".".join(text for text in texts if text) if len(texts) > 1 else ""
 
 

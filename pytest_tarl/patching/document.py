@@ -29,6 +29,11 @@ def argument_names(function: Function | ast.Lambda) -> list[str]:
     return [one.arg for one in function.args.args if one.arg not in ("self", "cls")]
 
 
+def strings(nodes: Iterable[ast.AST]) -> list[str]:
+    """Return the values of the string literals among some nodes."""
+    return [one.value for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+
+
 @dataclass(frozen=True, slots=True)
 class Edit:
     """Replace the characters from `start` to `end` by `text`; lines in `text` end with a line feed."""

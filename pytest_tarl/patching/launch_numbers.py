@@ -31,6 +31,11 @@ class Numeral:
     share: float = 1.0
 
 
+def key_of(name: str) -> str:
+    """Return the last part of a parameter's name, which is its key in a file: `gain` of `~base/gain`."""
+    return re.split(r"[/.~]", name)[-1]
+
+
 def numerals(key: str, tree: ast.Module) -> Iterator[Numeral]:
     """Yield the numbers that determine the parameters with the last name `key`, those in its own expression first."""
     names = _Names.of(tree)
@@ -110,11 +115,7 @@ def _expressions(key: str, tree: ast.Module) -> Iterator[ast.expr]:
 
 
 def _is_named(node: ast.expr, key: str) -> bool:
-    return (
-        isinstance(node, ast.Constant)
-        and isinstance(node.value, str)
-        and re.split(r"[/.~]", node.value)[-1] == key
-    )
+    return isinstance(node, ast.Constant) and isinstance(node.value, str) and key_of(node.value) == key
 
 
 def _determining(expression: ast.expr, names: _Names) -> Iterator[Numeral]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.definitions import Place, literal_number
-from pytest_tarl.patching.document import Document, called, document
+from pytest_tarl.patching.document import Document, called, document, strings
 from tarl_lint.model import Operand
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ def named_numbers(analysis: Analysis, operand: Operand) -> list[Place]:
     Numbers that differ from the operand's value, if it is known, and zeros are left out.
     """
     found: dict[Place, None] = {}
+    name = _name(analysis, operand)
     for path in sorted(analysis.sources, key=lambda one: one != operand.span.path):
         try:
             source = document(path, analysis.sources[path])
@@ -37,7 +38,6 @@ def named_numbers(analysis: Analysis, operand: Operand) -> list[Place]:
         if own is not None:
             found |= dict.fromkeys(_inside(source, own))
             found |= dict.fromkeys(_elements(source, own))
-        name = _name(analysis, operand)
         for node in ast.walk(source.tree) if name else ():
             found |= dict.fromkeys(_place(source, name, number) for number in _numbers(node, name))
     return [one for one in found if one.value and operand.value in (None, one.value)]
@@ -46,7 +46,7 @@ def named_numbers(analysis: Analysis, operand: Operand) -> list[Place]:
 def _inside(source: Document, own: ast.expr) -> Iterator[Place]:
     """Yield the only number of a call that reads a constant by its name: `read("gain", 2.0)`."""
     given = [*own.args, *(one.value for one in own.keywords)] if isinstance(own, ast.Call) else []
-    texts = [one.value for one in given if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+    texts = strings(given)
     numbers = [one for one in given if _is_number(one)]
     if len(texts) == 1 and len(numbers) == 1:
         yield _place(source, texts[0], numbers[0])
@@ -76,13 +76,10 @@ def _name(analysis: Analysis, operand: Operand) -> str:
     except (RepairError, KeyError):
         return ""
     if isinstance(node, ast.Call):
-        texts = [
-            one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)
-        ]
+        texts = strings(node.args)
         return texts[0].removeprefix("~") if len(texts) == 1 else ""
     if isinstance(node, ast.Subscript):
-        key = node.slice
-        return key.value if isinstance(key, ast.Constant) and isinstance(key.value, str) else ""
+        return next(iter(strings([node.slice])), "")
     return ast.unparse(node).rpartition(".")[2] if isinstance(node, ast.Name | ast.Attribute) else ""
 
 
@@ -107,8 +104,7 @@ def _numbers(node: ast.AST, name: str) -> Iterator[ast.expr]:
 def _destinations(call: ast.Call, named: dict[str | None, ast.expr]) -> list[str]:
     """Return the attributes in which argparse may store an option."""
     given = [named["dest"]] if "dest" in named else call.args
-    texts = [one.value for one in given if isinstance(one, ast.Constant) and isinstance(one.value, str)]
-    return [text.lstrip("-").replace("-", "_") for text in texts]
+    return [text.lstrip("-").replace("-", "_") for text in strings(given)]
 
 
 def _is_number(node: ast.expr) -> bool:

@@ -24,8 +24,10 @@ from pytest_tarl.patching.definitions import (
     package_files,
     parameter,
 )
-from pytest_tarl.patching.document import Document, called, document
+from pytest_tarl.patching.document import called, strings
 from pytest_tarl.patching.key_paths import belongs, keys_above
+from pytest_tarl.patching.launch_numbers import key_of
+from pytest_tarl.patching.mutate import analysed_document
 from pytest_tarl.repairing.request import Order
 from tarl_lint.api import Analysis
 from tarl_lint.model import Operand, SiteId, Span
@@ -79,19 +81,19 @@ def _values(order: Order, operands: Sequence[Operand]) -> Iterator[tuple[str, Pl
 def _defaults(analysis: Analysis, path: str) -> Iterator[tuple[str, Place, set[Span]]]:
     """Yield the parameters that a file reads with a number as default, and the spans of the number and of the call."""
     try:
-        source = document(path, analysis.sources[path])
+        source = analysed_document(analysis, path)
     except RepairError:
         return
     for node in ast.walk(source.tree):
         if not isinstance(node, ast.Call) or called(node) not in PARAMETER_CALLS or not node.args:
             continue
-        name = node.args[0]
+        names = strings(node.args[:1])
         others = [*node.args[1:2], *(one.value for one in node.keywords if one.arg in ("default", "value"))]
         for number in others:
             value = literal_number(number)
-            if value is None or not isinstance(name, ast.Constant) or not isinstance(name.value, str):
+            if value is None or not names:
                 continue
-            key = _last(name.value)
+            key = key_of(names[0])
             place = Place(path, source.start(number), source.end(number), number.lineno, key, value)
             yield key, place, {source.span(number), source.span(node)}
 
@@ -135,12 +137,12 @@ def _key_of_call(analysis: Analysis, operand: Operand) -> str:
     node = _node(analysis, operand)
     if not isinstance(node, ast.Call) or called(node) not in PARAMETER_CALLS:
         return ""
-    return _last(parameter(analysis, operand))
+    return key_of(parameter(analysis, operand))
 
 
 def _keys(analysis: Analysis, operand: Operand) -> Iterator[str]:
     """Yield the keys of the parameters that an operand may stand for by itself."""
-    yield _last(parameter(analysis, operand))
+    yield key_of(parameter(analysis, operand))
     if operand.value is not None:
         yield operand.code.rpartition(".")[2]
 
@@ -176,8 +178,8 @@ def _named(analysis: Analysis) -> Iterator[tuple[str, tuple[SiteId, Span]]]:
     """Yield the names and attributes that the statements of flows read, each with its statement and place."""
     for step in reversed(analysis.sites):
         try:
-            source = document(step.span.path, analysis.sources[step.span.path])
-        except (RepairError, KeyError):
+            source = analysed_document(analysis, step.span.path)
+        except RepairError:
             continue
         for node in ast.walk(source.tree):
             reads = isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
@@ -190,19 +192,15 @@ def _texts(analysis: Analysis, operand: Operand) -> set[str]:
     node = _node(analysis, operand)
     if node is None:
         return set()
-    source = document(operand.span.path, analysis.sources[operand.span.path])
-    around = source.function(source.statement(node)) or source.tree
-    return {
-        one.value for one in ast.walk(around) if isinstance(one, ast.Constant) and isinstance(one.value, str)
-    }
+    source = analysed_document(analysis, operand.span.path)
+    return set(strings(ast.walk(source.function(source.statement(node)) or source.tree)))
 
 
 def _node(analysis: Analysis, operand: Operand) -> ast.expr | None:
     try:
-        source: Document = document(operand.span.path, analysis.sources[operand.span.path])
-    except (RepairError, KeyError):
+        return analysed_document(analysis, operand.span.path).at(operand.span)
+    except RepairError:
         return None
-    return source.at(operand.span)
 
 
 def _usual_size(key: str, read: Mapping[str, Number]) -> float:
@@ -214,7 +212,3 @@ def _usual_size(key: str, read: Mapping[str, Number]) -> float:
         if value and not isinstance(value, bool) and name.rpartition("/")[2].split("_")[0] == first
     ]
     return float(median(alike)) if alike else 0.0
-
-
-def _last(name: str) -> str:
-    return re.split(r"[/.~]", name)[-1]
