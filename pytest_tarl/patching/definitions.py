@@ -142,10 +142,22 @@ def _converted(node: ast.expr | None) -> ast.expr | None:
     return node
 
 
-def package_files(root: Path, node: Path) -> Mapping[str, str]:
-    """Return the configuration files of the package that contains a node, as texts by path relative to `root`."""
+def package_files(root: Path, *nodes: Path) -> dict[str, str]:
+    """Return the configuration files of the packages that contain nodes, as texts by path relative to `root`."""
+    found: dict[str, str] = {}
+    for top in dict.fromkeys(_package(root, node) for node in nodes):
+        found |= _files_in(top, root)
+    return found
+
+
+def _package(root: Path, node: Path) -> Path:
+    """Return the folder of the package that contains a node, or `root`."""
     top = next((folder for folder in node.parents if (folder / "package.xml").is_file()), root)
-    top = top if top.is_relative_to(root) else root
+    return top if top.is_relative_to(root) else root
+
+
+def _files_in(top: Path, root: Path) -> dict[str, str]:
+    """Return the configuration files in a folder, at most `_MOST_FILES`, as texts by path relative to `root`."""
     found: dict[str, str] = {}
     for path in sorted(top.rglob("*")):
         if len(found) >= _MOST_FILES:

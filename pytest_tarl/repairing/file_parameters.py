@@ -24,7 +24,7 @@ from pytest_tarl.patching.definitions import (
     package_files,
     parameter,
 )
-from pytest_tarl.patching.document import called, strings
+from pytest_tarl.patching.document import Document, called, strings
 from pytest_tarl.patching.key_paths import belongs, keys_above
 from pytest_tarl.patching.launch_numbers import key_of
 from pytest_tarl.patching.mutate import analysed_document
@@ -100,11 +100,9 @@ def _defaults(analysis: Analysis, path: str) -> Iterator[tuple[str, Place, set[S
 
 def files_of_packages(order: Order) -> dict[str, str]:
     """Return the texts of the configuration files of the nodes' packages, by path."""
-    root = order.root.resolve()
-    found: dict[str, str] = {}
-    for path in order.analysis.sources:
-        found |= package_files(root, (order.root / path).resolve())
-    return found
+    return package_files(
+        order.root.resolve(), *((order.root / path).resolve() for path in order.analysis.sources)
+    )
 
 
 def places_in_force(name: str, value: Number, texts: Mapping[str, str]) -> list[Place]:
@@ -176,15 +174,22 @@ def _use(
 
 def _named(analysis: Analysis) -> Iterator[tuple[str, tuple[SiteId, Span]]]:
     """Yield the names and attributes that the statements of flows read, each with its statement and place."""
+    read = {path: list(_read(analysis, path)) for path in {step.span.path for step in analysis.sites}}
     for step in reversed(analysis.sites):
-        try:
-            source = analysed_document(analysis, step.span.path)
-        except RepairError:
-            continue
-        for node in ast.walk(source.tree):
-            reads = isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
-            if isinstance(node, ast.expr) and reads and step.span.line <= node.lineno <= step.span.end_line:
+        for source, node in read[step.span.path]:
+            if step.span.line <= node.lineno <= step.span.end_line:
                 yield ast.unparse(node).rpartition(".")[2], (step.site, source.span(node))
+
+
+def _read(analysis: Analysis, path: str) -> Iterator[tuple[Document, ast.expr]]:
+    """Yield the names and attributes that a file reads, each with the file."""
+    try:
+        source = analysed_document(analysis, path)
+    except RepairError:
+        return
+    for node in ast.walk(source.tree):
+        if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load):
+            yield source, node
 
 
 def _texts(analysis: Analysis, operand: Operand) -> set[str]:
