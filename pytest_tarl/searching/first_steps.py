@@ -27,9 +27,8 @@ from tarl_lint.model import Operand
 Hint = tuple[tuple[Operand, float], ...]  # constants that change together, each with its factor
 
 LEADING = 3  # number of best units that are tried with larger steps before the next guard is tried
-HINT = (
-    0.005  # minimum gain of the `LEADING` units and of units that get a smaller step, as a share of the loss
-)
+# minimum gain of the `LEADING` units, and of units that get a smaller step, as a share of the wanted gain
+HINT = 0.005
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
 # steps for constants that clearly lose with each of the steps before: their good values are close to the old one
@@ -307,8 +306,7 @@ class FirstSteps:
             before = steps
 
     def _few(self, guard: Guard, among: Sequence[Unit]) -> list[Unit]:
-        """Return the named constants, or else the few others that clearly lose with all steps so far."""
+        """Return the named constants that clearly lose with all steps so far, or else the few others that do."""
         lost = self.attempts.gains.clearly_lost(guard, among, FINER)
         lost = [unit for unit in lost if unit.chart is None and kind(unit) < Oddness.OFFSET]
-        others = named(lost) or lost
-        return others if others == named(lost) or len(others) <= FEW else []
+        return named(lost) or (lost if len(lost) <= FEW else [])

@@ -223,11 +223,12 @@ class Preferences:
         function = (site.module, site.qualname)
         if function in self._compared or len(self._compared) >= FUNCTIONS:
             return
-        if self._deviation(found, seeds[:1]) <= EXACT:
+        deviation = self._deviation(found, seeds[:1])
+        if deviation <= EXACT:
             return
         self._compared.add(function)
         step, least = exactest(unit, factor, found.guard, seeds[0], self.search.mutate, self.search.trials)
-        closer = self.search.proposed and least <= CLOSER * self._deviation(found, seeds[:1])
+        closer = self.search.proposed and least <= CLOSER * deviation
         exact = self.search.holding(unit, step, found.guard, pair) if closer or least <= EXACT else None
         if exact is not None:
             yield exact

@@ -67,8 +67,9 @@ def amid(by_factor: Mapping[float, float], slack: float) -> list[float]:
 def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:
     """Return at most two factors to try next, with the sign of the best factor; none if no factor gains.
 
-    None follow either if both neighbours of the best factor are close and gain as much, but too little: something else
-    is wrong.
+    Also return none if both neighbours of the best factor are close to it and gain as much, but too little: the cause
+    is then elsewhere.
+
     `by_factor` maps each tried factor to its gain; `wanted` is the gain that restores the designed reward.
     """
     factor = max(by_factor, key=by_factor.__getitem__)
