@@ -20,9 +20,8 @@ from pytest_tarl.searching.accept import Outcome, Reference
 from pytest_tarl.searching.search import LACKS, Candidate, Goal, Mutate, Trials
 from tarl_lint.model import Operand
 
-OUTER = (
-    0.25  # share of the range at each end from which a value is moved, but not if it is `CLEAR` of the end
-)
+# share of the range at each end from which a value is moved, unless it is `CLEAR` of the end
+OUTER = 0.25
 CLEAR = 1.4  # ratio of a value to an end of the range at which it is far enough from it
 MIDDLE = 0.45  # share of the range, from its end nearer to the old value, to which a value is moved
 FAR = 2.0  # maximum ratio of the new value to this end: larger changes are less likely to be right elsewhere

@@ -55,13 +55,10 @@ class Mutants:
 
     def _read_places(self, candidate: Candidate) -> None:
         """Read the files outside the analysis in which the candidate changes constants."""
-        for place in {located(mutation).place for mutation in candidate.mutations} - {None}:
-            if (
-                place is not None
-                and place.path not in self.order.analysis.sources
-                and place.path not in self.texts
-            ):
-                self.texts[place.path] = (self.order.root / place.path).read_bytes().decode("utf-8")
+        for mutation in map(located, candidate.mutations):
+            path = mutation.place.path if mutation.place is not None else ""
+            if path and path not in self.order.analysis.sources and path not in self.texts:
+                self.texts[path] = (self.order.root / path).read_bytes().decode("utf-8")
 
     def foresee(self, wanted: Iterable[Wanted], drift: str | None) -> None:
         """Announce, in order, the episodes that are likely to be requested next."""

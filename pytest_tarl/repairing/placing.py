@@ -90,7 +90,7 @@ class Placing:
                 mutation
             ):
                 return None  # two uses of one constant need different values
-        if not values or (self.order.options.edit == "definition" and self._left(mutations)):
+        if not values or (self.order.options.edit == "definition" and not all(map(_stays, mutations))):
             return None
         moved = Candidate(tuple(mutations), candidate.guard)
         pairs = self.order.goal.pairs[:LOOKED_AT]
@@ -109,9 +109,6 @@ class Placing:
                 )
         return None
 
-    def _left(self, mutations: Sequence[Mutation]) -> bool:
-        return not all(map(_stays, mutations))
-
     def _places(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> tuple[Place, ...]:
         one = defined(self.order.analysis, mutation.operand) or mutation.operand
         if one not in self._in_force:
@@ -126,10 +123,9 @@ class Placing:
         apart = alternatives(analysis, written)
         for places in [(one,) for one in written[:MOST_PLACES]] if apart else [written]:
             if self._moves(mutation, places, candidate, trials):
-                return tuple(places) if apart else self._in_use(mutation, places, candidate, trials)
-        for place in (
-            named_numbers(analysis, operand)[:MOST_PLACES] if not written and not operand.setting else ()
-        ):
+                return self._in_use(mutation, places, candidate, trials)
+        lost = not written and not operand.setting  # the analysis cannot follow the constant
+        for place in named_numbers(analysis, operand)[:MOST_PLACES] if lost else ():
             if self._moves(mutation, [place], candidate, trials):
                 return (place,)
         if not name:

@@ -30,8 +30,6 @@ def scaled_command(analysis: Analysis, candidate: Candidate) -> Scaled | None:
         node = source.find(span)
     except (RepairError, KeyError):
         return None
-    statements = writers(source, node, form.target(source.source(node)))
+    statements = [source.statement(node), *writers(source, node, form.target(source.source(node)))]
     lines = [(span.path, one.lineno, one.end_lineno or one.lineno) for one in statements]
-    own = source.statement(node)
-    lines.insert(0, (span.path, own.lineno, own.end_lineno or own.lineno))
     return Scaled(form_values(mutation)[GAIN], tuple(dict.fromkeys(lines)))

@@ -83,12 +83,10 @@ class Structures:
         self.trials = trials
         self._sweeps: list[Sweep] = []
         self._found: dict[Operand, Form] = {}
-        self._scaled: set[Span] = (
-            set()
-        )  # expressions at which factors were tried in place of a template with state
-        self._fine: set[Operand] = (
-            set()
-        )  # operands whose values nearly earned enough, so that their grid is finer
+        # expressions at which factors were tried in place of a template with state
+        self._scaled: set[Span] = set()
+        # operands whose values nearly earned enough, so that their grid is finer
+        self._fine: set[Operand] = set()
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield confirmed candidates: first those with symptoms, then cheap templates. Raise BudgetSpentError."""
