@@ -78,8 +78,7 @@ def _is_homogeneous(node: ast.expr, around: ast.AST | None) -> bool:
     if not isinstance(around, ast.List | ast.Tuple) or len(around.elts) != HOMOGENEOUS:
         return False
     computed = any(not isinstance(one, ast.Constant | ast.UnaryOp) for one in around.elts)
-    last = isinstance(node, ast.Constant) and around.elts[-1] is node
-    return computed and last and isinstance(node, ast.Constant) and node.value == 1
+    return computed and around.elts[-1] is node and isinstance(node, ast.Constant) and node.value == 1
 
 
 def _is_whole(source: Document, node: ast.expr) -> bool:

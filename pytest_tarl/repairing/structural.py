@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 from types import MappingProxyType
 
-from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.structures import Form
@@ -22,7 +21,7 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.telling_sensors import OVERLAP, telling, varies
 from pytest_tarl.repairing.template_forms import fixed, forms
 from pytest_tarl.repairing.template_places import Spot, spots
-from pytest_tarl.searching.confirming import confirmed
+from pytest_tarl.searching.confirming import suffices
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.sensors import Sensor
@@ -201,18 +200,12 @@ class Structures:
 
     def _by_a_factor(self, candidate: Candidate) -> Iterator[Candidate]:
         """Yield the smallest factor that is confirmed in place of a candidate with state."""
-        goal = self.order.goal
         for plain in factors(self.order, candidate):
             if plain.mutations[0].operand.span in self._scaled:
                 return
-            try:
-                if self.trials.reaches(plain, goal.pairs[0].seed, goal) and confirmed(
-                    plain, self.trials, goal, 0
-                ):
-                    yield plain
-                    break
-            except RepairError:
-                continue
+            if suffices(plain, self.trials, self.order.goal):
+                yield plain
+                break
         self._scaled |= {one.operand.span for one in candidate.mutations}
 
     def effects(self) -> dict[str, list[OperandEffect]]:

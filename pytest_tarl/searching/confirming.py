@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from statistics import fmean
 
+from pytest_tarl.errors import RepairError
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 CONFIRMATIONS = 5  # number of further seeds on which a promising candidate must also earn enough
@@ -56,6 +57,17 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
         if not holds:
             trials.fell_short(candidate, goal.pairs)
     return holds
+
+
+def suffices(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
+    """Return whether a candidate reaches the goal on the first seed and is confirmed; False if it cannot be written.
+
+    Raise BudgetSpentError.
+    """
+    try:
+        return trials.reaches(candidate, goal.pairs[0].seed, goal) and confirmed(candidate, trials, goal, 0)
+    except RepairError:
+        return False
 
 
 def _earns_as_designed(candidate: Candidate, trials: Trials, goal: Goal) -> bool:

@@ -13,7 +13,7 @@ from typing import Protocol
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
-from pytest_tarl.searching.confirming import confirmed
+from pytest_tarl.searching.confirming import confirmed, suffices
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.plainness import Oddness, kind
 from pytest_tarl.searching.refining import between
@@ -91,12 +91,8 @@ def _of_the_command(
         if (unit, guard) in search.refused or unit.chart is not None or value == 0 or isinstance(value, bool):
             continue
         candidate = Candidate(unit.mutations(search.mutate, command.factor), guard)
-        try:
-            reached = bool(candidate.mutations) and trials.reaches(candidate, goal.pairs[0].seed, goal)
-            if reached and confirmed(candidate, trials, goal, 0):
-                yield candidate
-        except RepairError:
-            continue
+        if candidate.mutations and suffices(candidate, trials, goal):
+            yield candidate
 
 
 def _refined(search: Search, trials: Trials, goal: Goal) -> Iterator[Candidate]:
