@@ -57,13 +57,15 @@ def _elements(source: Document, own: ast.expr) -> Iterator[Place]:
     if not isinstance(own, ast.Subscript):
         return
     index = literal_number(own.slice)
+    if not isinstance(index, int):
+        return
     base = ast.unparse(own.value)
     for node in ast.walk(source.tree):
         if not isinstance(node, ast.Assign) or base not in map(ast.unparse, node.targets):
             continue
         made = node.value.args[:1] if isinstance(node.value, ast.Call) else []
         for table in made:
-            if isinstance(table, ast.List | ast.Tuple) and isinstance(index, int) and index < len(table.elts):
+            if isinstance(table, ast.List | ast.Tuple) and -len(table.elts) <= index < len(table.elts):
                 element = table.elts[index]
                 if _is_number(element):
                     yield _place(source, f"{base}[{index}]", element)

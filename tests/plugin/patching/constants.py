@@ -203,6 +203,7 @@ FORMS: Final[Mapping[str, Mapping[str, str]]] = {
     "dictionary kept": {"first": 'self.c = {"gain": 2.0}  # here', "use": 'self.c["gain"]'},
     "list": {"before": "C = [2.0, 1.0]  # here", "use": "C[0]"},
     "array": {"before": "C = np.array([2.0, 1.0])  # here", "use": "C[0]"},
+    "array that gets longer": {"before": "C = np.array([1.0])\nC = np.array([2.0, 1.0])  # here", "use": "C[-2]"},
     "getattr": {"first": "self.gain = 2.0  # here", "use": 'getattr(self, "gain")'},
     "property": {
         "first": "self._gain = 2.0  # here",
