@@ -47,26 +47,25 @@ class GoodRange:
         if by is None or by == 1.0 or operands(candidate) in self._seen:
             return candidate
         self._seen.add(operands(candidate))
-        ends = _Ends(candidate, trials, goal, self.mutate)
+        ends = _Ends(candidate, by, trials, goal, self.mutate)
         ends.probe()
         inside = (one for one in ends.inside() if _as_good(one, candidate, trials, goal, reference))
         return next(inside, candidate)
 
 
 class _Ends:
-    """The ends of the range around a candidate's value, as |log(factor)|.
+    """The ends of the range around a candidate's value, as |log(factor)|; `by` is the candidate's factor.
 
     `inner` and `outer` are the nearest values known to be bad on both sides; the old value is bad. `nearest` and
     `farthest` are the outermost values between them that are known to be good.
     """
 
-    def __init__(self, candidate: Candidate, trials: Trials, goal: Goal, mutate: Mutate) -> None:
+    def __init__(self, candidate: Candidate, by: float, trials: Trials, goal: Goal, mutate: Mutate) -> None:
         self.candidate = candidate
         self.trials = trials
         self.goal = goal
         self.mutate = mutate
-        self.place = abs(log(common_factor(candidate) or 1.0))
-        self.sign = copysign(1.0, log(common_factor(candidate) or 1.0))
+        self.place, self.sign = abs(log(by)), copysign(1.0, log(by))
         self.inner, self.outer = 0.0, inf
         values = list(self._known())
         for at, good in values:
@@ -101,7 +100,7 @@ class _Ends:
         if self.outer == inf:
             beyond = self.farthest + max((self.farthest - self.inner) / 2, log(FARTHER))
             if self._try(beyond):
-                # no end is known, so that of a range in which the value lies in the middle counts
+                # no end is known: assume the one with which the value lies in the middle of the range
                 self.outer = max(2.0 * self.place - self.inner, self.inner + log(OPEN))
                 self.farthest = min(self.farthest, self.outer)
         for _ in range(PROBES - 1):
