@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
-
-from pytest_tarl.ros.missing import refuse
 
 __all__ = ["normalize_angle", "normalize_angle_positive", "shortest_angular_distance", "two_pi_complement"]
 
@@ -32,8 +29,3 @@ def two_pi_complement(angle: float) -> float:
     """Return the rotation that leads to the same orientation in the opposite direction."""
     within = math.fmod(angle, _TURN) if abs(angle) > _TURN else angle
     return _TURN - abs(within) if within < 0 else abs(within) - _TURN if within > 0 else _TURN
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("angles", name)

@@ -6,7 +6,7 @@ import re
 from importlib import import_module
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse, unsupported
+from pytest_tarl.ros.missing import unsupported
 
 __all__ = ["CvBridge", "CvBridgeError", "getCvType"]
 
@@ -186,8 +186,3 @@ def _opencv(function: str) -> Any:
         raise unsupported(
             f"CvBridge.{function} without OpenCV (pip install opencv-python-headless)"
         ) from error
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("cv_bridge", name)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from pytest_tarl.ros.cv_bridge import converted, getCvType
-from pytest_tarl.ros.missing import refuse
 
 __all__ = ["CV_MAT_CNWrap", "CV_MAT_DEPTHWrap", "cvtColor2", "getCvType"]
 
@@ -23,8 +22,3 @@ def CV_MAT_CNWrap(i: int) -> int:  # noqa: N802
 def CV_MAT_DEPTHWrap(i: int) -> int:  # noqa: N802
     """Return the depth of an OpenCV type."""
     return i & 7
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("cv_bridge.boost.cv_bridge_boost", name)

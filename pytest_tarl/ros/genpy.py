@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from struct import Struct
-from typing import Any
 
 from pytest_tarl.ros.messages.ros1 import Message
 from pytest_tarl.ros.messages.times import Duration, Time, TVal
@@ -32,10 +31,3 @@ class SerializationError(MessageException):
 
 class DeserializationError(MessageException):
     """A message cannot be deserialised."""
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    from pytest_tarl.ros.missing import refuse
-
-    raise refuse("genpy", name)

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse, unsupported
+from pytest_tarl.ros.missing import unsupported
 
 __all__ = ["PinholeCameraModel", "StereoCameraModel"]
 
@@ -287,8 +287,3 @@ def _opencv(what: str) -> Any:
         return import_module("cv2")
     except ImportError:
         raise unsupported(f"{what} without OpenCV (pip install opencv-python)") from None
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("image_geometry", name)

@@ -8,14 +8,11 @@ from pytest_tarl.ros.kdl.chains import Joint, Segment, Tree
 from pytest_tarl.ros.kdl.frames import Frame
 from pytest_tarl.ros.kdl.rotations import Rotation
 from pytest_tarl.ros.kdl.vectors import Vector
-from pytest_tarl.ros.missing import refusing
 from pytest_tarl.ros.urdf_parser.urdf import Robot
 
 __all__ = ["treeFromFile", "treeFromParam", "treeFromString", "treeFromUrdfModel"]
 
 _TURNING = ("revolute", "continuous")
-
-__getattr__ = refusing("kdl_parser_py.urdf")
 
 
 def treeFromFile(filename: str) -> tuple[bool, Tree]:  # noqa: N802 (these names are kdl_parser_py's)

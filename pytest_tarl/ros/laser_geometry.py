@@ -7,8 +7,6 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any, Final
 
-from pytest_tarl.ros.missing import refuse
-
 __all__ = ["LaserProjection"]
 
 _FLOAT32, _INT32 = 7, 5  # PointField.datatype
@@ -66,8 +64,3 @@ class LaserProjection:
             for place, name in enumerate(columns)
         ]
         return create_cloud(scan_in.header, fields, points)
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("laser_geometry", name)

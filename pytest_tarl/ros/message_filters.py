@@ -203,10 +203,3 @@ def _ns(stamp: Any) -> int:
     if hasattr(stamp, "nanoseconds"):
         return int(stamp.nanoseconds)
     return int(stamp.sec) * NANOSECONDS + int(stamp.nanosec)
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    from pytest_tarl.ros.missing import refuse
-
-    raise refuse("message_filters", name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from difflib import get_close_matches
 from opcode import opmap
 from types import FrameType
@@ -15,7 +15,6 @@ from pytest_tarl.errors import (
     UnsupportedModuleError,
     UnsupportedNameError,
 )
-from pytest_tarl.ros.lacking_names import LACKING
 
 _STAND_IN: Final = (
     "give the node a small stand-in for it in your test (monkeypatch the call, or put a module of that name into "
@@ -61,6 +60,8 @@ def refuse(module: str, name: str) -> Exception:
 
 def _of_name(module: str, name: str) -> str:
     """Return the sentence about a missing name; it says whether the module of ROS has this name."""
+    from pytest_tarl.ros.lacking_names import LACKING
+
     api = f"{module}.{name}"
     if module in LACKING and not name.startswith("_"):
         if name in LACKING[module].split():
@@ -81,12 +82,3 @@ def as_read_by(frame: FrameType | None, error: Exception) -> Exception:
         return error
     imports = frame.f_lasti >= 0 and frame.f_code.co_code[frame.f_lasti] == _IMPORT_FROM
     return UnsupportedImportError(*error.args) if imports else error
-
-
-def refusing(module: str) -> Callable[[str], object]:
-    """Return a module-level `__getattr__` that raises for every name."""
-
-    def __getattr__(name: str) -> object:  # noqa: N807
-        raise refuse(module, name)
-
-    return __getattr__

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from pytest_tarl.ros.messages.workspace import package_folders, packages, workspaces
-from pytest_tarl.ros.missing import refuse
 
 __all__ = [
     "InvalidROSPkgException",
@@ -160,8 +158,3 @@ class RosPack:
         """List a package's dependencies from its manifest."""
         self.get_path(name)
         return [*packages()[name].dependencies]
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse(str(sys._getframe(1).f_globals.get("__name__", "rospkg")), name)

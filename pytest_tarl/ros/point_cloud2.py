@@ -7,8 +7,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from importlib import import_module
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse
-
 __all__ = ["create_cloud", "create_cloud_xyz32", "dtype_from_fields", "read_points", "read_points_list",
            "read_points_numpy"]  # fmt: skip
 
@@ -143,8 +141,3 @@ def create_cloud_xyz32(header: Any, points: Any) -> Any:
     field: Any = import_module("sensor_msgs.msg").PointField
     fields = [field(name=name, offset=4 * i, datatype=7, count=1) for i, name in enumerate("xyz")]
     return create_cloud(header, fields, points)
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("point_cloud2", name)

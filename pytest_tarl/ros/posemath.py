@@ -8,11 +8,8 @@ from typing import Any
 from pytest_tarl.ros.kdl.frames import Frame
 from pytest_tarl.ros.kdl.rotations import Rotation
 from pytest_tarl.ros.kdl.vectors import Vector
-from pytest_tarl.ros.missing import refusing
 
 __all__ = ["fromMatrix", "fromMsg", "fromTf", "toMatrix", "toMsg", "toTf"]
-
-__getattr__ = refusing("tf_conversions.posemath")
 
 
 def fromTf(tf: Sequence[Sequence[float]]) -> Frame:  # noqa: N802 (these names are posemath's)

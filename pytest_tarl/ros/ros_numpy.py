@@ -8,7 +8,6 @@ from typing import Any
 
 from pytest_tarl.ros.cv_bridge import CvBridge
 from pytest_tarl.ros.messages.snapshot import type_name
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.point_cloud2 import TYPES, dtype_from_fields
 from pytest_tarl.ros.transformations_rigid import quaternion_from_matrix, quaternion_matrix
 
@@ -217,4 +216,4 @@ def __getattr__(name: str) -> Any:
     """Return a submodule without an explicit import; raise for a name that the stand-in lacks."""
     if name in ("geometry", "image", "occupancy_grid", "point_cloud2"):
         return import_module(f"ros_numpy.{name}")
-    raise refuse("ros_numpy", name)
+    raise AttributeError(name)

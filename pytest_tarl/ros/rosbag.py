@@ -13,7 +13,7 @@ from pytest_tarl.ros.messages import find_class
 from pytest_tarl.ros.messages.ros1 import field_class
 from pytest_tarl.ros.messages.ros1_wire import WireError, deserialize, full_text, serialize
 from pytest_tarl.ros.messages.times import Time
-from pytest_tarl.ros.missing import refuse, unsupported
+from pytest_tarl.ros.missing import unsupported
 
 __all__ = [
     "Bag",
@@ -220,8 +220,3 @@ def _opened(path: Path, mode: str) -> Any:
             str(problem)
         ) from problem
     return bag
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("rosbag", name)

@@ -6,7 +6,6 @@ from typing import Any
 
 from pytest_tarl.ros.actionlib.client import SimpleActionClient
 from pytest_tarl.ros.messages import class_of
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.rospy.topics import Publisher
 
 __all__ = ["Sound", "SoundClient"]
@@ -131,8 +130,3 @@ class SoundClient:
 
     def _file(self, sound: str, package: str, command: int, volume: float, **kwargs: Any) -> None:
         self.sendMsg(_PLAY_FILE, command, sound, package, volume, **kwargs)
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("sound_play.libsoundplay", name)

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from copy import deepcopy
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.tf2_kdl import transform_to_kdl
 from pytest_tarl.ros.transforms import Rigid, multiply, rotate
 
@@ -133,4 +132,4 @@ def __getattr__(name: str) -> Any:
         from pytest_tarl.ros.messages import class_of
 
         return class_of(kind_of_caller(), f"geometry_msgs/{name}")
-    raise refuse("tf2_geometry_msgs", name)
+    raise AttributeError(name)

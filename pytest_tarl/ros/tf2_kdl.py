@@ -7,12 +7,9 @@ from typing import Any
 from pytest_tarl.ros.kdl.frames import Frame
 from pytest_tarl.ros.kdl.rotations import Rotation
 from pytest_tarl.ros.kdl.vectors import Twist, Vector, Wrench
-from pytest_tarl.ros.missing import refusing
 
 __all__ = ["do_transform_frame", "do_transform_twist", "do_transform_vector", "do_transform_wrench",
            "transform_to_kdl"]  # fmt: skip
-
-__getattr__ = refusing("tf2_kdl")
 
 
 def transform_to_kdl(t: Any) -> Frame:

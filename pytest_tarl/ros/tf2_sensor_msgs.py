@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.point_cloud2 import create_cloud, read_points_list
 from pytest_tarl.ros.transforms import Rigid
 
@@ -20,8 +19,3 @@ def do_transform_cloud(cloud: Any, transform: Any) -> Any:
     rigid = Rigid((move.x, move.y, move.z), (turn.x, turn.y, turn.z, turn.w))
     points = [(*rigid.apply(tuple(point[:3])), *point[3:]) for point in read_points_list(cloud)]
     return create_cloud(transform.header, cloud.fields, points)
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("tf2_sensor_msgs", name)

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from pytest_tarl.ros import posemath, transformations
-from pytest_tarl.ros.missing import refusing
 from pytest_tarl.ros.posemath import fromMatrix, fromMsg, fromTf, toMatrix, toMsg, toTf
 
 __all__ = ["fromMatrix", "fromMsg", "fromTf", "posemath", "toMatrix", "toMsg", "toTf", "transformations"]
-
-__getattr__ = refusing("tf_conversions")

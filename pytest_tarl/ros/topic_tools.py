@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.rospy.parameters import get_param
 from pytest_tarl.ros.rospy.topics import Publisher, SubscribeListener
 
@@ -62,8 +61,3 @@ class LazyTransport(SubscribeListener, metaclass=_Subscribing):
     def _post_init(self) -> None:
         if self._publishers or not get_param("~lazy", True):
             self.peer_subscribe()
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("topic_tools", name)

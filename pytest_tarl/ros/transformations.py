@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from pytest_tarl.ros import transformations_rigid
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.transformations_rigid import *  # noqa: F403
 
 _SELDOM = (
@@ -23,4 +22,4 @@ def __getattr__(name: str) -> Any:
         from pytest_tarl.ros import transformations_affine
 
         return getattr(transformations_affine, name)
-    raise refuse("tf.transformations", name)
+    raise AttributeError(name)

@@ -15,7 +15,6 @@ from pytest_tarl.ros.actionlib.goal_server import ActionServer, ServerGoalHandle
 from pytest_tarl.ros.actionlib.goal_states import CommState, TerminalState
 from pytest_tarl.ros.actionlib.protocol import ActionException, GoalID, GoalIDGenerator, GoalStatus
 from pytest_tarl.ros.actionlib.server import SimpleActionServer
-from pytest_tarl.ros.missing import refuse
 
 __all__ = [
     "ActionClient", "ActionException", "ActionServer", "ClientGoalHandle", "CommState", "GoalID", "GoalIDGenerator",
@@ -29,8 +28,3 @@ def get_name_of_constant(C: Any, n: int) -> str:  # noqa: N803 (actionlib's name
     return next(
         (name for name, value in vars(C).items() if type(value) is int and value == n), "No such constant"
     )
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("actionlib", name)

@@ -22,7 +22,6 @@ from pytest_tarl.ros.diagnostic_updater.tasks import (
     FunctionDiagnosticTask,
 )
 from pytest_tarl.ros.diagnostic_updater.updater import Updater
-from pytest_tarl.ros.missing import refuse
 
 _MESSAGES = ["DiagnosticArray", "DiagnosticStatus", "KeyValue"]
 _LEVELS = ["OK", "WARN", "ERROR"]
@@ -37,7 +36,7 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     """Return a class or a level of the caller's ROS generation; raise for a name that the stand-in lacks."""
     if name != "DiagnosticStatusWrapper" and name not in (*_MESSAGES, *_LEVELS):
-        raise refuse("diagnostic_updater", name)
+        raise AttributeError(name)
     from pytest_tarl.ros.install import kind_of_caller
     from pytest_tarl.ros.messages import class_of
 

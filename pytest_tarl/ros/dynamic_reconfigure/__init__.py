@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse
-
 __all__ = ["DynamicReconfigureException", "find_reconfigure_services", "get_parameter_names"]
 
 
@@ -33,8 +31,3 @@ def find_reconfigure_services() -> list[str]:
 def get_parameter_names(config: dict[str, Any]) -> list[str]:
     """Return the names of the parameters of a configuration."""
     return list(config.keys())
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("dynamic_reconfigure", name)

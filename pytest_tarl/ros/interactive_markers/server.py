@@ -10,7 +10,6 @@ from typing import Any
 
 from pytest_tarl.ros.messages import message_type
 from pytest_tarl.ros.messages.snapshot import snapshot
-from pytest_tarl.ros.missing import refuse
 
 MESSAGES = ["ImageMarker", "InteractiveMarker", "InteractiveMarkerControl", "InteractiveMarkerFeedback",
             "InteractiveMarkerInit", "InteractiveMarkerPose", "InteractiveMarkerUpdate", "Marker", "MarkerArray",
@@ -28,7 +27,7 @@ def __getattr__(name: str) -> Any:
         from pytest_tarl.ros.messages import class_of
 
         return class_of(kind_of_caller(), f"visualization_msgs/{name}")
-    raise refuse("interactive_markers.interactive_marker_server", name)
+    raise AttributeError(name)
 
 
 @dataclass

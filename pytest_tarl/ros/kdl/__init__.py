@@ -14,11 +14,8 @@ from pytest_tarl.ros.kdl.solvers import (
     ChainJntToJacSolver,
 )
 from pytest_tarl.ros.kdl.vectors import Twist, Vector, Wrench
-from pytest_tarl.ros.missing import refusing
 
 __all__ = ["Chain", "ChainFkSolverPos_recursive", "ChainIkSolverPos_LMA", "ChainIkSolverPos_NR",
            "ChainIkSolverPos_NR_JL", "ChainIkSolverVel_pinv", "ChainJntToJacSolver", "Equal", "Frame", "Jacobian",
            "JntArray", "Joint", "Rotation", "Segment", "SetToZero", "Tree", "Twist", "Vector", "Wrench", "addDelta",
            "diff", "dot"]  # fmt: skip
-
-__getattr__ = refusing("PyKDL")

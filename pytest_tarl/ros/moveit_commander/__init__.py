@@ -5,7 +5,6 @@ from __future__ import annotations
 import os  # imported here because nodes call moveit_commander.os._exit
 from collections.abc import Sequence
 
-from pytest_tarl.ros.missing import refusing
 from pytest_tarl.ros.moveit_commander import conversions
 from pytest_tarl.ros.moveit_commander.exception import MoveItCommanderException
 from pytest_tarl.ros.moveit_commander.move_group import MoveGroupCommander
@@ -14,8 +13,6 @@ from pytest_tarl.ros.moveit_commander.scene import PlanningSceneInterface
 
 __all__ = ["MoveGroupCommander", "MoveItCommanderException", "PlanningSceneInterface", "RobotCommander", "conversions",
            "os", "roscpp_initialize", "roscpp_shutdown"]  # fmt: skip
-
-__getattr__ = refusing("moveit_commander")
 
 
 def roscpp_initialize(args: Sequence[str]) -> None:

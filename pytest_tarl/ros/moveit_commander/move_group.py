@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from pytest_tarl.ros.messages import class_of
-from pytest_tarl.ros.missing import refusing, unsupported_name
+from pytest_tarl.ros.missing import unsupported_name
 from pytest_tarl.ros.moveit_commander.exception import MoveItCommanderException
 from pytest_tarl.ros.moveit_commander.motion import straight
 from pytest_tarl.ros.moveit_commander.targets import Targets, along
@@ -16,7 +16,6 @@ from pytest_tarl.ros.rospy.topics import Publisher
 
 __all__ = ["MoveGroupCommander"]
 
-__getattr__ = refusing("moveit_commander.move_group")
 
 SUCCESS, FAILED, NO_IK, INVALID = 1, -1, -31, -16  # moveit_msgs/MoveItErrorCodes
 _SETTINGS: Final = {

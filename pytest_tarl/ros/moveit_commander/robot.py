@@ -5,14 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from pytest_tarl.ros.messages import class_of
-from pytest_tarl.ros.missing import refusing
 from pytest_tarl.ros.moveit_commander.exception import MoveItCommanderException
 from pytest_tarl.ros.moveit_commander.motion import Motions
 from pytest_tarl.ros.moveit_commander.move_group import MoveGroupCommander
 
 __all__ = ["RobotCommander"]
-
-__getattr__ = refusing("moveit_commander.robot")
 
 
 class RobotCommander:

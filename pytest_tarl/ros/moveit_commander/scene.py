@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from pytest_tarl.ros.messages import class_of
-from pytest_tarl.ros.missing import refusing, unsupported_name
+from pytest_tarl.ros.missing import unsupported_name
 from pytest_tarl.ros.rospy.topics import Publisher
 
 __all__ = ["PlanningSceneInterface"]
 
-__getattr__ = refusing("moveit_commander.planning_scene_interface")
 
 _BOX, _SPHERE, _CYLINDER, _CONE = 1, 2, 3, 4  # shape_msgs/SolidPrimitive
 _ADD: Final = 0  # moveit_msgs/CollisionObject, with 1 for REMOVE

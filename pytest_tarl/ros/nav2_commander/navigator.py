@@ -9,13 +9,11 @@ from enum import Enum
 from typing import Any
 
 from pytest_tarl.ros.messages import message_type
-from pytest_tarl.ros.missing import refusing
 from pytest_tarl.ros.nav2_commander.requests import MapRequests, PathRequests
 from pytest_tarl.ros.rclpy.time import Duration
 
 __all__ = ["BasicNavigator", "TaskResult"]
 
-__getattr__ = refusing("nav2_simple_commander.robot_navigator")
 
 _SUCCEEDED, _CANCELED, _ABORTED = 4, 5, 6  # action_msgs/GoalStatus
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.rclpy import (
     callback_groups,
     context,
@@ -111,8 +110,3 @@ def spin_until_future_complete(
         executor.spin_until_future_complete(future, timeout_sec)
     finally:
         executor.remove_node(node)
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("rclpy", name)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.ros.messages import find_class
-from pytest_tarl.ros.missing import refuse, unsupported
+from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.rclpy.parameter import Parameter
 from pytest_tarl.ros.rclpy.services import Client
 from pytest_tarl.ros.rclpy.task import Future
@@ -109,8 +109,3 @@ def _client(node: Node, kind: str, name: str, group: Any) -> Client:
 
 def _message(parameter: Any) -> Any:
     return parameter.to_parameter_msg() if isinstance(parameter, Parameter) else parameter
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("rclpy.parameter_client", name)

@@ -8,7 +8,6 @@ from enum import Enum, IntEnum
 from typing import Any
 
 from pytest_tarl.ros.messages import find_class
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.rclpy.descriptors import new_descriptor
 from pytest_tarl.ros.rclpy.qos import (
     DurabilityPolicy,
@@ -33,7 +32,7 @@ def __getattr__(name: str) -> Any:
     """Return the class of a callback's result; raise for a name that the stand-in lacks."""
     if name == "QosCallbackResult":
         return find_class("ros2", "rcl_interfaces", "SetParametersResult")
-    raise refuse("rclpy.qos_overriding_options", name)
+    raise AttributeError(name)
 
 
 class QoSPolicyKind(IntEnum):

@@ -16,11 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from pytest_tarl.ros.missing import refusing, unsupported_module
+from pytest_tarl.ros.missing import unsupported_module
 
 __all__ = ["get_message_slot_types", "message_to_csv", "message_to_ordereddict", "message_to_yaml"]
 
-__getattr__ = refusing("rosidl_runtime_py.convert")
 
 _SEQUENCE = re.compile(r"sequence<(?P<element>.+?)(, *(?P<bound>\d+))?>$")
 _ARRAY = re.compile(r"(?P<element>.+)\[(?P<size>\d+)\]$")

@@ -11,11 +11,9 @@ import numpy as np
 
 from pytest_tarl.ros.messages import class_of
 from pytest_tarl.ros.messages.snapshot import type_name
-from pytest_tarl.ros.missing import refusing
 
 __all__ = ["set_message_fields"]
 
-__getattr__ = refusing("rosidl_runtime_py.set_message")
 
 Stamp = Callable[[Any], None]  # called with a time, which it writes into a field
 _MESSAGES = re.compile(r"(sequence<)?(?P<element>\w+/(msg/)?\w+)(, *\d+)?(>|\[\d+\])$")

@@ -6,7 +6,6 @@ from typing import Any
 
 from pytest_tarl.ros.messages import find_class
 from pytest_tarl.ros.messages.known import Part
-from pytest_tarl.ros.missing import refusing
 
 __all__ = [
     "get_action",
@@ -18,7 +17,6 @@ __all__ = [
     "is_service",
 ]
 
-__getattr__ = refusing("rosidl_runtime_py.utilities")
 
 _PARTS: tuple[Part, ...] = ("msg", "srv", "action")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from pytest_tarl.ros.messages.ros1 import Message
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.rospy import exceptions, timing
 from pytest_tarl.ros.rospy import timing as rostime
 from pytest_tarl.ros.rospy.exceptions import (
@@ -100,7 +99,7 @@ def __getattr__(name: str) -> Any:
         from pytest_tarl.ros.messages import message_type
 
         return message_type("std_msgs/Header")
-    raise refuse("rospy", name)
+    raise AttributeError(name)
 
 
 __all__ = [

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.rospy.log import logdebug, logerr, loginfo, logwarn
 from pytest_tarl.ros.rospy.node import is_shutdown, on_shutdown, this_node
 
@@ -50,4 +49,4 @@ def __getattr__(name: str) -> Any:
     rospy = vars(import_module("pytest_tarl.ros.rospy"))
     if name in rospy and not name.startswith("__"):
         return rospy[name]
-    raise refuse("rospy.core", name)
+    raise AttributeError(name)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.smach.callbacks import CBState, cb_interface, has_smach_interface
 from pytest_tarl.ros.smach.concurrence import Concurrence
 from pytest_tarl.ros.smach.container import Container
@@ -35,8 +32,3 @@ __all__ = [
     "cb_interface", "has_smach_interface", "is_shutdown", "logdebug", "logerr", "loginfo", "logwarn", "set_loggers",
     "set_shutdown_check",
 ]  # fmt: skip
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("smach", name)

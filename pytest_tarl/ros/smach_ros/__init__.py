@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.smach_ros.actions import SimpleActionState
 from pytest_tarl.ros.smach_ros.introspection import IntrospectionServer
 from pytest_tarl.ros.smach_ros.monitoring import ConditionState, MonitorState, set_preempt_handler
@@ -15,8 +12,3 @@ __all__ = [
     "ActionServerWrapper", "ConditionState", "IntrospectionServer", "MonitorState", "ServiceState", "SimpleActionState",
     "set_preempt_handler",
 ]  # fmt: skip
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("smach_ros", name)

@@ -9,7 +9,6 @@ from typing import Any
 
 from pytest_tarl.ros import transformations
 from pytest_tarl.ros.messages import message_type
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.tf2_geometry_msgs import (
     do_transform_point,
     do_transform_pose_stamped,
@@ -230,8 +229,3 @@ class TransformBroadcaster:
     def sendTransformMessage(self, transform: Any) -> None:
         """Publish geometry_msgs/TransformStamped."""
         self._broadcaster.sendTransform(transform)
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("tf", name)

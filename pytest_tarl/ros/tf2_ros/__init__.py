@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.tf2_ros.broadcasting import (
     StaticTransformBroadcaster,
     TransformBroadcaster,
@@ -36,4 +35,4 @@ def __getattr__(name: str) -> Any:
         from pytest_tarl.ros.messages import class_of
 
         return class_of(kind_of_caller(), f"{package}/{name}")
-    raise refuse("tf2_ros", name)
+    raise AttributeError(name)

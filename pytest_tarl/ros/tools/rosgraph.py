@@ -142,8 +142,3 @@ def get_master_uri() -> str:
 def myargv(argv: Sequence[str] | None = None) -> list[str]:
     """Return the command line without ROS arguments."""
     return node.myargv(argv)
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("rosgraph", name)

@@ -7,9 +7,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
 
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros_names import is_legal_ros1
 
 __all__ = [
@@ -119,8 +117,3 @@ def anonymous_name(id: str) -> str:  # noqa: A002 (rosgraph's name)
 
     process = current_process("rosgraph.names.anonymous_name")
     return f"{id}_{len(process.ros.processes)}_{process.scheduler.time}"
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("rosgraph.names", name)

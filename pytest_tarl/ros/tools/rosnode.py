@@ -4,9 +4,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.names import absolute
 from pytest_tarl.ros.tools import graph
 
@@ -40,8 +37,3 @@ def kill_nodes(node_names: list[str]) -> tuple[list[str], list[str]]:
     for name in killed:
         there[absolute(name)].ask_to_end()
     return killed, [name for name in node_names if name not in killed]
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("rosnode", name)

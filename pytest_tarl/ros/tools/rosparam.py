@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.ros.literals import parse_value
-from pytest_tarl.ros.missing import refuse, unsupported
+from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.names import absolute, expand
 from pytest_tarl.ros.rospy.node import this_node
 from pytest_tarl.ros.tools import graph
@@ -94,8 +94,3 @@ def delete_param(param: str, verbose: bool = False) -> None:
 def list_params(ns: str) -> list[str]:
     """List the parameters of a namespace."""
     return sorted(name for name in graph.parameters().names() if graph.below(name, graph.resolved(ns)))
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("rosparam", name)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.rospy.services import ServiceProxy
 from pytest_tarl.ros.tools import graph
 
@@ -55,8 +54,3 @@ def call_service(service_name: str, service_args: Any, service_class: Any = None
     given = isinstance(service_args, dict)
     request = made._request_class(**service_args) if given else made._request_class(*service_args)
     return request, ServiceProxy(service_name, made).call(request)
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("rosservice", name)

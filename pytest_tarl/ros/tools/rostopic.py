@@ -8,7 +8,6 @@ from typing import Any
 from pytest_tarl.message_fields import field_value
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.messages import find_class
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.process import current_process
 from pytest_tarl.ros.tools import graph
 from pytest_tarl.ros.tools.topic_rates import ROSTopicHz
@@ -61,8 +60,3 @@ def _known(topic: str) -> tuple[str | None, str | None, Evaluate]:
         return None, None, None
     field = wanted[len(longest) + 1 :].replace("/", ".")
     return types[longest], longest, lambda message: field_value(message, field)
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("rostopic", name)

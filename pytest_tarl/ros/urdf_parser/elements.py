@@ -8,10 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from pytest_tarl.ros.missing import refusing
-
-__getattr__ = refusing("urdf_parser_py.xml_reflection.core")
-
 
 class ParseError(Exception):
     """Raised if an element lacks an attribute or has a malformed one."""

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
 
-from pytest_tarl.ros.missing import refusing
 from pytest_tarl.ros.urdf_parser.elements import (
     Box,
     Collision,
@@ -54,8 +53,6 @@ __all__ = [
     "Texture",
     "Visual",
 ]
-
-__getattr__ = refusing("urdf_parser_py.urdf")
 
 
 @dataclass

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.rclpy.lifecycle.entities import (
     LifecyclePublisher,
     ManagedEntity,
@@ -20,8 +17,3 @@ __all__ = [
     "LifecycleNode", "LifecycleNodeMixin", "LifecyclePublisher", "LifecycleState", "ManagedEntity", "Node", "NodeMixin",
     "Publisher", "SimpleManagedEntity", "State", "TransitionCallbackReturn",
 ]  # fmt: skip
-
-
-def __getattr__(name: str) -> Any:
-    """Raise an error for a name that the stand-in lacks."""
-    raise refuse("rclpy.lifecycle", name)
