@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from pytest_tarl.ros.missing import refuse
+from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.transforms import multiply, slerp
 
 __all__ = [
@@ -118,7 +118,7 @@ def quaternion_slerp(
     Raise an error that names the missing feature if extra turns or the longer arc are wanted.
     """
     if spin or not shortestpath:
-        raise refuse("tf.transformations", "quaternion_slerp(spin=…, shortestpath=False)")
+        raise unsupported("tf.transformations.quaternion_slerp(spin=…, shortestpath=False)")
     start, end = (unit_vector(quaternion) for quaternion in (quat0, quat1))
     return _array(slerp(tuple(start.tolist()), tuple(end.tolist()), fraction))
 
