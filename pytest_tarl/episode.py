@@ -344,7 +344,7 @@ class Tarl:
         return self._ended().silence()
 
     def problem(self) -> TarlError | None:
-        """Return why the episode is unusable (no reward, silent sensor, silent node), or None if it is usable."""
+        """Return why the episode is unusable, such as a test without rewards, or None if it is usable."""
         return self._ended().problem()
 
     def _ended(self) -> EndedEpisode:

@@ -143,9 +143,8 @@ def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
         return path
     root = workspace_root(folder.resolve())
     if root is None and has_packages(folder):
-        root = (
-            folder.resolve()
-        )  # the packages are beside the test, as in examples/workspace outside a repository
+        # the packages are beside the test, as in examples/workspace outside a repository
+        root = folder.resolve()
         prefer(root)
     elif root is None:
         raise SettingsError(f"{where}: {file}: no such file in {folder}, which is not in a ROS workspace.")
