@@ -140,7 +140,7 @@ class Simulator:
             self._call(reset)
         except SimulatorError as problem:
             self._current = False
-            why = problem.why if isinstance(problem, SimulatorLostError) else str(problem)
+            why = problem.why if isinstance(problem, SimulatorLostError) else str(problem).removesuffix(".")
             self._ros.note(f"The simulator could not be reset, so a new one was started: {why}.")
             return False
         self._forget()
