@@ -1,17 +1,18 @@
 """TARL202: a command follows a sensor without limit.
 
-A command for actuators (a velocity, a throttle, an angle) is computed from a number in a received message, and
-nothing bounds the number on the way. A bound is a function such as `min`, `max` or `clip`, a function with a bounded
-result (`sin`, `atan2`), or a comparison that replaces values that are too large. Sensors sometimes send infinity,
-jumps or invalid values, and the command follows them. Clamp the value at the reported line, where it is computed.
+A command for actuators, such as a velocity, a throttle or an angle, is computed from a number in a received message,
+and nothing bounds the number on the way. A bound is a function such as `min`, `max` or `clip`, a function with a
+bounded result (`sin`, `atan2`), or a comparison that replaces values that are too large. Sensors sometimes send
+infinity, jumps or invalid values, and the command follows them. Clamp the value at the reported line, where it is
+computed.
 
-A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound it.
+A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound the value.
 
-The type of a message decides whether it counts as sensor data (`LaserScan`, `Odometry`, `Imu` …); for a plain number,
-the topic decides (`/range`, `/cte`). Values of other messages, such as commands, goals and parameters, are
-not reported, because a person or a planner may have chosen them. Two kinds of values are not reported either:
-values that pass through code outside the analysed files, and speeds that may be measurements, such as a
-Float64 on `/speed` computed from ticks, from `twist`, or from a distance and a time.
+The rule treats messages such as `LaserScan`, `Odometry` and `Imu` as sensor data. A plain number is sensor data if the
+name of its topic says so (`/range`, `/cte`). The rule does not report values of other messages, such as commands, goals
+and parameters, because a person or a planner may have chosen them. It does not report values that pass through code
+outside the analysed files. It does not report speeds that may be measurements, such as a Float64 on `/speed` that is
+computed from ticks, from `twist`, or from a distance and a time.
 """
 
 from __future__ import annotations

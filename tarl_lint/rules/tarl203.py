@@ -1,10 +1,11 @@
 """TARL203: a subscription has no effect.
 
-The callback ignores its messages: it does not store, publish, pass on, log or return anything, or nothing ever reads
-what it stores. The subscription wastes bandwidth and time. Often the author forgot a line.
-The rule does not report callbacks that ignore the message but do something when it arrives. The rule also
-does not report callbacks that intentionally do nothing: `lambda msg: None`, or a parameter whose name starts
-with an underscore.
+The callback ignores its messages: it does not store, publish, pass on, log or return anything, or no code ever reads
+what the callback stores. The subscription wastes bandwidth and time. Often the author forgot a line.
+
+The rule does not report a callback that ignores the content of the message but does something when it arrives. Nor does
+the rule report callbacks that intentionally do nothing: `lambda msg: None`, or a parameter whose name starts with an
+underscore.
 """
 
 from __future__ import annotations

@@ -1,31 +1,46 @@
 """TARL301: a subscription has no publisher, and a publisher with a similar name has no subscriber.
 
-The two ends were probably meant to be connected. The types of both ends are equal, and the names differ only by a
-namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error and does not move. For
-this reason, the keyboard teleoperation of the Kobuki had no effect (https://github.com/aliasrobotics/RVD/issues/581).
-Robots also stand still if they are launched in a namespace but their code publishes on `/cmd_vel`
+The two ends were probably meant to be connected. Their message types are equal, and their names differ only by a
+namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error but does not move. In
+this way, the keyboard teleoperation of the Kobuki lost its effect (https://github.com/aliasrobotics/RVD/issues/581). A
+robot also stands still if it is launched in a namespace but its code publishes on `/cmd_vel`
 (https://github.com/UoY-RoboStar/AURO/issues/5).
 
-Names are similar as well if a slash stands for an underscore (`/water/current` and `/water_current`), if words are
-abbreviated (`/cmd` and `/command`) or in another order (`/scan_filtered` and `/filtered_scan`), or if they have the
-same meaning (`/gripper/state` and `/gripper/status`). Two private names of the same node are similar, such as
-`/speech/finished` and `/speech/finish`. If the launch file names the node `lift` of the code `elevator`, its topic
-`~floor` is `/elevator/floor`, and `/lift/floor` has no publisher. Names that differ in a word of one or two letters,
-such as `wheel_fl` and `wheel_fr`, are not similar, nor are names with fewer than five letters, unless two letters are
-exchanged (`/sacn`).
+Two names are also similar in these cases:
 
-A node that was not read, that computes the names of its topics, or that a missing launch file may start, might be the
-other end. Then the rule reports only misspelt names, not different namespaces and abbreviations, and only if no such
-node mentions one of the names in its remappings, parameters, arguments or strings. Such a node counts only if it may
-use the type: a laser driver publishes no `Twist`, the types of well-known packages are known, and C++ programs of the
-workspace use only types that their files name. The driver of a sensor, which is known by its package or by a word such
-as `lidar` or `gps` in its name, counts only if it may also use one of the names: if it mentions the name, if the name
-is private to it, or if the last part has only words of such drivers, as `/rear/scan` and `/points_raw` do, but
-`/obstacles` does not.
+- A slash stands for an underscore (`/water/current` and `/water_current`).
+- A word is abbreviated (`/cmd` and `/command`).
+- The words are in another order (`/scan_filtered` and `/filtered_scan`).
+- The words have the same meaning (`/gripper/state` and `/gripper/status`).
+- Both names are private to the same node (`~finished` and `~finish`).
+
+A launch file may also rename a node. The code calls the node `elevator` and its topic `~floor`, the launch file calls
+the node `lift`: then the topic is `/lift/floor`, and a subscription to `/elevator/floor` has no publisher.
+
+Two names are not similar if they differ in a word of one or two letters (`wheel_fl` and `wheel_fr`). Names with fewer
+than five letters are similar only if two letters are exchanged (`/sacn` and `/scan`).
+
+Some nodes of a launch file are unknown: the source of a node may be missing, a node may compute the names of its
+topics, or a launch file that is missing may start further nodes. An unknown node might be the other end. In this case,
+the rule is stricter:
+
+- The rule reports misspelt names, but not different namespaces or abbreviations.
+- The rule reports nothing if an unknown node mentions one of the two names in its remappings, parameters, arguments or
+  strings.
+
+An unknown node is disregarded if it cannot use the message type. A laser driver, for example, publishes no `Twist`.
+tarl-lint knows the types of well-known packages, and a C++ program of the workspace uses only the types that its files
+name.
+
+A sensor driver is recognised by its package, or by a word such as `lidar` or `gps` in its name. An unknown sensor
+driver is disregarded unless it may also use one of the two names. It may use a name that it mentions, a name that is
+private to it, and a name such as `/rear/scan` or `/points_raw`, whose last part is typical of sensor drivers.
+`/obstacles` is not such a name.
 
 The rule reports nothing if no publisher has a similar name, because sensors, simulators and teleoperation are often
-started elsewhere: of 23 such topics in launch files of which every part is known, one was a mistake. The report of
-`--launch` lists these topics under "No publisher here", and JSON under `one_sided`; they do not fail the run.
+started elsewhere. Of 23 topics without a similar publisher, in launch files that are known completely, only one was a
+mistake. The report of `--launch` lists such topics under "No publisher here", and the JSON report under `one_sided`.
+They do not fail the run.
 """
 
 from __future__ import annotations

@@ -1,15 +1,14 @@
 """TARL302: publisher and subscription of a topic, or client and server of a service, have different types.
 
-ROS refuses the connection, and no message arrives. rospy logs a warning; rclpy usually logs nothing. For
-example, some nodes use `Twist` and others `TwistStamped`
-(https://github.com/ros-teleop/teleop_twist_keyboard/issues/39). Two packages may also have types of the same
-name, such as `std_msgs/String` and `my_msgs/String`.
+ROS refuses the connection, and no message arrives. rospy logs a warning; rclpy usually logs nothing. For example, some
+nodes use `Twist` and others `TwistStamped` (https://github.com/ros-teleop/teleop_twist_keyboard/issues/39). Types of
+two packages may also share a name, such as `std_msgs/String` and `my_msgs/String`.
 
-Clients and servers of a service or an action are compared in the same way: a call of another type fails, and ROS 2
-never finds the server.
+The rule compares clients and servers of a service or an action in the same way. If their types differ, a call fails in
+ROS 1, and the client waits forever in ROS 2.
 
-The rule reports only types that the code names by constants. Packages are compared only if both are known. If a class
-comes from another module of the program, its package is not known.
+The rule considers only types that the code names directly. It compares the packages of two types only if both packages
+are known. If the program imports a message class from one of its own modules, the package is unknown.
 """
 
 from __future__ import annotations

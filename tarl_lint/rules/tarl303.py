@@ -6,10 +6,10 @@ with a `VOLATILE` publisher. No message arrives. If the code gives a number inst
 subscription with the number 10 therefore receives nothing from a laser scanner
 (https://github.com/ros2/ros2_documentation/issues/569).
 
-The rule reports a connection only if both profiles are constant in the code. They may come from another module, from a
-function, or from the row of a table that also names the topic. In C++ programs of the workspace, the profile must be
-stated in the call that names the topic, or be a variable. Profiles that a launch file may override
-(`qos_overriding_options`) are not compared.
+The rule reports a connection only if the code determines both profiles as constants. A profile may come from another
+module, from a function, or from a table that lists topics with their profiles. In C++ programs of the workspace, the
+call that names the topic must contain the profile or a variable with the profile. The rule ignores profiles that a
+launch file may override (`qos_overriding_options`).
 """
 
 from __future__ import annotations

@@ -1,19 +1,20 @@
 """TARL304: a service that is called has no server, and a server with a similar name is never called.
 
-The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason: a
-service `~home` of the node `arm` is `/arm/home`, not `/home`. In one namespace, `open` and `open_door` are similar as
-well. If the launch file gives a node another name than its code, the names of its private services change, too.
+The client waits forever, or its calls fail. The reason is often a namespace or a private name: the service `~home` of
+the node `arm` is `/arm/home`, not `/home`. If the launch file renames a node, its private services get other names,
+too.
 
-Actions are compared in the same way as services. In the root namespace, `dock` and `dock_robot` are similar only if
-the type is not one that many nodes offer, such as `Trigger`.
+Names are similar under the conditions of TARL301. Two names in the same namespace, such as `/arm/open` and
+`/arm/open_door`, are similar as well. In the root namespace, `dock` and `dock_robot` are similar only if few nodes
+offer a service of this type, so not with `Trigger`. Actions are compared in the same way as services.
 
-Beside nodes that were not read, and with missing launch files, the rule reports only misspelt names that no such node
-mentions, as TARL301 does. As there, the driver of a sensor counts only if it may use the type and one of the names: a
-laser driver may offer a `Trigger` named `start_motor`, but none named `release`.
+If some nodes are unknown or a launch file is missing, the rule reports only misspelt names that no unknown node
+mentions. An unknown sensor driver is disregarded unless it may offer the type under one of the two names: a laser
+driver may offer a `Trigger` named `start_motor`, but none named `release`.
 
-The rule reports nothing if no server has a similar name, because the server may be started elsewhere: with drivers and
-controllers, it usually is. The report of `--launch` lists these services under "No server here", actions under "No
-action server here", and JSON lists both under `one_sided`; they do not fail the run.
+The rule reports nothing if no server has a similar name, because the server may be started elsewhere; servers of
+drivers and controllers usually are. The report of `--launch` lists such services under "No server here" and such
+actions under "No action server here". The JSON report lists both under `one_sided`. They do not fail the run.
 """
 
 from __future__ import annotations

@@ -1,15 +1,16 @@
 """TARL305: two nodes publish commands on the same topic.
 
-The last message wins, so the robot jerks as it follows both nodes in turn. Give each node a topic of its own, and let
-a multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: the game controller and the autonomous
+The last message wins, so the robot jerks as it follows both nodes in turn. Give each node a topic of its own, and let a
+multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: the game controller and the autonomous
 control published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
 
 The rule covers commands such as `Twist` and `JointTrajectory`, and numbers on topics such as `wheel/command` or
-`left_thrust`, if the commands of each node depend on a subscribed topic, or if a timer or loop publishes them without
-any input, as a patrol by the clock does. Well-known programs without source, such as `teleop_twist_joy`, `move_base`
-and `twist_mux`, count beside a node whose code is read. The rule does not cover nodes that only stop the robot or
-publish once, and nodes that are started under a condition known only on the robot, because one of them may replace the
-other.
+`left_thrust`. Each of the two nodes must compute its commands from a subscribed topic, or publish them in a timer or
+loop, as a patrol by the clock does. Of programs without source, the rule knows common ones such as `teleop_twist_joy`,
+`move_base` and `twist_mux`; at least one of the two nodes must have source.
+
+The rule does not cover nodes that only stop the robot, nor nodes that publish once. It does not cover nodes that are
+started under a condition known only on the robot, because one of them may replace the other.
 """
 
 from __future__ import annotations

@@ -4,22 +4,28 @@ The value has no effect, and the node uses its default. Often the parameter was 
 warning. For example, one filter used two unsuitable defaults, because the names in its parameter file did not match
 those of the node (https://github.com/manankharwar/fusioncore/issues/134).
 
-In a parameter file of ROS 2, a section `gate:` is for the node `/gate` and not for `/robot/gate`, so a node that is
-started in a namespace gets none of the values. The rule reports this if the section has the node's name
-without a namespace, and no other section of the file gives the node these parameters. The same holds for a section with
-the name in the code, if the launch file renames the node. A section without `ros__parameters` is reported as well.
+In a parameter file of ROS 2, the section `gate:` is for the node `/gate`, not for `/robot/gate`. A node that is started
+in a namespace therefore gets no value of this section. The rule reports the section unless another section of the file
+gives the node the same parameters. A section without `ros__parameters` is reported as well. If the launch file renames
+a node, a section with the name that the node has in its code is also reported.
 
-A parameter of a node is reported only if the node's program and all its imports could be read, and the program states
-the names of all parameters that it reads: as literals, in tables and lists, as arguments of its functions, as fields
-of its classes, or in the workspace's `.cfg` files of dynamic_reconfigure. A name that the program composes counts if
-all parts are known at each call, as in `get_param("~%s/%s" % (group, key))` in a helper or `f"tray{n}.tare"` in a loop
-over `range(4)`. If some parts are not known, any name that its words and digits can form counts as a name of the node.
-If a group sets a parameter for all its nodes, the rule reports the parameter only if none of the nodes has it.
+The rule reports a parameter only if it could read the program of the node with all its imports, and only if the program
+states the names of all its parameters. The names may be literals, entries of tables and lists, arguments of functions,
+fields of classes, or parameters of dynamic_reconfigure in the workspace's `.cfg` files. A program may also compose a
+name from parts that are known at each call, as in `get_param("~%s/%s" % (group, key))` in a helper or `f"tray{n}.tare"`
+in a loop over `range(4)`. If some parts of a composed name are unknown, the rule accepts every name that the words and
+digits of the program can form. If a group sets a parameter for all its nodes, the rule reports the parameter only if
+none of the nodes has it.
 
-In ROS 1, parameters that are set outside a node but below its name are its private ones. They are reported if
-the node has another parameter of the same file, or one with a similar name. A private parameter is also reported if the
-program reads this name only in its namespace (`get_param("gain")` for `~gain`), and a parameter in the namespace if the
-only programs that have the name read it as their own, and every program of the launch file was read.
+In ROS 1, a launch file may set private parameters of a node by their full names, outside the node. The rule reports
+such a parameter if the same file sets another parameter that the node has, or if the node has a parameter with a
+similar name.
+
+In ROS 1, the rule also reports a parameter that is set in the wrong namespace:
+
+- The launch file sets the private parameter `~gain`, but the program reads only `get_param("gain")`.
+- The launch file sets `gain` in the namespace, but only `get_param("~gain")` reads a parameter of this name. Every
+  program of the launch file must have been read.
 """
 
 from __future__ import annotations

@@ -1,16 +1,16 @@
 """TARL308: a remapping matches no name that the node uses.
 
-The remapping has no effect, so the two ends that it was meant to connect stay separate. In the Kobuki, the multiplexer
-published on `cmd_vel_mux/output` and the launch file remapped `cmd_vel_mux/mux_cmd_vel`, a name that no node used. The
+The remapping has no effect, so the two ends that it should connect stay separate. In the Kobuki, the multiplexer
+published on `cmd_vel_mux/output`, but the launch file remapped `cmd_vel_mux/mux_cmd_vel`, a name that no node used. The
 robot ignored all velocity commands (https://github.com/aliasrobotics/RVD/issues/582).
 
-A remapping from `/cmd_vel` also matches nothing if the node uses `cmd_vel` in a namespace: its topic is then
-`/robot/cmd_vel`.
+A remapping from `/cmd_vel` also matches nothing if the node uses `cmd_vel` in the namespace `/robot`, where the topic
+is `/robot/cmd_vel`.
 
-A remapping is reported only if every node that it applies to could be read with all its imports, uses only constant
-topic names, and contains no other string that is the remapped name or the end of it. A private name (`~path`) and a
-longer one (`front/path`) are no uses of `path`. A remapping of a group is reported only if it matches nothing in any of
-the group's nodes.
+The rule reports a remapping only if it could read all nodes to which the remapping applies, with all their imports. The
+names of their topics must be constant. No other string of the nodes may equal the remapped name or end with it. The
+private name `~path` and the longer name `front/path` do not use the name `path`. If a group has a remapping, the rule
+reports it only if it matches nothing in any node of the group.
 """
 
 from __future__ import annotations

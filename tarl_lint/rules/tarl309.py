@@ -1,17 +1,22 @@
 """TARL309: code uses a field that the message type does not have.
 
 The callback raises AttributeError at its first message. rospy logs the error and continues, so the rest of the robot
-runs without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
+runs without the data. An `Accel`, for example, has `linear` and `angular`, but no `accel`.
 
-The rule covers messages, services and actions that packages of the workspace define, and messages of `std_msgs`,
-`geometry_msgs`, `nav_msgs`, `sensor_msgs` and a few other packages whose fields tarl-lint knows. Fields that only the
-other release of ROS has are absent: a program with rclpy has no `header.seq`, no `stamp.secs` and no `K` in a
-`CameraInfo`.
+The rule covers messages, services and actions that packages of the workspace define. It also covers messages of
+`std_msgs`, `geometry_msgs`, `nav_msgs`, `sensor_msgs` and a few other packages. Some fields exist in only one of ROS 1
+and ROS 2: a program with rclpy has no `header.seq`, no `stamp.secs` and no `K` in a `CameraInfo`.
 
-The rule examines the arguments of new messages, and all that certainly holds a message: what a callback, a server or a
-synchronizer receives, what annotations say, responses of services, variables and attributes of `self` to which only
-messages of one type are assigned, and elements of lists of messages. The rule reports nothing if the code tests the
-class of a variable, looks the field up by its name (`hasattr`), or handles AttributeError.
+The rule checks the arguments with which the code creates messages, and every expression that is certainly a message:
+
+- the arguments of callbacks, servers and synchronizers,
+- variables with annotations,
+- responses of services,
+- variables and attributes of `self` to which the code assigns only messages of one type,
+- elements of lists of messages.
+
+The rule reports nothing if the code tests the class of a variable, checks for the field by its name (`hasattr`), or
+handles AttributeError.
 """
 
 from __future__ import annotations

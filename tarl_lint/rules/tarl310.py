@@ -1,15 +1,14 @@
 """TARL310: two nodes of a launch file have the same name.
 
-ROS 1 refuses the launch file as a whole: *roslaunch file contains multiple nodes named …*. In ROS 2 both
-nodes start, and their parameters and services have the same names, so a request reaches one of the two nodes
-by chance. The launch files of a perception stack could not be started with one combination of arguments,
-because two nodes were named `to_pose_array`
-(https://github.com/strands-project/strands_perception_people/issues/212).
+ROS 1 refuses the launch file as a whole: *roslaunch file contains multiple nodes named …*. In ROS 2, both nodes start,
+and their parameters and services have the same names. A request then reaches one of the two nodes by chance. For
+example, the launch files of a perception stack could not be started with one combination of arguments, because two
+nodes were named `to_pose_array` (https://github.com/strands-project/strands_perception_people/issues/212).
 
-Names are compared in full, including the namespace. Two nodes named `$(anon view)` in one file also get the same
-name. The rule does not cover nodes that have no name in the launch file and whose program was not read, or nodes that
-an event starts. Nodes that are started under a condition known only on the robot are not covered either, because one
-of them may replace the other.
+The rule compares full names, including the namespace. Two nodes named `$(anon view)` in one file also get the same
+name. The rule does not cover nodes that an event starts, nor nodes without source that have no name in the launch file.
+It does not cover nodes that are started under a condition known only on the robot, because one of them may replace the
+other.
 """
 
 from __future__ import annotations
