@@ -147,7 +147,7 @@ def test_a_page_without_lists_gives_the_reason_and_the_next_step(listless):
 def test_a_page_without_a_region_says_so_and_has_no_slices(placeless):
     text = Page(render(placeless)).text
     assert "No single situation stands out." in text
-    assert "There are no slices: no region was found." in text
+    assert "There are no slices, because no region was found." in text
 
 
 def test_without_a_difference_no_line_is_blamed(unchanged):
