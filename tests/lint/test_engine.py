@@ -162,7 +162,7 @@ def test_settings_apply_to_functions_in_the_analysed_files():
     assert kinds(node, tools, sanitizers=("tools.checked",)) == []
 
 
-def test_settings_name_a_method_by_the_class_that_defines_it():
+def test_in_settings_a_method_is_named_by_the_class_that_defines_it():
     text = """
         from tools import Bus
         class Radio(Bus):
@@ -197,7 +197,7 @@ def test_wrappers_act_like_their_model_with_any_argument_positions():
     assert (flow.sink.topics, flow.sink.type) == (("b",), "Float64")
 
 
-def test_a_wrapper_can_be_like_a_node_method():
+def test_a_wrapper_can_be_declared_to_act_like_a_node_method():
     text = """
         import bus
         out = bus.talk(Float64, "b", 10)

@@ -50,7 +50,7 @@ def test_a_store_through_a_pointer_to_one_object_is_a_strong_update(ctx):
     assert heap.read_field(ctx, obj, "x").deps == OTHER
 
 
-def test_a_store_through_a_pointer_to_one_of_two_is_a_weak_update(ctx):
+def test_a_store_through_a_pointer_to_one_of_two_objects_is_a_weak_update(ctx):
     one, two = instance(ctx, "a"), instance(ctx, "b")
     updates.write_field(ctx, pointer(one), "x", Value(DATA))
     updates.write_field(ctx, Value(pts=frozenset([one, two])), "x", Value(OTHER))
@@ -58,7 +58,7 @@ def test_a_store_through_a_pointer_to_one_of_two_is_a_weak_update(ctx):
     assert heap.read_field(ctx, two, "x").deps == OTHER
 
 
-def test_an_object_that_stands_for_many_is_never_updated_strongly(ctx):
+def test_an_object_that_represents_several_objects_is_never_updated_strongly(ctx):
     obj = instance(ctx, "a")
     obj.many = True
     for deps in (DATA, OTHER):
@@ -85,7 +85,7 @@ def test_closing_a_layer_discards_its_stores(ctx):
     assert heap.read_field(ctx, obj, "x").deps == DATA | OTHER
 
 
-def test_the_newest_object_of_a_site_is_separate_from_older_ones(ctx, frame):
+def test_the_newest_object_of_an_allocation_site_is_separate_from_the_older_objects(ctx, frame):
     newest = recency.allocate(ctx, "lib", frame, "site")
     ctx.store.put((newest, "x"), Value(DATA))
     holder = instance(ctx, "holder")

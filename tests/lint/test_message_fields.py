@@ -64,7 +64,7 @@ def test_the_types_of_elements_are_those_in_the_definitions() -> None:
     assert elements() == ELEMENTS
 
 
-def test_the_fields_that_only_one_release_has_are_absent_in_the_other_one() -> None:
+def test_fields_that_exist_in_only_one_release_of_ros_are_absent_in_the_other() -> None:
     for release, store in (("1", Stores.ROS1_NOETIC), ("2", Stores.ROS2_JAZZY)):
         expected = {
             name: set(fields) for name, fields in defined([store]).items() if name in BY_RELEASE[release]

@@ -165,7 +165,7 @@ def test_an_empty_function_is_a_callback_only_if_it_is_passed_as_an_argument(tex
     assert skipped("import rospy\n" + text) is not run
 
 
-def test_a_disabled_hazard_rule_is_no_reason_to_analyse_a_module():
+def test_a_module_is_not_analysed_for_a_disabled_hazard_rule():
     idle = LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data")
     assert skipped(idle, ignore=("TARL203",))
 

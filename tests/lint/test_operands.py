@@ -123,7 +123,7 @@ def test_a_parameter_with_different_arguments_has_no_value(tmp_path):
     assert [(span.line, span.column) for span in operand.definitions] == [(7, 10), (8, 10)]
 
 
-def test_a_value_that_a_loaded_number_limits_is_not_an_operand_but_the_number_is(tmp_path):
+def test_a_number_that_limits_a_value_is_an_operand_but_the_limited_value_is_not(tmp_path):
     analysis = analysed(
         tmp_path,
         node="""
@@ -186,7 +186,7 @@ def test_a_value_that_messages_change_is_not_an_operand(tmp_path):
     assert not {code for code, _ in found} & {"turn", "value", "self.error"}
 
 
-def test_conditions_have_operands_as_other_statements_do(tmp_path):
+def test_conditions_have_operands_like_other_statements(tmp_path):
     analysis = analysed(
         tmp_path,
         node="""
@@ -232,7 +232,7 @@ WAITING = """
         ("rospy.Rate(RATE)", "self.timer.sleep()", [("RATE", 10)]),
     ],
 )
-def test_waits_and_rates_outside_of_flows_have_operands(tmp_path, timer, waits, operands):
+def test_waiting_times_and_rates_outside_of_flows_are_operands(tmp_path, timer, waits, operands):
     analysis = analysed(tmp_path, node=WAITING.replace("{timer}", timer).replace("{waits}", waits))
     found = [o for step in analysis.timing for o in analysis.operands(step.site)]
     assert [(o.code, o.value) for o in found] == operands

@@ -51,7 +51,7 @@ def test_programs_that_share_only_a_helper_are_analysed_separately():
     ],
     ids=["subscribes in the helper", "no program", "loads by name", "helper loads by name"],
 )
-def test_programs_that_may_exchange_data_are_analysed_together(change):
+def test_programs_that_can_exchange_data_are_analysed_together(change):
     assert grouped({"one": NODE, "two": NODE, "helper": HELPER} | change) == [{"helper", "one", "two"}]
 
 

@@ -38,7 +38,7 @@ def cheapest(formers: list[list[int]], statements: Mapping[int, int], start: int
 
 
 @given(graphs())
-def test_the_reported_path_is_a_shortest_one(graph: tuple[list[list[int]], dict[int, int]]) -> None:
+def test_the_reported_path_is_a_shortest_path(graph: tuple[list[list[int]], dict[int, int]]) -> None:
     formers, statements = graph
     path = ShortestPaths([0], formers.__getitem__, statements.get).path_from({1})
     least = cheapest(formers, statements, 1, 0)

@@ -27,7 +27,7 @@ def test_the_text_from_stdin_replaces_the_text_of_the_named_file(example, in_dir
     assert out.startswith("src/node.py:18:9 TARL101 ")
 
 
-def test_text_on_stdin_needs_no_existing_file_and_no_name(example, in_directory, lint):
+def test_text_on_stdin_needs_neither_a_name_nor_an_existing_file(example, in_directory, lint):
     in_directory({})
     assert lint(example.text, "-", "--format", "concise")[1].startswith("stdin.py:18:9 TARL101 ")
     assert lint(example.text, "-", "--stdin-filename", "new/a.py", "--format", "concise")[1].startswith(

@@ -144,7 +144,7 @@ def test_flows_pass_through_packages_that_are_not_named(tmp_path: Path) -> None:
     assert {one.span.path for one in named(tmp_path, "node.py").sites} == {"node.py"}
 
 
-def test_a_file_that_a_flow_reaches_only_through_another_one_is_named_with_it(tmp_path: Path) -> None:
+def test_a_file_that_a_flow_reaches_only_through_another_file_is_named_with_that_file(tmp_path: Path) -> None:
     files = {
         "node.py": NODE.replace(
             "from robot import scaled", "from middle import Middle\nscaled = Middle().scaled"

@@ -65,7 +65,7 @@ def test_a_failed_mission_is_distinguished_from_a_broken_test(error: BaseExcepti
         assert bool(failure) == bool(expected[1])
 
 
-def test_a_node_that_raises_an_exception_counts_as_crashed_and_one_that_never_waits_as_stuck() -> None:
+def test_a_node_that_raises_an_exception_has_crashed_and_a_node_that_never_waits_is_stuck() -> None:
     run = ran(FAILED, error=NodeError("Node '/a' raised KeyError."))
     assert (run.passed, run.crashed, run.stuck, run.broken) == (False, True, False, "")
     run = ran(FAILED, error=StuckNodeError("Node '/a' never waits."))

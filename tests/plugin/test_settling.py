@@ -74,7 +74,7 @@ def test_a_confidence_allows_more_episodes() -> None:
     assert Settling(designated(confidence=0.95), MOST + 1).most == MOST + 1
 
 
-def test_with_a_confidence_a_recording_ends_once_the_rate_is_shown_and_the_requested_episodes_have_run() -> (
+def test_with_a_confidence_a_recording_ends_when_the_rate_is_shown_and_all_requested_episodes_have_run() -> (
     None
 ):
     sure = designated(min_success=0.5, confidence=0.95)

@@ -29,7 +29,7 @@ def ends(flows: tuple[Flow, ...]) -> set[tuple[str, tuple[str, ...], str]]:
     return {(flow.kind, flow.source.topics, ", ".join(flow.sink.topics)) for flow in flows}
 
 
-def test_uses_of_a_helper_class_have_kinds_and_types_of_their_own(tmp_path):
+def test_each_use_of_a_helper_class_has_its_own_kind_and_message_type(tmp_path):
     node = HELPER + (
         "rospy.init_node('node')\n"
         "pub, log = rospy.Publisher('out', Float64), rospy.Publisher('log', Float64)\n"
@@ -101,7 +101,7 @@ def test_a_base_class_subscribes_for_its_subclasses(tmp_path):
     }
 
 
-def test_a_name_that_is_found_late_does_not_make_a_second_source(tmp_path):
+def test_a_topic_name_that_is_found_late_adds_no_second_source(tmp_path):
     node = (
         "import rospy\nfrom std_msgs.msg import Float64\n"
         "class Node:\n"
@@ -117,7 +117,7 @@ def test_a_name_that_is_found_late_does_not_make_a_second_source(tmp_path):
     assert [flow.source.topics for flow in analysed(tmp_path, node=node).flows] == [("early", "late")]
 
 
-def test_a_use_without_a_known_topic_is_reported_where_it_tells_more(tmp_path):
+def test_a_helper_call_with_an_unknown_topic_is_reported_only_where_it_adds_information(tmp_path):
     node = HELPER + (
         "rospy.init_node('node')\n"
         "pub, log = rospy.Publisher('out', Float64), rospy.Publisher('log', Float64)\n"
@@ -132,7 +132,7 @@ def test_a_use_without_a_known_topic_is_reported_where_it_tells_more(tmp_path):
     }
 
 
-def test_very_many_names_at_one_line_end_in_one_source(tmp_path):
+def test_a_line_that_subscribes_to_very_many_topics_has_one_source(tmp_path):
     names = [f"t{number}" for number in range(MAX_APART + 10)]
     node = (
         "import rospy\nfrom std_msgs.msg import Float64\n"
@@ -145,7 +145,7 @@ def test_very_many_names_at_one_line_end_in_one_source(tmp_path):
     assert len(heard) <= MAX_APART + 1
 
 
-def test_a_helper_whose_uses_are_all_read_has_no_unused_subscription(tmp_path):
+def test_a_helper_has_no_unused_subscription_if_all_its_calls_were_read(tmp_path):
     text = HELPER + "rospy.init_node('node')\nInput('level', Float64)\nprint(Input('stop', Bool).value)\n"
     (tmp_path / "node.py").write_text(text, encoding="utf-8")
     chosen = Config(root=tmp_path, select=("TARL203",))
@@ -181,7 +181,7 @@ main()
 
 
 @pytest.mark.parametrize("body", TABLES.values(), ids=TABLES)
-def test_subscriptions_in_a_loop_over_a_table_are_told_apart(body: str) -> None:
+def test_subscriptions_in_a_loop_over_a_table_are_distinguished(body: str) -> None:
     head = "import rospy\nfrom std_msgs.msg import Float64\n"
     head += "".join(
         f'{name} = rospy.Publisher("{name}", Float64, queue_size=1)\n' for name in ("out", "other")
@@ -249,7 +249,9 @@ def test_a_publisher_that_is_chosen_by_data_depends_on_the_choice() -> None:
     }
 
 
-def test_a_helper_that_is_also_used_with_an_unknown_topic_has_a_sink_for_what_only_that_use_sends() -> None:
+def test_a_helper_called_with_a_known_and_an_unknown_topic_has_a_separate_sink_for_the_data_of_the_unknown_topic() -> (
+    None
+):
     text = OUTPUT + (
         "known, chosen = Output('known'), Output(rospy.get_param('~name'))\n"
         "rospy.Subscriber('a', Float64, lambda msg: (known.send(msg.data), chosen.send(msg.data)))\n"
@@ -258,7 +260,7 @@ def test_a_helper_that_is_also_used_with_an_unknown_topic_has_a_sink_for_what_on
     assert pairs(text) == [(("a",), ("known",)), (("b",), ())]
 
 
-def test_very_many_publishers_at_one_call_end_in_one_sink() -> None:
+def test_a_publish_call_with_very_many_publishers_has_one_sink() -> None:
     names = [f"t{number}" for number in range(MAX_APART + 10)]
     uses = "".join(
         f"rospy.Subscriber('a', Float64, lambda msg: Output('{n}').send(msg.data))\n" for n in names

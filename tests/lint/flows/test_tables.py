@@ -531,11 +531,11 @@ METHODS = """
 
 
 @pytest.mark.parametrize("wiring", MIXING.values(), ids=MIXING)
-def test_rows_that_share_a_callback_share_its_flows(wiring):
+def test_table_rows_with_the_same_callback_have_the_same_flows(wiring):
     assert ends(node(wiring).replace("\n    def rows(self)", METHODS)) == EVERYTHING
 
 
-def test_state_that_rows_share_connects_them():
+def test_state_that_table_rows_share_connects_their_flows():
     wiring = """
         self.last = Float64()
         for topic, out in {"a": self.x, "b": self.y}.items():
@@ -545,7 +545,7 @@ def test_state_that_rows_share_connects_them():
     assert ends(node(wiring).replace("\n    def rows(self)", f"{relay}\n    def rows(self)")) == EVERYTHING
 
 
-def test_what_a_row_stores_reaches_later_rows_and_the_code_behind_the_loop():
+def test_data_that_one_table_row_stores_reaches_later_rows_and_the_code_after_the_loop():
     wiring = """
         callbacks = {"a": self.on_a}
         if len(self.names) > 1:
@@ -580,7 +580,7 @@ def test_a_loop_that_publishes_for_each_entry_connects_entries_by_its_own_state(
     assert ends(node(wiring).replace("\n    def rows(self)", methods)) == EVERYTHING
 
 
-def test_a_row_that_may_be_missing_is_also_followed():
+def test_flows_of_a_table_row_that_may_be_missing_are_also_found():
     wiring = """
         table = {"a": self.on_a}
         if len(self.names) > 2:
@@ -631,7 +631,7 @@ def test_each_row_of_a_long_table_has_flows_of_its_own():
     assert sorted(flow.source.topics for flow in found) == sorted((topic,) for topic in topics)
 
 
-def test_nested_tables_are_told_apart_up_to_a_limit():
+def test_nested_tables_are_distinguished_up_to_a_limit():
     wiring = """
         for side in ("l", "r"):
             for part in range({}):

@@ -91,16 +91,16 @@ for item in iter([1.0, 2.0]):
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="except* is new in Python 3.11")
 @pytest.mark.parametrize("body", sections(BODIES).values(), ids=sections(BODIES))
-def test_exception_groups(body: str) -> None:
+def test_data_passes_through_exception_groups(body: str) -> None:
     assert differing(in_callback(body)) == {}
 
 
 @pytest.mark.parametrize("body", sections(SENTINELS).values(), ids=sections(SENTINELS))
-def test_iteration_until_a_sentinel(body: str) -> None:
+def test_data_passes_through_an_iteration_until_a_sentinel(body: str) -> None:
     assert differing(in_callback(body, "import queue")) == {}
 
 
-def test_a_handler_of_parts_may_catch_a_group() -> None:
+def test_a_handler_for_parts_of_an_exception_group_may_catch_the_whole_group() -> None:
     where = (1, 0, 1, 1)
     handled = handled_by(ir.Starred(ir.Name("ValueError", "global", 0, where), where))
     assert handled == {PARTS, "ValueError"}

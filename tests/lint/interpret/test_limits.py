@@ -59,7 +59,7 @@ def test_a_call_beyond_the_limit_on_call_contexts_returns_the_data_of_its_argume
     assert list(machine(in_callback(body, CHAIN)).cut) == ["node.py"]
 
 
-def test_an_analysis_with_too_many_edges_is_cut_short(monkeypatch):
+def test_an_analysis_with_too_many_edges_ends_early(monkeypatch):
     text = in_callback("out.publish(msg.data)")
     edges = machine(text).graph.edges
     monkeypatch.setattr(fixpoint, "MAX_EDGES", edges + 1)
@@ -83,7 +83,7 @@ def test_entry_points_run_until_they_add_nothing_new_or_the_round_limit_is_reach
     assert not reached()
 
 
-def test_a_crash_on_one_file_is_stored_on_request_and_otherwise_raised(monkeypatch):
+def test_a_crash_on_one_file_is_stored_if_requested_and_raised_otherwise(monkeypatch):
     def crash(*_: object) -> bool:
         raise KeyError("x")
 

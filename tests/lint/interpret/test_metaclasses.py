@@ -119,5 +119,5 @@ def test_a_metaclass_registers_classes(meta: str) -> None:
 
 
 @pytest.mark.parametrize("program", sections(OTHERS).values(), ids=sections(OTHERS))
-def test_other_metaclasses(program: str) -> None:
+def test_flows_through_other_metaclasses_are_found(program: str) -> None:
     assert differing_topics(HEAD + program) == {}

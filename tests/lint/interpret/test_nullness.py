@@ -58,7 +58,7 @@ def node(body: str, head: str = "") -> str:
         ("value = table.get(last.name)", "value", "control"),
     ],
 )
-def test_a_comparison_with_none_depends_on_data_only_if_data_decided_whether_the_value_is_none(
+def test_a_comparison_with_none_depends_on_data_only_if_the_data_decided_whether_the_value_is_none(
     before, value, flows
 ):
     assert differing(node(f"{before}\n{GATED.format(value=value, flows=flows)}".strip())) == {}

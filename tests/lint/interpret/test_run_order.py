@@ -99,7 +99,7 @@ def test_very_deep_and_wide_trees_are_cut():
     assert len({one.part for one in dependences(wide, lambda _: frozenset(["good"]))}) == 0
 
 
-def test_outcomes_of_a_part_are_known_if_all_answers_are():
+def test_the_outcomes_of_a_subtree_are_known_if_all_answers_in_it_are_known():
     part = Part(1, 2)
     assert part.outcomes() == frozenset()
     part.answers[3] = frozenset(["good"])

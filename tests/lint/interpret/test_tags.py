@@ -163,6 +163,6 @@ if kind == "stop":
 
 
 @pytest.mark.parametrize("title", sections(BODIES))
-def test_a_branch_has_the_data_of_its_kind(title: str) -> None:
+def test_in_a_branch_on_the_kind_of_an_object_only_data_of_this_kind_is_found(title: str) -> None:
     body = sections(BODIES)[title].replace("\n", "\n    ")
     assert not differing_topics(f"{HEAD}def step(event):\n    {body}\nrospy.Timer(1.0, step)\nrospy.spin()\n")

@@ -90,7 +90,7 @@ def _run(tree: ast.Module, use: Callable[..., None]) -> list[Any]:
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_the_parts_of_a_manager_do_what_the_generator_does(seed):
+def test_the_two_parts_of_a_context_manager_do_the_same_as_its_generator(seed):
     lines = ["local = 2", *_body(random.Random(seed))]
     text = HEADER + "\n".join(_indented(lines))
     before = _run(ast.parse(text), _with)
@@ -118,7 +118,7 @@ def test_a_generator_that_cannot_be_divided_stays_as_it_is(body):
     assert divided(function) is function.body
 
 
-def test_other_generators_stay_as_they_are():
+def test_generators_that_are_not_context_managers_stay_unchanged():
     (function,) = ast.parse("@pytest.fixture\ndef manager(given):\n    yield given").body
     assert isinstance(function, ast.FunctionDef)
     assert divided(function) is function.body

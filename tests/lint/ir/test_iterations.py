@@ -33,7 +33,7 @@ BODIES = {
 
 
 @pytest.mark.parametrize(("body", "onward", "always", "last"), BODIES.values(), ids=BODIES)
-def test_branches_inside_an_iteration(
+def test_branches_inside_an_iteration_are_numbered(
     body: str, onward: list[int], always: list[int], last: list[int]
 ) -> None:
     text = "for x in xs:\n" + indent(body, "    ") + "\nafter()"

@@ -53,7 +53,7 @@ def test_sequences_in_the_class_become_marked_members(ctx, channel):
     assert not enumerations.is_member(private)
 
 
-def test_a_member_is_a_key_of_its_own(ctx, channel):
+def test_each_member_of_an_enumeration_is_a_separate_mapping_key(ctx, channel):
     cls, _ = channel
     member = ctx.store.get((cls, "SCAN"))
     assert member.item_keys() == frozenset([ClassKey(next(iter(member.pts)).key)])
@@ -73,7 +73,7 @@ def test_a_member_has_its_value_its_name_and_the_attributes_of_its_class(ctx, ch
     assert enumerations.attribute(ctx, member, "absent") == Value()
 
 
-def test_other_objects_are_no_members(ctx, channel):
+def test_other_objects_are_not_members_of_an_enumeration(ctx, channel):
     other = recency.intern(ctx, "sequence", "plain")
     assert enumerations.attribute(ctx, pointer(other), "value") is None
     assert not enumerations.is_member(recency.intern(ctx, "mapping", "x", "member of an enumeration"))
@@ -111,7 +111,7 @@ def test_a_constant_names_the_member_that_has_it_as_its_value(ctx, channel):
     assert enumerations.with_value(ctx, cls, ONE) is None
 
 
-def test_the_members_by_name_are_a_mapping(ctx, channel):
+def test_the_members_of_an_enumeration_are_also_a_mapping_from_their_names(ctx, channel):
     cls, _ = channel
     (table,) = enumerations.by_name(ctx, pointer(cls)).pts
     assert ctx.store.get((table, item_field("LEVEL"))) == ctx.store.get((cls, "LEVEL"))

@@ -190,14 +190,14 @@ def test_programs_with_chains_of_objects_have_the_marked_flows(title):
 
 
 @pytest.mark.parametrize(("record", "body"), [(r, body) for r, bodies in RECORDS.items() for body in bodies])
-def test_a_record_that_a_modified_copy_of_itself_replaces_takes_little_work(record, body):
+def test_a_record_that_is_replaced_by_a_modified_copy_takes_little_work(record, body):
     text = f"{HEAD}{CLASSES[record]}    def moved(self, d):\n        {body}\n{OTHERS}{MOVING}"
     assert differing(text) == {}
     assert work(text).total < MOST_WORK
 
 
 @pytest.mark.parametrize("title", sections(CLOSURES))
-def test_a_closure_that_a_call_of_itself_replaces_takes_little_work(title):
+def test_a_closure_that_replaces_itself_when_called_takes_little_work(title):
     text = HEAD + sections(CLOSURES)[title] + STEPPING
     assert differing(text) == {}
     assert work(text).total < MOST_WORK
@@ -220,7 +220,7 @@ def test_the_last_object_of_a_long_chain_represents_all_further_ones(ctx, frame)
     assert [obj.many for obj in chain] == [False, False, True]
 
 
-def test_entry_points_run_again_if_an_object_that_they_read_now_stands_for_several_objects(ctx):
+def test_entry_points_run_again_if_an_object_that_they_read_now_represents_several_objects(ctx):
     obj = recency.intern(ctx, "instance", "a")
     assert recency.single(ctx, obj)
     recency.one_of_many(ctx, obj)
@@ -228,7 +228,7 @@ def test_entry_points_run_again_if_an_object_that_they_read_now_stands_for_sever
     assert ctx.store.root in ctx.pending
 
 
-def test_calls_of_a_closure_share_contexts_if_it_was_made_while_one_of_the_same_function_ran(ctx, frame):
+def test_calls_of_a_closure_share_contexts_if_it_was_created_while_the_same_function_was_running(ctx, frame):
     functions = {name: dataclasses.replace(frame.function) for name in "ab"}
     for number, name in enumerate("aba"):
         caller = frame

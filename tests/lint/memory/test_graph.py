@@ -127,7 +127,7 @@ def test_a_carrier_counts_the_distinct_items_that_it_passed_on(graph, node):
     assert not graph.as_passed({carrier: 0})
 
 
-def test_content_depends_on_every_carrier_that_contained_it(graph, node):
+def test_content_depends_on_every_carrier_in_which_it_was_stored(graph, node):
     item, other, first, second = (node(key) for key in ("item", "other", "first", "second"))
     graph.hold(first, frozenset([item]))
     (arrived,) = graph.through(frozenset([item]), frozenset([first]))
@@ -140,7 +140,7 @@ def test_content_depends_on_every_carrier_that_contained_it(graph, node):
     assert graph.through(frozenset([item]), frozenset()) == {item}
 
 
-def test_cached_and_uncached_queries_of_content_give_the_same_result(graph, node, monkeypatch):
+def test_cached_and_uncached_queries_of_the_content_give_the_same_result(graph, node, monkeypatch):
     item, other, carrier = (node(key) for key in ("item", "other", "carrier"))
     graph.hold(carrier, frozenset([item]))
     carry = carrier
@@ -196,7 +196,7 @@ def test_a_cycle_of_carry_nodes_depends_on_its_origin(graph, node):
     assert item in graph.data[one] | graph.data[two]
 
 
-def test_a_copy_of_a_node_can_replace_one_decision_by_other_conditions(graph, node):
+def test_in_a_copy_of_a_node_one_branch_decision_can_be_replaced_by_other_conditions(graph, node):
     kept, decided = (7, True), (3, False)
     read = node("read", kept, decided)
     copy = graph.under(read, 3, frozenset([(5, True)]))

@@ -299,9 +299,7 @@ def test_iteration_over_the_attributes_of_an_object_yields_their_names(ctx):
 @pytest.mark.parametrize(
     ("external", "field"), [((), "x"), (("builtins.dict",), "['x']"), (("Unknown",), "x")]
 )
-def test_an_item_of_the_attribute_dictionary_is_an_attribute_unless_the_object_is_a_dictionary(
-    ctx, external, field
-):
+def test_the_items_of_dunder_dict_are_attributes_unless_the_object_is_a_dict(ctx, external, field):
     obj = an_instance(ctx, a_class(ctx, "A", external=external))
     assert heap.attribute_of_item(obj, "x") == field
     assert heap.attribute_of_item(obj, 0) == item_field(0) == "[0]"
@@ -391,7 +389,7 @@ def test_joining_a_single_continuation_leaves_it_unchanged(ctx):
     assert ctx.store.get((obj, "x")) is ONE
 
 
-def test_a_field_set_on_one_path_may_have_its_default_on_the_other_but_a_variable_has_only_the_set_value(
+def test_a_field_that_is_set_on_one_path_only_may_have_its_default_but_a_variable_has_only_the_set_value(
     ctx, frame
 ):
     obj = an_instance(ctx, cls := a_class(ctx, "A"))
@@ -408,7 +406,7 @@ def test_an_object_created_on_one_path_has_no_value_on_the_other_path(ctx):
     assert joins.joined(ctx, [ctx.store.pop(), {}])[obj, "[0]"] is ONE
 
 
-def test_paths_without_a_store_together_contribute_the_former_value_once(ctx):
+def test_all_paths_without_a_store_contribute_the_former_value_only_once(ctx):
     obj = made(ctx, "sequence", "a")
     ctx.store.put((obj, "x"), ONE)
     assert joins.joined(ctx, [{(obj, "x"): TWO}, {}, {}])[obj, "x"] == BOTH
@@ -633,7 +631,7 @@ def test_a_parameter_whose_default_is_not_text_has_no_placeholder_in_names(known
     assert symbolic_names.text_of_parameter(known, name, default) is None
 
 
-def test_the_default_of_a_parameter_is_a_name_that_the_robot_may_replace():
+def test_the_default_of_a_parameter_is_a_name_that_a_launch_file_may_replace():
     texts = symbolic_names.text_of_parameter(None, "~scan", const("scan"))
     assert texts == symbolic_names.with_default(const("scan"))
     value = Value(consts=texts)
@@ -644,7 +642,7 @@ def test_the_default_of_a_parameter_is_a_name_that_the_robot_may_replace():
     assert symbolic_names.with_default(pointer(Obj("lib", 1))) is None
 
 
-def test_the_newest_object_of_an_allocation_site_becomes_an_older_one_when_the_next_is_created(ctx, frame):
+def test_the_newest_object_of_an_allocation_site_becomes_an_older_object_when_another_is_created(ctx, frame):
     holder = made(ctx, "instance", "holder")
     box = recency.intern(ctx, "instance", "box")
     recency.renew(ctx, box, frame)
@@ -662,7 +660,7 @@ def test_the_newest_object_of_an_allocation_site_becomes_an_older_one_when_the_n
     assert ctx.store.get((box, "x")) is None
 
 
-def test_an_object_with_callbacks_stands_for_all_objects_of_its_allocation_site(ctx, frame):
+def test_an_object_with_callbacks_represents_all_objects_of_its_allocation_site(ctx, frame):
     box = recency.intern(ctx, "instance", "box")
     ctx.given.add(box)
     recency.renew(ctx, box, frame)
@@ -674,7 +672,7 @@ def test_an_object_with_callbacks_stands_for_all_objects_of_its_allocation_site(
     assert ctx.store.get((box, "x")) == Value(consts=frozenset([1, 2]))
 
 
-def test_entry_points_that_relied_on_a_single_object_run_again_when_it_stands_for_several(ctx, frame):
+def test_entry_points_that_relied_on_a_single_object_run_again_when_it_represents_several_objects(ctx, frame):
     first, other = Root("first", "callback"), Root("other", "callback")
     box, lib = recency.intern(ctx, "instance", "box"), made(ctx, "lib", "lib")
     ctx.store.root = first

@@ -24,14 +24,14 @@ def program(ctx):
     return ctx, base, view, made
 
 
-def test_a_library_method_that_queries_gets_the_instances_of_the_class_and_its_subclasses(program):
+def test_a_library_method_that_queries_instances_gets_those_of_the_class_and_its_subclasses(program):
     ctx, base, view, made = program
     assert instances(looked_up(ctx, "query_one", [pointer(view)])) == {made["view"]}
     assert instances(looked_up(ctx, "get_component", [pointer(base)])) == {made["base"], made["view"]}
 
 
 @pytest.mark.parametrize("name", ["push_screen", "gets", "query2"])
-def test_methods_that_are_no_queries_return_no_instances(program, name):
+def test_methods_that_are_not_queries_return_no_instances(program, name):
     ctx, _, view, _ = program
     assert looked_up(ctx, name, [pointer(view)]) == BOTTOM
     assert ctx.looked_up == set()

@@ -23,7 +23,7 @@ def a_list(ctx, *elements: Value) -> Value:
     return pointer(obj)
 
 
-def test_an_object_is_appended_after_the_known_ones(ctx):
+def test_an_object_is_appended_after_the_known_elements(ctx):
     first, second, third = (an_object(ctx, key) for key in "abc")
     listed = a_list(ctx, first)
     assert object_lists.place(ctx, listed, [second, third]) == 1
@@ -44,21 +44,21 @@ def test_an_object_is_appended_after_the_known_ones(ctx):
     ],
     ids=["nothing", "a number", "data", "an object of a library", "one of two objects"],
 )
-def test_other_values_have_no_known_place(ctx, news):
+def test_values_of_other_types_have_no_known_index(ctx, news):
     assert object_lists.place(ctx, a_list(ctx, an_object(ctx, "a")), news(ctx)) is None
 
 
-def test_objects_with_data_have_no_known_place(ctx):
+def test_objects_that_contain_data_have_no_known_index(ctx):
     laden = an_object(ctx, "x")
     next(iter(laden.pts)).laden = True
     assert object_lists.place(ctx, a_list(ctx), [laden]) is None
 
 
-def test_other_elements_in_the_list_make_the_place_unknown(ctx):
+def test_other_elements_in_the_list_make_the_index_unknown(ctx):
     assert object_lists.place(ctx, a_list(ctx, const("text")), [an_object(ctx, "a")]) is None
 
 
-def test_empty_lists_are_left_out_beside_others(ctx):
+def test_empty_lists_are_ignored_if_there_are_other_lists(ctx):
     full = a_list(ctx, an_object(ctx, "a"))
     empty = pointer(Obj("sequence", "empty"))
     both = Value(pts=full.pts | empty.pts)
@@ -68,7 +68,7 @@ def test_empty_lists_are_left_out_beside_others(ctx):
     assert object_lists.without_empty(ctx, mixed) is mixed
 
 
-def test_elements_that_are_objects_numbers_or_tuples_of_them_can_be_asked(ctx):
+def test_elements_can_be_queried_if_they_are_objects_numbers_or_tuples_of_these(ctx):
     part = an_object(ctx, "a")
     pair = a_list(ctx, const(0), part)
     assert object_lists.asked(ctx, [part, const(1), pair])

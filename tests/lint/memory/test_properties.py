@@ -28,7 +28,7 @@ def test_the_parts_of_a_property_are_its_getter_and_setter(ctx, frame):
     assert properties.part(ctx, getter, "__set__") == pointer(owner)
 
 
-def test_a_method_has_no_part_that_is_called_to_read_it(ctx, frame):
+def test_a_method_has_no_getter(ctx, frame):
     method, _ = function(ctx, frame)
     assert not properties.is_property(method.info[0])
     assert properties.part(ctx, method, "__get__") is None

@@ -85,7 +85,9 @@ def test_the_default_of_getattr_counts_unless_the_function_has_the_attribute(ctx
         ("/near", "part/level", "/near/part/level"),
     ],
 )
-def test_keys_are_below_the_namespace_of_a_client(namespace: str, key: str, name: str) -> None:
+def test_blackboard_keys_are_prefixed_with_the_namespace_of_their_client(
+    namespace: str, key: str, name: str
+) -> None:
     assert Naming(namespace).absolute(key) == name
 
 

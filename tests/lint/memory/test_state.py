@@ -63,7 +63,7 @@ def test_an_absent_field_reads_as_unset(store, obj):
     assert not store.stored((obj, "y"))
 
 
-def test_the_stores_since_a_depth_are_those_in_the_layers_above_that_depth(store, obj):
+def test_the_stores_since_a_given_depth_are_those_in_the_layers_above_it(store, obj):
     first, second, third = ((obj, name) for name in "abc")
     store.put(first, ONE)
     store.push()
@@ -209,7 +209,7 @@ def test_a_recorded_query_keeps_its_first_answer():
     assert reads.facts[counting, "x"] == 3
 
 
-def test_the_first_wait_records_the_keys_stored_before_it_and_later_waits_keep_that_record(obj):
+def test_the_first_wait_records_the_keys_stored_so_far_and_later_waits_keep_this_record(obj):
     reads = Reads(written={(obj, "x")})
     reads.wait(3, {(obj, "y")})
     reads.written.add((obj, "z"))
@@ -236,7 +236,7 @@ def test_values_that_an_entry_point_reads_at_several_waits_are_joined_per_key(ob
     assert reads.admitted == {(obj, "x"): BOTH}
 
 
-def test_reads_of_a_nested_call_exclude_keys_that_its_caller_stored_before_the_call(obj):
+def test_reads_of_a_nested_call_omit_the_keys_that_the_caller_has_already_stored(obj):
     mine, other = (obj, "mine"), (obj, "other")
     outer = Reads(written={mine})
     inner = Reads(keys={mine, other}, stored={mine, other}, unreached={4}, whole=False)
@@ -321,7 +321,7 @@ def test_recorded_reads_are_outdated_when_a_new_object_has_fields_or_holders(sto
     assert not same(store, Reads(objects={obj: NEW}))
 
 
-def test_recorded_reads_are_outdated_when_an_object_begins_to_stand_for_several_objects(store, obj):
+def test_recorded_reads_are_outdated_when_an_object_begins_to_represent_several_objects(store, obj):
     outer, inner = Reads(), Reads(single={obj})
     outer.add(inner)
     assert same(store, outer)
@@ -458,7 +458,7 @@ def test_reads_after_a_wait_depend_on_the_stores_of_other_entry_points(store, ob
     assert store.heard() == {key: TWO}
 
 
-def test_a_store_of_another_entry_point_reruns_no_entry_point_if_it_adds_nothing_new(store, obj):
+def test_a_store_that_adds_nothing_new_reruns_no_entry_point(store, obj):
     store.put((obj, "x"), BOTH)
     store.shared.leave(store.shared.ends, Root("other", "callback"), (obj, "x"), TWO)
     store.waited = True

@@ -180,7 +180,7 @@ def test_an_object_records_its_changes_in_order():
     assert obj.stamp == 4
 
 
-def test_a_released_object_refers_to_no_other():
+def test_a_released_object_has_no_references_to_other_objects():
     obj, other = Obj("lib", "a"), Obj("lib", "b")
     part = obj.sub("x")
     part.info, obj.info = other, other

@@ -98,5 +98,5 @@ CASES = dict(part.split("\n", 1) for part in PROGRAMS.split("### ")[1:])
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_classes_are_keys(title):
+def test_classes_can_be_keys_of_a_table(title):
     assert differing(HEAD + CASES[title]) == {}

@@ -138,10 +138,10 @@ for topic in rospy.get_param("~topics", []):
 
 
 @pytest.mark.parametrize("program", sections(PROGRAMS).values(), ids=sections(PROGRAMS))
-def test_entries_of_defaults(program: str) -> None:
+def test_entries_of_default_dictionaries_are_found(program: str) -> None:
     assert differing_topics(HEAD + program) == {}
 
 
-def test_topics_of_a_default_are_shown_as_defaults() -> None:
+def test_topic_names_from_a_default_value_are_shown_as_defaults() -> None:
     (first, second) = flows(HEAD + sections(PROGRAMS)["a list of rows"])
     assert {first.source.default_topics, second.source.default_topics} == {("a",), ("b",)}

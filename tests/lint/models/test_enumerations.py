@@ -117,7 +117,9 @@ CALLBACKS = ("functools.partial(self.on, channel)", "lambda msg, channel=channel
 
 @pytest.mark.parametrize("callback", CALLBACKS)
 @pytest.mark.parametrize("style", STYLES)
-def test_members_with_tuples_name_topics_and_are_keys_of_their_own(style: str, callback: str) -> None:
+def test_enumeration_members_with_tuple_values_name_topics_and_are_separate_keys(
+    style: str, callback: str
+) -> None:
     text = FLEET.format(body=STYLES[style].strip() or "pass", callback=callback)
     if style == "a property of a base class":
         text = text.replace("\nclass Channel(enum.Enum):", BASE)
@@ -317,5 +319,5 @@ rospy.Subscriber(f"{Topic.ODOM}", Float64, lambda msg: out.publish(msg.data))  #
 
 
 @pytest.mark.parametrize("program", sections(CONSTANTS).values(), ids=sections(CONSTANTS))
-def test_members_with_constant_values(program: str) -> None:
+def test_enumeration_members_have_their_constant_values(program: str) -> None:
     assert differing_topics(CONSTANT + program) == {}

@@ -72,5 +72,5 @@ def test_a_stored_reference_to_a_method_that_ros_does_not_know_creates_no_endpoi
         ("create_subscriptions", False),
     ],
 )
-def test_a_file_that_stores_a_reference_to_such_a_method_may_start_a_node(text, starts):
+def test_a_file_that_stores_a_reference_to_a_publisher_method_may_start_a_node(text, starts):
     assert (STARTING.search(text) is not None) is starts

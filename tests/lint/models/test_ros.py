@@ -306,7 +306,7 @@ def test_only_data_of_messages_reaches_sinks(name, body):
 @pytest.mark.parametrize(
     "call", ["node.destroy_subscription(sub)", "node.destroy_timer(sub)", "sub.unregister()"]
 )
-def test_what_a_node_reports_does_not_depend_on_what_it_destroyed(call):
+def test_the_findings_of_a_node_do_not_depend_on_the_endpoints_that_it_destroyed(call):
     text = f"""
         sub = node.create_subscription(Float64, "other", print, 10)
         def on(msg):

@@ -51,5 +51,5 @@ rospy.Subscriber("in", Float64, lambda msg: door.enter(msg.data, 1, never))
 
 
 @pytest.mark.parametrize("program", sections(PROGRAMS).values(), ids=sections(PROGRAMS))
-def test_functions_that_run_later(program: str) -> None:
+def test_scheduled_functions_run_later(program: str) -> None:
     assert differing(HEAD + program) == {}

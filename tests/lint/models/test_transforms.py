@@ -95,5 +95,5 @@ def test_look_ups_and_tests_of_transforms_are_sources(title: str) -> None:
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_without_the_setting_they_are_no_sources(title: str) -> None:
+def test_without_the_setting_transforms_are_not_sources(title: str) -> None:
     assert not flows(CASES[title])

@@ -168,5 +168,5 @@ CASES = dict(part.split("\n", 1) for part in PROGRAMS.split("### ")[1:])
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_what_the_type_of_an_object_decides(title):
+def test_the_type_of_an_object_decides_which_branch_runs(title):
     assert differing(HEAD + CASES[title]) == {}

@@ -84,7 +84,7 @@ def test_a_constant_of_another_type_is_another_constant():
     assert moved("x = 1\n", "x = 1\n", unread=()) == {1: 1}
 
 
-def test_an_indented_copy_does_not_count_as_a_move():
+def test_indenting_a_statement_does_not_count_as_moving_it():
     assert moved("if 1:\n  x = 1\n", "if 1:\n    x = 1\n", unread=()) is None
 
 

@@ -192,7 +192,7 @@ def test_all_calls_of_a_wrapper_may_pass_the_same_profile(calls, found):
         ("[('bell', String), ('bell', Bool), ('door', Bool)]", None),
     ],
 )
-def test_the_rows_of_a_table_tell_the_type_of_each_topic(rows, found):
+def test_the_rows_of_a_table_state_the_type_of_each_topic(rows, found):
     outline = Outline(ast.parse(f"TOPICS = {rows}"))
     end = Endpoint("subscribes", ("bell", "door"), "Bool | String", Span("a.py", 1, 1, 1, 2))
     parts = separated(end, ["std_msgs/Bool", "std_msgs/String", "demo/Bool"], [outline])
@@ -250,7 +250,7 @@ void f() {
         ("using std_msgs::msg::Bool;", "Bool", "Bool"),
     ],
 )
-def test_an_alias_of_cpp_is_no_type_of_messages(tmp_path, before, written, kind):
+def test_an_alias_in_cpp_is_not_a_message_type(tmp_path, before, written, kind):
     (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
     (tmp_path / "CMakeLists.txt").write_text("add_executable(drive a.cpp)\n")
     (tmp_path / "a.cpp").write_text(f'{before}\nauto p = n.advertise<{written}>("on", 1);\n')
@@ -471,6 +471,6 @@ def test_other_flows_are_not_stale(example, given):
         ("    s = Service('a', Trigger, tick)\n", False),
     ],
 )
-def test_a_program_that_clears_the_command_or_reads_the_time_is_not_stale(example, more, found):
+def test_a_command_is_not_stale_if_the_program_clears_it_or_reads_the_time(example, more, found):
     assert bool(stale([command(example)], [module(CONTROL + "    " + more)])) is found
     assert stale([], [module(CONTROL)]) == ()

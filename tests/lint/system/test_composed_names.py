@@ -141,7 +141,7 @@ ONE, TWO = cases(PROGRAMS), cases(IN_RCLPY)
 
 
 @pytest.mark.parametrize("title", ONE)
-def test_names_that_a_program_of_ros1_composes_are_known(tmp_path: Path, title: str) -> None:
+def test_parameter_names_composed_in_a_ros1_program_are_known(tmp_path: Path, title: str) -> None:
     body, given, lacking = ONE[title]
     inside = "".join(f'<param name="{name}" value="1"/>' for name in given)
     found = messages(tmp_path, LAUNCH.format(inside=inside), edge=f"{ROSPY}{body}rospy.spin()\n")
@@ -149,7 +149,7 @@ def test_names_that_a_program_of_ros1_composes_are_known(tmp_path: Path, title: 
 
 
 @pytest.mark.parametrize("title", TWO)
-def test_names_that_a_program_of_ros2_composes_are_known(tmp_path: Path, title: str) -> None:
+def test_parameter_names_composed_in_a_ros2_program_are_known(tmp_path: Path, title: str) -> None:
     body, given, lacking = TWO[title]
     inside = "".join(f'<param name="{name}" value="1.0"/>' for name in given)
     found = messages(tmp_path, LAUNCH_2.format(inside=inside), "launch/r.launch.xml", edge=RCLPY + body)
@@ -172,7 +172,7 @@ def test_names_that_a_program_of_ros2_composes_are_known(tmp_path: Path, title: 
         ("front/path", "rospy.Publisher('way', Path, queue_size=1); print('back/path')", True),
     ],
 )
-def test_private_and_longer_names_are_no_uses_of_a_remapped_name(
+def test_private_and_longer_names_do_not_use_the_remapped_name(
     tmp_path: Path, old: str, code: str, reported: bool
 ) -> None:
     program = f"{ROSPY}from nav_msgs.msg import Path\n{code}\nrospy.spin()\n"

@@ -119,7 +119,7 @@ def test_the_module_of_a_message_may_have_any_name(imported, made):
         (["demo/Own"], "def on(self, msg):\n    print(msg.speed)", []),
     ],
 )
-def test_the_analysis_may_tell_which_messages_a_function_receives(kinds, function, found):
+def test_the_analysis_may_show_which_messages_a_function_receives(kinds, function, found):
     module = Module("a.py", "a", function, ast.parse(function))
     outline, texts = Outline(module.tree), Texts({"a.py": module})
     heard = {"on": frozenset(kinds)}

@@ -185,7 +185,9 @@ def test_the_type_of_a_multiplexer_of_ros_2_depends_on_its_version():
     [("$(find usb_cam)/launch/a.launch", ["TARL301"]), ("$(find amcl_maps)/launch/a.launch", []),
      ("$(find move_base)/launch/a.launch", [])],
 )  # fmt: skip
-def test_an_absent_launch_file_of_a_known_package_starts_only_nodes_of_its_types(tmp_path, include, found):
+def test_a_missing_launch_file_of_a_known_package_starts_only_nodes_that_use_the_types_of_that_package(
+    tmp_path, include, found
+):
     assert codes(tmp_path, PAIR.format(f'<include file="{include}"/>')) == found
 
 

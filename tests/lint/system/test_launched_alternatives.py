@@ -61,7 +61,7 @@ def test_a_remapping_of_a_group_belongs_to_the_only_node_that_can_use_it(workspa
     assert (chain in flows(out)) is reached
 
 
-def test_tests_take_part_in_no_flow_and_no_hazard(workspace, capsys):
+def test_nodes_of_tests_are_excluded_from_flows_and_hazards(workspace, capsys):
     check = (
         '<test test-name="check" pkg="arm" type="check.py"><remap from="in" to="/scan"/>' + OUT + "</test>"
     )

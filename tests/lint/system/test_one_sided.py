@@ -48,7 +48,7 @@ def listed(capsys: pytest.CaptureFixture[str], arm: Path, body: str) -> list[tup
     return [(one["missing"], one["name"], one["certain"]) for one in system.get("one_sided", ())]
 
 
-def test_topics_services_and_actions_without_another_side_are_listed(arm, capsys):
+def test_topics_services_and_actions_without_the_other_endpoint_are_listed(arm, capsys):
     assert listed(capsys, arm, relay("one", "scan", "out") + CLIENT_NODE) == [
         ("publishes", "/scan", True),
         ("serves", "/reset", True),
@@ -61,7 +61,7 @@ def test_topics_services_and_actions_without_another_side_are_listed(arm, capsys
     assert "No publisher here" not in run(capsys, "--launch", "a.launch", "--from", "scan")[1]
 
 
-def test_a_topic_is_listed_once_with_all_nodes_that_hear_it(arm, capsys):
+def test_a_topic_is_listed_once_with_all_its_subscribers(arm, capsys):
     listed(capsys, arm, relay("one", "scan", "a") + relay("two", "/scan", "b"))
     assert "  /scan (Float64): heard by /one, /two\n" in run(capsys, "--launch", "a.launch")[1]
 
@@ -75,7 +75,7 @@ def test_a_remapping_of_a_node_that_was_not_read_may_be_the_publisher(arm, capsy
     assert listed(capsys, arm, relay("one", "scan", "out") + driver) == []
 
 
-def test_parts_that_were_not_read_make_it_uncertain(arm, capsys):
+def test_parts_that_were_not_read_make_a_missing_endpoint_uncertain(arm, capsys):
     driver = '<node pkg="base" type="laser" name="laser"/>'
     assert listed(capsys, arm, relay("one", "scan", "out") + driver) == [("publishes", "/scan", False)]
     missing = '<include file="$(find base)/launch/base.launch"/>'
@@ -92,6 +92,6 @@ def test_names_that_only_the_robot_knows_are_not_listed(arm, capsys):
     )
 
 
-def test_nodes_without_a_launch_file_have_no_other_side(arm, capsys):
+def test_without_a_launch_file_no_missing_endpoints_are_listed(arm, capsys):
     document = json.loads(run(capsys, "--from", "in", "--format", "json")[1])
     assert all("one_sided" not in system for system in document["systems"])

@@ -48,7 +48,7 @@ def launch(folder: Path, line: str, name: str = "a.launch") -> Path:
         (("--from", "scan"), 1),
     ],
 )
-def test_exit_codes_are_those_of_other_runs(arm, capsys, options, code):
+def test_runs_with_launch_files_have_the_usual_exit_codes(arm, capsys, options, code):
     assert run(capsys, "--launch", "a.launch", *options)[0] == code
 
 
@@ -164,7 +164,7 @@ def test_exclude_applies_to_launch_files(arm, capsys):
         assert "arm/launch/b.launch: 1 node" in out
 
 
-def test_a_hazard_of_the_baseline_that_is_gone_is_named_and_removed(arm, capsys):
+def test_a_vanished_hazard_is_named_and_removed_from_the_baseline(arm, capsys):
     baseline = arm / "tarl-flows.json"
     assert run(capsys, "--launch", "all", "--write-baseline")[0] == 0
     kept = json.loads(baseline.read_text())
@@ -224,7 +224,7 @@ def test_statistics_count_nodes_flows_and_hazards(arm, capsys):
         assert counts["nodes that were not read"] == "0"
 
 
-def test_settings_are_shown(arm, capsys):
+def test_the_option_show_settings_prints_the_settings(arm, capsys):
     code, out, _ = run(capsys, "--launch", "all", "--show-settings", "--ignore", HAZARD)
     assert code == 0
     assert f'ignore = ["{HAZARD}"]' in out
@@ -244,7 +244,7 @@ def test_settings_are_shown(arm, capsys):
         ),
     ],
 )
-def test_options_that_cannot_work_end_with_a_sentence(arm, capsys, arguments, message):
+def test_options_that_cannot_be_combined_are_refused_in_one_sentence(arm, capsys, arguments, message):
     code, _, err = run(capsys, *arguments)
     assert code == 2
     assert message in err

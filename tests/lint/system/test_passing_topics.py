@@ -165,7 +165,7 @@ rospy.spin()
         ("/drive/select", '<remap from="mux" to="drive"/>'),
     ],
 )
-def test_a_request_to_a_mux_chooses_what_it_passes_on(workspace, capsys, service, inside):
+def test_a_request_to_a_multiplexer_chooses_the_topic_that_it_forwards(workspace, capsys, service, inside):
     write(workspace, {"arm/scripts/chooser.py": SELECTING.format(service=service)})
     file = launched(
         workspace,

@@ -19,7 +19,7 @@ from tarl_lint.system.sensor_drivers import driver_types, driver_words, offered,
         ("acme_camera_imu", "node", "MagneticField", "Twist"),
     ],
 )
-def test_a_driver_uses_the_types_of_its_sensor(package, program, kind, other):
+def test_a_sensor_driver_uses_the_message_types_of_its_sensor(package, program, kind, other):
     types = driver_types(package, program) or ()
     assert kind in types
     assert other not in types
@@ -37,13 +37,13 @@ def test_a_driver_uses_the_types_of_its_sensor(package, program, kind, other):
         ("scamera", "node"),
     ],
 )
-def test_a_program_that_does_more_than_read_a_sensor_may_offer_anything(package, program):
+def test_a_program_that_does_more_than_read_a_sensor_may_use_any_topic(package, program):
     assert sensors(package, program) == ()
     assert driver_types(package, program) is None
     assert driver_words(package, program) is None
 
 
-def test_a_driver_of_a_sensor_commands_nothing_even_if_its_results_are_unknown():
+def test_a_sensor_driver_publishes_no_commands_even_if_its_topics_are_unknown():
     assert "Twist" in unused_types("acme_rfid", "node")
     assert "Twist" in unused_types("lidar_obstacle_detector", "detector")
     assert unused_types("lidar_servo", "node") == frozenset()
@@ -57,13 +57,13 @@ def test_a_driver_of_a_sensor_commands_nothing_even_if_its_results_are_unknown()
         ("/scan_matched", False),
     ],
 )  # fmt: skip
-def test_a_driver_offers_names_of_words_that_drivers_use(name, may):
+def test_a_sensor_driver_may_use_names_made_of_typical_words_of_drivers(name, may):
     words = driver_words("velodyne_driver", "velodyne_node")
     assert words is not None
     assert offered(name, words) is may
 
 
-def test_a_driver_offers_what_its_launch_file_receives():
+def test_a_sensor_driver_may_publish_the_topics_to_which_its_launch_file_subscribes():
     lidar = Seen(kinds=driver_types("acme_lidar", ""), words=driver_words("acme_lidar", ""))
     assert not lidar.may_offer("Trigger", ("/scout/release",), ())
     assert lidar.may_offer("Trigger", ("/scout/release",), ("scan", "~/release"))

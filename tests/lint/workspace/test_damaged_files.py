@@ -172,7 +172,7 @@ DAMAGES: tuple[Callable[[bytes, random.Random], bytes], ...] = (
 )
 
 
-def test_nothing_is_wrong_before_the_damage(workspace: Path) -> None:
+def test_the_undamaged_files_are_read_without_a_problem(workspace: Path) -> None:
     whole, problems = seen(workspace)
     assert problems == {}
     assert all(word in whole for word in ("servo", "arm/Grip", "drive.py", "look", "gain", "angle"))
@@ -265,7 +265,7 @@ def test_a_broken_file_is_named_with_the_reason(name: str, workspace: Path) -> N
     assert any(re.match(reason, one.reason) for one in problems[name]), problems
 
 
-def test_a_file_that_is_absent_or_no_file_is_named(workspace: Path) -> None:
+def test_a_missing_file_and_a_path_that_is_not_a_file_are_named(workspace: Path) -> None:
     for name in ("arm/msg/State.msg", "arm/cfg/Arm.cfg", "arm/scripts/drive.py"):
         path = workspace / name
         before = path.read_bytes()

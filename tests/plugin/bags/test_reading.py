@@ -47,7 +47,7 @@ def test_a_type_that_the_bag_defines_is_read(tmp_path: Path) -> None:
     assert bag.decode("/b", b"\x00\x01\x00\x00" + struct.pack("<d", 4.0)).x == 4.0
 
 
-def test_a_type_that_the_bag_does_not_define_is_that_of_its_ros_version(tmp_path: Path) -> None:
+def test_a_type_that_the_bag_does_not_define_comes_from_its_ros_version(tmp_path: Path) -> None:
     """The header of ROS 1 begins with a counter."""
     channels = {"/h": Channel("/h", "std_msgs/msg/Header")}
     stamp, frame = struct.pack("<iI", 3, 4), struct.pack("<I", 3) + b"map"

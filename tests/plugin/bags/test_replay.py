@@ -200,7 +200,7 @@ def test_an_undefined_type_is_refused() -> None:
     assert played.replay.notes[0] == "mission.bag: /level was not replayed: my/msg/Part is not defined."
 
 
-def test_subscribed_topics_without_a_message_are_noted_unless_they_need_none() -> None:
+def test_subscribed_topics_without_a_message_are_noted_unless_no_message_is_needed() -> None:
     def listens(ros: Ros) -> None:
         for topic in ("/mode", "/level", "/own", *ALWAYS_THERE):
             ros.bus.attach(End(), ros.bus.topic(topic))  # type: ignore[arg-type]

@@ -54,7 +54,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
     return Calls(monkeypatch)
 
 
-def test_the_command_watch_passes_on_its_defaults(calls: Calls) -> None:
+def test_the_command_watch_forwards_its_default_values(calls: Calls) -> None:
     calls.replace(watch, "run", 7)
     assert cli.main(["watch", "a.log", "b.log", "--fixture", "x/f.npz"]) == 7
     assert calls.made == [
@@ -65,7 +65,7 @@ def test_the_command_watch_passes_on_its_defaults(calls: Calls) -> None:
     assert (order.once, order.until_alarm, order.ros, order.json) == (False, False, "", None)
 
 
-def test_the_command_watch_passes_on_its_arguments(calls: Calls) -> None:
+def test_the_command_watch_forwards_its_arguments(calls: Calls) -> None:
     calls.replace(watch, "run", 0)
     flags = "--state s --json - --alpha 0.1 --seed 3 --interval 2 --every 5 --once --until-alarm --diagnostics rospy"
     cli.main(["watch", "a.log", "--fixture", "f.npz", *flags.split()])
@@ -74,7 +74,7 @@ def test_the_command_watch_passes_on_its_arguments(calls: Calls) -> None:
     )
 
 
-def test_the_command_observe_passes_on_its_defaults_and_prints_a_summary(
+def test_the_command_observe_forwards_its_default_values_and_prints_a_summary(
     calls: Calls, capsys: Printed
 ) -> None:
     calls.replace(observing, "observe", "2 missions\x1b")
@@ -83,7 +83,7 @@ def test_the_command_observe_passes_on_its_defaults_and_prints_a_summary(
     assert capsys.readouterr() == ("", "2 missions\\x1b\n")
 
 
-def test_the_command_observe_passes_on_its_arguments(calls: Calls) -> None:
+def test_the_command_observe_forwards_its_arguments(calls: Calls) -> None:
     calls.replace(observing, "observe", "")
     flags = (
         "--entry main --log m.log --log-size 1.5 --log-keep 4 --fixture f.npz --module a.py --module b.py "
@@ -128,7 +128,7 @@ def test_the_command_observe_refuses_a_negative_number_of_logs(calls: Calls, cap
 @pytest.mark.parametrize(
     ("flags", "given"), [([], (False, False)), (["--force"], (True, False)), (["--partial"], (False, True))]
 )
-def test_the_command_apply_passes_on_its_patches(
+def test_the_command_apply_forwards_the_named_patches(
     calls: Calls, capsys: Printed, flags: list[str], given: Any
 ) -> None:
     calls.replace(applying, "apply", ["applied", "test it"])
@@ -140,7 +140,7 @@ def test_the_command_apply_passes_on_its_patches(
     assert capsys.readouterr().out == "applied\ntest it\n"
 
 
-def test_the_command_revert_passes_on_its_patches_and_its_folder(calls: Calls, capsys: Printed) -> None:
+def test_the_command_revert_forwards_the_named_patches_and_the_folder(calls: Calls, capsys: Printed) -> None:
     calls.replace(applying, "revert", ["reverted"])
     assert cli.main(["revert", "a.patch", "--directory", "d"]) == 0
     assert calls.made == [("revert", [Path("a.patch")], Path("d"))]
@@ -154,7 +154,7 @@ def test_the_editor_applies_a_patch_with_all_checks(calls: Calls) -> None:
 
 
 @pytest.mark.parametrize("flags", [[], ["--sites"]])
-def test_the_command_show_passes_on_the_recording_and_its_sizes(
+def test_the_command_show_forwards_the_recording_and_the_sizes(
     calls: Calls, capsys: Printed, tmp_path: Path, flags: list[str]
 ) -> None:
     path = tmp_path / "f.npz"
@@ -193,7 +193,7 @@ class Found:
         (["--fail-if-changed"], None, 1),
     ],
 )
-def test_the_command_diff_fails_on_a_difference_only_on_request(
+def test_the_command_diff_fails_on_a_difference_only_if_requested(
     calls: Calls, capsys: Printed, flags: list[str], asked: Any, status: int
 ) -> None:
     found = Found()
@@ -248,7 +248,7 @@ def test_margins_are_compared_with_a_revision_or_another_file(
     assert capsys.readouterr().out == f"test_it[mud]\n  speed            1 m/s → 2 m/s: {change}\n"
 
 
-def test_margins_are_compared_as_markdown(calls: Calls, capsys: Printed) -> None:
+def test_a_comparison_of_margins_can_be_printed_as_markdown(calls: Calls, capsys: Printed) -> None:
     calls.replace(margins_files, "margins_in", [])
     calls.patch.setattr("pytest_tarl.stressing.margin_changes.compared", lambda *_: [ROW])
     assert cli.main(["diff", "main", "--format", "markdown"]) == 0
@@ -285,7 +285,7 @@ def test_a_changed_guarantee_is_noted() -> None:
     ("arguments", "given"),
     [([], (Path(".tarl/results"), None)), (["d", "--since", "main"], (Path("d"), "main"))],
 )
-def test_the_command_summary_passes_on_its_folder(
+def test_the_command_summary_forwards_the_folder(
     calls: Calls, capsys: Printed, arguments: list[str], given: Any
 ) -> None:
     calls.replace(summary, "markdown", "| a |\n")
@@ -323,7 +323,7 @@ def ingested(calls: Calls, *found: ingesting.Ingested) -> None:
 REQUIRED = ["--to", "data", "--fixture", "f.npz", "--robot", "{folder}"]
 
 
-def test_the_command_ingest_passes_on_its_arguments_and_defaults(calls: Calls) -> None:
+def test_the_command_ingest_forwards_its_arguments_and_default_values(calls: Calls) -> None:
     ingested(calls)
     cli.main(["ingest", "a.log", *REQUIRED])
     flags = "--version 2 --site roof --repair fix --hash-robots salt"
@@ -433,13 +433,15 @@ def asked(calls: Calls) -> question.Question:
     return result
 
 
-def test_the_command_fleet_passes_on_its_defaults(calls: Calls, answered: Answer, capsys: Printed) -> None:
+def test_the_command_fleet_forwards_its_default_values(
+    calls: Calls, answered: Answer, capsys: Printed
+) -> None:
     assert cli.main(["fleet", "data"]) == 0
     assert asked(calls) == question.Question("data", workers=processors.available())
     assert capsys.readouterr().out == "line\\n\n"
 
 
-def test_the_command_fleet_passes_on_its_arguments(calls: Calls, answered: Answer) -> None:
+def test_the_command_fleet_forwards_its_arguments(calls: Calls, answered: Answer) -> None:
     flags = (
         "--fixture f.npz --since 2026-10-01 --robot r --alpha 0.1 --tolerance 2 --cluster tcp://c --workers 3"
     )
@@ -469,7 +471,7 @@ def test_the_command_fleet_writes_its_result_to_the_named_files(
         (("robot",), ["--fail-if", "degraded", "--fail-if", "robot"], 1),
     ],
 )
-def test_the_command_fleet_fails_if_a_condition_given_with_its_option_fail_if_holds(
+def test_the_command_fleet_fails_if_the_condition_of_the_option_fail_if_holds(
     answered: Answer, met: tuple[str, ...], flags: list[str], status: int
 ) -> None:
     answered.met = met

@@ -194,7 +194,7 @@ def test_json_on_standard_output_replaces_the_text_report(clock: Clock, capsys: 
     assert capsys.readouterr().out == "json 1\njson 1\n"
 
 
-def test_with_once_only_the_report_is_printed(clock: Clock, capsys: Printed) -> None:
+def test_with_the_option_once_only_the_report_is_printed(clock: Clock, capsys: Printed) -> None:
     watched = Watch([status(1, below=True)], problems=("torn",))
     told = teller(watched, once=True)
     assert told.close(told.look()) == 1
@@ -246,7 +246,7 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 @pytest.mark.parametrize(("below", "code"), [(True, 1), (False, 0)])
-def test_with_once_the_exit_status_says_whether_there_is_an_alarm(
+def test_with_the_option_once_the_exit_status_shows_whether_there_is_an_alarm(
     begun: Any, below: bool, code: int, capsys: Printed
 ) -> None:
     watched = Watch([status(1, below=below)])
@@ -258,7 +258,9 @@ def test_with_once_the_exit_status_says_whether_there_is_an_alarm(
     assert capsys.readouterr().out == "report\n1\n"
 
 
-def test_with_once_an_unreadable_log_is_reported_and_the_command_fails(begun: Any, capsys: Printed) -> None:
+def test_with_the_option_once_an_unreadable_log_is_reported_and_the_command_fails(
+    begun: Any, capsys: Printed
+) -> None:
     watched = Watch([status(1)], problems=("a.log: torn.", "b.log: gone."))
     begun(watched)
     with pytest.raises(LogError, match=r"^a\.log: torn\. b\.log: gone\.$"):
@@ -267,7 +269,7 @@ def test_with_once_an_unreadable_log_is_reported_and_the_command_fails(begun: An
     assert capsys.readouterr().out == "report\n1\n"
 
 
-def test_with_once_an_interruption_ends_the_watch_between_two_missions(begun: Any) -> None:
+def test_with_the_option_once_an_interruption_ends_the_watch_between_two_missions(begun: Any) -> None:
     watched = Watch()
 
     def poll() -> Iterator[int]:
@@ -304,7 +306,7 @@ def test_a_watch_in_another_thread_does_not_change_signal_handlers() -> None:
     assert found == [(False, before)]
 
 
-def test_a_watch_with_until_alarm_runs_until_the_first_alarm(begun: Any, capsys: Printed) -> None:
+def test_a_watch_with_the_option_until_alarm_ends_at_the_first_alarm(begun: Any, capsys: Printed) -> None:
     watched = Watch([], [status(1)], [status(2, below=True)], [status(3, below=True)])
     begun(watched)
     assert run(replace(ORDER, until_alarm=True, interval=1e-6)) == 1

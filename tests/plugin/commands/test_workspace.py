@@ -164,7 +164,7 @@ def test_packages_of_equal_names_are_named(folder: Path, capsys: pytest.CaptureF
     assert json.loads(capsys.readouterr().out)["problems"][0]["file"] == "copy/package.xml"
 
 
-def test_yaml_that_cannot_be_examined_is_said(
+def test_yaml_files_that_cannot_be_examined_are_reported(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "arm_base/a.yaml").write_text("a: [")

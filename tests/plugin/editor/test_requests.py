@@ -386,7 +386,7 @@ def test_hints_are_in_the_order_of_the_file(answering: Session) -> None:
     assert [one.position.line for one in hints(answering, 0, 9)] == [1, 3]
 
 
-def test_without_a_rank_a_file_or_a_result_there_are_no_hints(answering: Session) -> None:
+def test_there_are_no_hints_without_a_rank_without_a_file_or_without_a_result(answering: Session) -> None:
     assert hints(answering, 0, 9, "../outside.py") == []
     answering.server.kept = recorded.Recorded({SPEED: figures(None)})
     assert hints(answering, 0, 9) == []
@@ -414,7 +414,7 @@ def test_code_actions_belong_to_the_diagnostics_on_the_chosen_lines(
     assert titles(answering, first, last) == [*quick, "Apply the repair a.patch"]
 
 
-def test_other_files_have_no_actions(answering: Session) -> None:
+def test_files_outside_the_root_have_no_code_actions(answering: Session) -> None:
     assert titles(answering, 0, 9, "map.py") == []
     assert titles(answering, 0, 9, "../outside.py") == []
 

@@ -135,7 +135,7 @@ def running(
     ],
     ids=["alone", "within a line", "with a forked child"],
 )
-def test_nothing_survives_a_killed_test(tmp_path: Path, do: str) -> None:
+def test_no_process_of_the_simulator_survives_a_killed_test(tmp_path: Path, do: str) -> None:
     lock = tmp_path / "held"
     with running(lock, do=do) as test:
         test.kill()

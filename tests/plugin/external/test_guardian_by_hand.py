@@ -161,7 +161,7 @@ def test_a_command_that_cannot_be_started_is_reported(made: Made, problem: Excep
     assert made.names() == ["domain", "domain.release"]
 
 
-def test_a_network_that_cannot_be_made_is_reported(made: Made, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_ros_master_that_cannot_be_started_is_reported(made: Made, monkeypatch: pytest.MonkeyPatch) -> None:
     def refused() -> Part:
         raise SettingsError("no port is free")
 
@@ -212,7 +212,7 @@ def looks(made: Made, times: list[float]) -> list[float]:
     return found
 
 
-def test_the_graph_is_looked_at_often_at_first_and_then_once_a_second(made: Made) -> None:
+def test_the_ros_graph_is_checked_often_at_first_and_later_once_a_second(made: Made) -> None:
     made.guardian._do_start(**{name: value for name, value in start().items() if name != "do"})
     quick = [100.0, 100.0 + LOOK / 2, 100.0 + LOOK * 1.5, 100.0 + LOOK * 2, 100.0 + LOOK * 3]
     assert looks(made, quick) == [quick[0], quick[2], quick[4]]
@@ -321,7 +321,7 @@ def test_the_end_of_the_test_is_noticed_if_the_kernel_can_wait_for_it(
     assert [*made.guardian._commands] == ([None] if known else [])
 
 
-def test_a_link_that_cannot_be_woken_does_not_prevent_the_end(made: Made) -> None:
+def test_the_guardian_exits_even_if_its_link_cannot_be_woken(made: Made) -> None:
     class Broken:
         def wake(self) -> None:
             raise RuntimeError

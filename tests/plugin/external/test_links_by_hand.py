@@ -137,7 +137,7 @@ def test_the_client_of_a_service_is_created_once_the_service_exists(log: Noted) 
     assert log == [("node.create_client", ("class of std_srvs/srv/Empty", "/step"), {})]
 
 
-def test_a_long_row_of_messages_delays_an_answer_only_up_to_a_limit(log: Noted) -> None:
+def test_a_long_queue_of_messages_delays_an_answer_only_up_to_a_limit(log: Noted) -> None:
     said: list[dict[str, Any]] = []
     made = Link(7, "/clock", said.append)
     spins: list[float] = []

@@ -100,12 +100,12 @@ def test_watched_rollouts_count_called_and_requested_episodes_and_keep_their_res
     assert lost.notes()[0].startswith("2 of 2 episodes")
 
 
-def test_the_reasons_pass_from_workers() -> None:
+def test_workers_send_the_reasons_for_lost_simulators_to_the_run() -> None:
     message = protocol.run_message(run("it hung", DIED))
     assert protocol.answered(EpisodePlan(1), message).lost == ("it hung", DIED)
 
 
-def test_an_ending_names_the_signal() -> None:
+def test_the_reason_for_an_ended_simulator_names_the_signal() -> None:
     assert [_ending(one) for one in (0, 3, -11, -40)] == [
         "ended with status 0", "ended with status 3", "was killed by SIGSEGV", "was killed by signal 40",
     ]  # fmt: skip

@@ -49,7 +49,7 @@ def test_a_simulator_that_does_not_answer_its_reset_is_started_again(guardian: G
     assert made.clock == 2.0
 
 
-def test_a_new_simulator_is_not_ready_because_of_what_the_former_one_sent(
+def test_messages_of_the_former_simulator_do_not_make_the_new_simulator_ready(
     guardian: Guardian, ros: Ros
 ) -> None:
     quick = replace(RESET, patience=0.05, timeout=0.05)
@@ -60,7 +60,9 @@ def test_a_new_simulator_is_not_ready_because_of_what_the_former_one_sent(
         Simulator(quick, ros, ()).begin()
 
 
-def test_a_start_ends_when_the_former_simulator_has_ended(guardian: Guardian, ros: Ros) -> None:
+def test_a_new_simulator_starts_only_after_the_former_simulator_has_ended(
+    guardian: Guardian, ros: Ros
+) -> None:
     made = Simulator(SETUP, ros, ())
     assert made.clock == 0.0
     guardian.react = lambda what, **_: [clock(9.0), {"kind": "stopped"}] if what == "start" else []

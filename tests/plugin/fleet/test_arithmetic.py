@@ -76,7 +76,7 @@ def test_strata_are_weighted_by_their_number_of_pairs_of_missions() -> None:
 
 
 @pytest.mark.parametrize("without", [3, 4])
-def test_an_interval_needs_four_robots_in_each_arm(without: int) -> None:
+def test_an_interval_needs_four_robots_with_and_four_without_the_repair(without: int) -> None:
     number = np.arange(without + 4)
     arm, total = (number >= without).astype(np.int64), number.astype(float)
     found = effect("fix", (), strata(number, ints(*[0] * number.size), arm, total, arm), 0.975)
@@ -254,7 +254,9 @@ def test_the_files_of_a_data_set_are_divided_into_tasks(
     assert [[one.numbers.size for one in some] for some in partitions.portions(wanted, most)] == expected
 
 
-def test_robots_are_divided_by_the_number_of_their_missions(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_robots_are_divided_into_portions_by_their_number_of_missions(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(robots, "PORTION", 10)
     ends = ints(4, 10, 11, 35, 40)
     assert [one.tolist() for one in robots.portions(ends)] == [[4, 10], [11], [35, 40]]

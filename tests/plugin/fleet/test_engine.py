@@ -89,7 +89,9 @@ class Executor:
         return future
 
 
-def test_a_cluster_has_two_tasks_per_thread_and_cancels_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_at_most_two_tasks_per_thread_wait_on_a_cluster_and_closing_the_results_cancels_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     executor: Any = Executor()
     limits: list[int] = []
     monkeypatch.setattr(engine, "threadpool_limits", lambda limit, user_api: limits.append(limit))
@@ -102,7 +104,7 @@ def test_a_cluster_has_two_tasks_per_thread_and_cancels_the_rest(monkeypatch: py
     assert list(every) == list(range(-1, 19))
 
 
-def test_errors_of_a_cluster_are_told_apart_from_those_of_a_task() -> None:
+def test_errors_of_a_cluster_are_distinguished_from_errors_of_a_task() -> None:
     def failing(problem: BaseException) -> Future[None]:
         future = Future[None]()
         future.set_exception(problem)

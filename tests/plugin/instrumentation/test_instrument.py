@@ -71,7 +71,7 @@ def test_each_statement_records_the_expected_events(kind, inline):
 
 
 @pytest.mark.parametrize("inline", MODES)
-def test_a_generator_records_yielded_and_sent_values(inline):
+def test_the_yielded_and_the_sent_values_of_a_generator_are_recorded(inline):
     source = """
     def gen():
         x = yield 1.0

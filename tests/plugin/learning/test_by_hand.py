@@ -111,7 +111,7 @@ def test_verdicts_of_several_comparisons_are_corrected_separately() -> None:
     assert (second.p_loss, second.p_drift, second.result) == (0.3, 0.04, "drifted")
 
 
-def test_the_tolerated_loss_is_five_percent_of_the_reward_or_the_stated_tolerance_if_larger() -> None:
+def test_the_tolerated_loss_is_five_percent_of_the_reward_or_a_larger_stated_tolerance() -> None:
     sample = episodes([(0,)] * 2, [(0,)] * 4, reward=-2.0)  # totals -4 and -8
     assert tolerated(sample, None) == pytest.approx(0.3)
     assert tolerated(sample, 0.2) == pytest.approx(0.3)
@@ -163,7 +163,7 @@ def test_each_difference_multiplies_the_wealth_of_a_bet() -> None:
     assert Bet(1.0, -3.0, (0.5, 0.25)).wealth([-3.0]) == pytest.approx(log(0.1 * 0.5))
 
 
-def test_stakes_of_a_bet_grow_with_the_gap_and_are_bounded_by_the_worst_episode() -> None:
+def test_the_stake_of_a_bet_grows_with_the_gap_and_is_bounded_by_the_worst_episode() -> None:
     found = bet(1.0, -3.0, [0.5, -0.5])
     wanted = 1.0 / (1.5 * 0.5 + 1.0)  # a mean of 0: the gap is the margin; the variance is 0.5
     assert found.stakes == pytest.approx((min(wanted, 0.95 / 2.0), min(wanted, 0.5 / 2.0)))
@@ -259,7 +259,7 @@ def test_p_values_and_confidence_are_adjusted_for_several_checks() -> None:
         ("drifted", Region(((1,),)), False),
     ],
 )
-def test_a_check_ends_the_comparison_only_if_it_finds_a_loss_and_its_region(
+def test_a_check_ends_the_comparison_only_if_the_loss_and_its_region_are_found(
     result: Any, region: Region, expected: bool
 ) -> None:
     assert certain(Difference(replace(VERDICT, result=result), region, {})) is expected
@@ -339,7 +339,7 @@ NEW = [(0, 7), (1, 7), (2, 7)]
 KNOWN = [(0, 1), (1, 1), (2, 2)]
 
 
-def test_sensors_with_only_new_values_are_left_out() -> None:
+def test_sensors_that_have_only_new_values_are_excluded() -> None:
     assert left_out(episodes(KNOWN), episodes(NEW)) == (1,)
     assert left_out(episodes(KNOWN), episodes([(0, 7), (8, 7)])) == (1,)  # half of the steps
     assert left_out(episodes(KNOWN), episodes([(0, 7), (8, 7), (8, 7)])) == ()

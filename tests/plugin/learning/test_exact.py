@@ -60,7 +60,7 @@ def test_at_the_bound_of_a_rate_the_evidence_against_the_rate_equals_the_thresho
     assert min(abs(below - one) for one in least) < 1e-6 * max(least)
 
 
-def test_bounds_by_betting_rise_with_the_accepted_risk() -> None:
+def test_bounds_by_betting_increase_with_the_accepted_risk() -> None:
     values = np.array([0.9, 0.8, 1.0, 0.7, 0.95] * 12)
     lows = [bet_low(values, risk) for risk in (0.2, 0.1, 0.05, 0.01)]
     assert lows == sorted(lows, reverse=True)
@@ -87,7 +87,7 @@ def world(cells_of_episodes: list[list[int]], cells: int) -> SimpleNamespace:
 
 
 @pytest.mark.parametrize("others", [0, 1, 4])
-def test_an_avoided_cell_is_significant_after_correction_for_the_missing_cells(others: int) -> None:
+def test_an_avoided_cell_is_significant_after_a_correction_for_the_missing_cells(others: int) -> None:
     everyone, online = 12, 4
     off = [
         [0, 1, *range(2, 2 + others)] for _ in range(everyone - online)

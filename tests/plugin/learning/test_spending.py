@@ -17,7 +17,7 @@ LOOKS = (Look(10, 0.1), Look(20, 0.3), Look(40, 0.6))
 
 
 @given(st.integers(1, 12), st.integers(FEWEST, 300), st.integers(2, 5))
-def test_the_checks_spend_all_of_alpha_and_every_comparison_can_have_its_first_check(
+def test_the_checks_spend_all_of_alpha_and_every_comparison_has_at_least_its_first_check(
     comparisons: int, share: int, looks: int
 ) -> None:
     total = comparisons * share
@@ -41,7 +41,7 @@ def test_the_undecided_comparison_nearest_to_a_decision_continues_if_enough_epis
     assert next_look(standings[3], LOOKS) is None
 
 
-def test_each_comparison_errs_at_most_as_often_as_alpha_however_episodes_are_shared() -> None:
+def test_each_comparison_errs_at_most_with_probability_alpha_however_episodes_are_shared() -> None:
     """Four comparisons without a drift: each is found drifted in at most α of the runs."""
     alpha, runs, total = 0.05, 1500, 160
     looks = schedule(total, 4, 3)

@@ -11,7 +11,9 @@ from pytest_tarl.monitoring.e_bh import adjusted, chosen
 
 
 @given(st.lists(st.floats(-5, 20), max_size=12), st.sampled_from([0.05, 0.2, 0.5]))
-def test_e_bh_rejects_the_largest_k_with_k_large_enough_e_values(logs: list[float], alpha: float) -> None:
+def test_e_bh_rejects_the_largest_number_k_of_hypotheses_whose_k_e_values_are_large_enough(
+    logs: list[float], alpha: float
+) -> None:
     values = 2.0 ** np.array(logs)
     largest = 0
     for k in range(1, len(logs) + 1):
@@ -32,7 +34,7 @@ def test_the_adjuster_integrates_to_at_most_one() -> None:
 
 
 @given(st.floats(0, 2000), st.floats(0, 2000))
-def test_the_adjuster_increases(a: float, b: float) -> None:
+def test_the_adjuster_is_an_increasing_function(a: float, b: float) -> None:
     low, high = adjusted(np.array(sorted((a, b))))
     assert low <= high + 1e-9
 

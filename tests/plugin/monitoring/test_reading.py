@@ -92,7 +92,7 @@ SIZES = st.sampled_from([1, 7, 100, 400, 1000, 5000, blocks.BLOCK])
 
 @settings(max_examples=200 if SLOW else 40)
 @given(cuts=st.lists(st.integers(0, 10_000), max_size=12), restart=st.booleans(), size=SIZES)
-def test_a_log_that_grows_in_pieces_gives_every_mission_once(
+def test_each_mission_of_a_growing_log_is_read_once(
     tmp_path_factory: pytest.TempPathFactory, cuts: list[int], restart: bool, size: int
 ) -> None:
     some = walks(6, 3)
@@ -211,7 +211,7 @@ def records_of(block: blocks.Block) -> Iterator[Record]:
         yield block.record()
 
 
-def test_missions_read_but_not_processed_are_read_again(tmp_path: Path) -> None:
+def test_missions_that_were_read_but_not_processed_are_read_again(tmp_path: Path) -> None:
     some = walks(5, 3)
     reading = Reading(log(tmp_path / "m.log", some))
     for mission in reading.readers[0].missions():

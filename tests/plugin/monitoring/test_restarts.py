@@ -44,7 +44,7 @@ def test_the_recursive_computation_equals_the_mixture_over_all_restarts_and_bets
         assert 2.0 ** evidence[process] == pytest.approx(naive(factors[:, :, process]), rel=1e-12)
 
 
-def test_the_weight_left_for_later_restarts_decreases_from_one() -> None:
+def test_the_remaining_weight_for_later_restarts_decreases_from_one() -> None:
     left = reserve(np.arange(10_000))
     assert left[0] == 1.0
     assert (np.diff(left) < 0).all()

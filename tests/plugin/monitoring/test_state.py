@@ -65,7 +65,7 @@ def test_a_watch_continued_from_its_state_ends_with_the_same_bytes(world: Path, 
     (world / "parts.npz").unlink()
 
 
-def test_the_state_is_saved_only_if_missions_were_counted_since(
+def test_the_state_is_saved_only_if_missions_were_counted_after_the_last_save(
     world: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     saves: list[int] = []

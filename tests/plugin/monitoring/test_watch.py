@@ -179,7 +179,7 @@ def test_the_watch_follows_a_growing_log_until_a_signal(root: Path, number: sign
     validate(json.loads((root / "w.json").read_text()), dashboard.schema())
 
 
-def test_with_until_alarm_the_watch_exits_at_the_first_alarm(root: Path) -> None:
+def test_with_the_option_until_alarm_the_watch_exits_at_the_first_alarm(root: Path) -> None:
     log(root / "m.log", walks(60, 3, drift=1.0))
     process = started(root, "--until-alarm")
     out, err = process.communicate(timeout=60)

@@ -297,12 +297,12 @@ def test_a_monitor_without_missions_has_no_leading_score_and_no_onset(monitor: M
     assert found.world.now == pytest.approx(found.world.highest)
 
 
-def test_new_cells_are_named_once_two_missions_visited_them(monitor: Monitor) -> None:
+def test_new_cells_are_named_after_two_missions_visited_them(monitor: Monitor) -> None:
     found = replace(changed(monitor), new={(9, 1): 2, (8, 0): 2, (7, 0): 1})
     assert module.status(found).new == ((8, 0), (9, 1))
 
 
-def test_once_there_are_many_new_cells_only_the_known_ones_are_counted(
+def test_if_there_are_many_new_cells_only_the_known_new_cells_are_counted(
     monitor: Monitor, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(monitor_module, "MOST_NEW", 2)
@@ -313,7 +313,7 @@ def test_once_there_are_many_new_cells_only_the_known_ones_are_counted(
     assert one.new == {(9, 1): 3, (8, 0): 2}
 
 
-def test_missions_judged_elsewhere_are_counted(monitor: Monitor) -> None:
+def test_missions_that_were_judged_in_other_processes_are_counted(monitor: Monitor) -> None:
     one = replace(changed(monitor), new={}, counts=Counts(), moments=Moments())
     lost = np.array([np.nan, 1.0, np.nan, 99.0])
     for first in (0, 4):

@@ -155,7 +155,7 @@ def test_each_topic_is_passed_on_to_the_observer(library: dict[str, Any], name: 
 
 
 @pytest.mark.parametrize("name", ["rospy", "rclpy"])
-def test_with_idle_each_published_message_shows_that_the_node_is_active(
+def test_with_the_option_idle_each_published_message_shows_that_the_node_is_active(
     library: dict[str, Any], name: str
 ) -> None:
     observer: Any = Told()

@@ -76,7 +76,7 @@ def test_each_mission_contains_every_step_event_and_cell(recorded: Path) -> None
     assert set(first.sites) >= {site.id for one in fixture.lists for site in one.sites}
 
 
-def test_a_log_of_a_drifted_world_is_degraded_and_a_nominal_one_is_not(
+def test_a_log_of_a_drifted_world_is_degraded_and_a_log_of_the_nominal_world_is_not(
     recorded: Path, pytester: pytest.Pytester
 ) -> None:
     drive(order(recorded, log=recorded / "clogged.log"), [0.05] * 8)

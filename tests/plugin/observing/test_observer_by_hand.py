@@ -149,7 +149,7 @@ def test_a_sensor_whose_value_becomes_unusable_makes_the_cell_unknown(observe: O
         (lambda one: one.signalled(Signal("tilt", topic="/t", field="x"), message([1])), "Signal 'tilt': "),
     ],
 )  # fmt: skip
-def test_the_first_error_of_a_value_is_kept_and_does_not_reach_the_node(
+def test_the_first_error_of_a_sensor_value_is_kept_and_does_not_reach_the_node(
     observe: Observe, told: Callable[[Observer], None], problem: str
 ) -> None:
     one, sent = observe(PLACE, signals=[Signal("tilt", topic="/t", field="x")], following=True)
@@ -241,7 +241,7 @@ def test_an_active_node_begins_a_mission_that_ends_when_it_has_been_idle(
     assert never.running
 
 
-def test_records_are_sent_regularly_unless_too_much_waits(
+def test_records_are_sent_regularly_unless_too_many_bytes_wait(
     observe: Observe, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     one, sent = observe(PLACE)
@@ -273,7 +273,7 @@ def test_outside_missions_only_new_cells_are_sent(observe: Observe) -> None:
     assert (one._readings, one._times) == ([], [])
 
 
-def test_a_full_outlet_gets_no_events(observe: Observe) -> None:
+def test_no_events_are_sent_to_a_full_outlet(observe: Observe) -> None:
     one, sent = observe(PLACE)
     one.begin()
     sent.full = True
@@ -310,7 +310,7 @@ def test_readings_are_sent_as_plain_values(value: Any, expected: Any) -> None:
     marshal.dumps(found)
 
 
-def test_closing_sends_what_is_left_and_waits_for_the_thread(observe: Observe) -> None:
+def test_closing_sends_the_remaining_records_and_waits_for_the_thread(observe: Observe) -> None:
     one, sent = observe(PLACE)
     one.begin()
     one.step(1.0)

@@ -126,7 +126,9 @@ def test_large_messages_are_sent_in_pieces_and_keep_their_order(connect: OpenOut
     assert (one.unsent, len(one._waiting), one._held) == (0, 0, 0)
 
 
-def test_an_outlet_is_full_if_too_much_waits(connect: OpenOutlet, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_outlet_is_full_if_too_many_bytes_wait(
+    connect: OpenOutlet, monkeypatch: pytest.MonkeyPatch
+) -> None:
     one, _, end = connect("ready")
     one.put("x" * 200)
     held = one._held

@@ -57,7 +57,7 @@ def test_a_piece_whose_bytes_are_not_visible_yet_is_read_later(at: int) -> None:
     assert reader.read() == b"first"
 
 
-def test_a_counter_without_a_written_header_is_not_read_as_a_piece() -> None:
+def test_a_counter_whose_header_is_not_yet_written_is_not_read_as_a_piece() -> None:
     writer, reader = ends(64)
     writer._counters[0] = 7
     assert reader.read() is None

@@ -53,7 +53,7 @@ def test_draining_in_pieces_records_the_same_as_draining_once() -> None:
     np.testing.assert_array_equal(np.concatenate([chunk.reward for chunk in chunks]), trace.reward)
 
 
-def test_pieces_cut_one_after_the_other_are_merged_into_the_result_of_one_cut() -> None:
+def test_a_buffer_cut_into_several_pieces_gives_the_same_result_as_one_cut() -> None:
     whole, pieces = Emptied(), Emptied()
     cuts, done = [], 0
     for end in (1, 2, 17, 30, 31, 59, 60):

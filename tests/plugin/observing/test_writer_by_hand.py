@@ -119,7 +119,7 @@ def test_with_formulas_a_record_has_the_times_of_its_steps_and_the_changes() -> 
     assert (second["times"], second["changes"]) == ([0.125], [])
 
 
-def test_a_record_is_written_before_it_becomes_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_steps_are_written_before_their_record_becomes_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(writing, "MOST_HELD", 4)
     steps = ("steps", cut(1.0, entries=[1, 0.5]), [], 0, None)
     log = written(*[steps] * 5)

@@ -101,7 +101,7 @@ def main():
         ("print(); subscribe('/a'); print()", "print()", False),
     ],
 )
-def test_the_subscription_is_added_beside_another_one_that_runs_exactly_once(
+def test_the_subscription_is_added_beside_another_subscription_that_runs_exactly_once(
     code: str, statement: str, after: bool
 ) -> None:
     source = document("pilot.py", BESIDE.format(code))

@@ -92,7 +92,7 @@ def edited(condition: str) -> str:
     return apply_edits(source, form_edits(source, node, form, {"gain": 2.5}, condition, ""))
 
 
-def test_the_factor_stands_before_the_publish_call() -> None:
+def test_the_factor_is_applied_before_the_publish_call() -> None:
     assert edited("") == "self.msg.linear.x *= 2.5\npub.publish(self.msg)\n"
     assert "self.msg.linear.x = self.msg.linear.x * 2.5 if wet else self.msg.linear.x\n" in edited("wet")
 

@@ -44,7 +44,7 @@ def test_a_step_of_one_and_a_step_that_changes_the_sign_are_not_applied() -> Non
 @pytest.mark.parametrize(
     ("step", "moved"), [(1.0, 0.0), (1.5, 0.5), (5.0, 4.0), (0.5, -1.0), (0.2, -4.0), (2 / 3, -0.5)]
 )
-def test_a_step_moves_a_constant_by_multiples_of_its_size_equally_far_up_and_down(
+def test_a_step_moves_a_constant_by_equal_multiples_of_its_size_up_and_down(
     step: float, moved: float
 ) -> None:
     assert distance(step) == pytest.approx(moved)

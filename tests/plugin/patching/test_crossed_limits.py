@@ -45,7 +45,7 @@ KEPT = [
 
 
 @pytest.mark.parametrize(("text", "code", "value"), CROSSED)
-def test_a_limit_beyond_the_opposite_limit_crosses(text: str, code: str, value: float) -> None:
+def test_a_limit_crosses_if_it_is_beyond_the_opposite_limit(text: str, code: str, value: float) -> None:
     assert limit(text, code, value)
 
 

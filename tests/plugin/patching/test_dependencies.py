@@ -69,7 +69,7 @@ def test_a_package_is_known_if_it_is_a_dependency_at_run_time(
     assert (told(tmp_path, SECOND.format(listed), "", text) == []) is known
 
 
-def test_a_package_that_the_file_imported_before_is_not_named(tmp_path: Path) -> None:
+def test_a_package_that_the_file_already_imports_is_not_named(tmp_path: Path) -> None:
     before, after = (f"from sensor_msgs.msg import {name}\n" for name in ("Range", "Range, Imu"))
     assert told(tmp_path, SECOND.format(""), before, after) == []
 

@@ -89,7 +89,7 @@ def repaired(text: str) -> str:
 @pytest.mark.parametrize("ending", ["\n", "\r\n"])
 @pytest.mark.parametrize("final", [True, False])
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1"])
-def test_the_patched_file_is_the_simulated_one_and_runs(
+def test_the_patched_file_equals_the_simulated_file_and_runs(
     tmp_path: Path, tool: str, ending: str, final: bool, encoding: str
 ) -> None:
     cookie = "# -*- coding: latin-1 -*-\n" if encoding == "latin-1" else ""

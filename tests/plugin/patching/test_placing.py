@@ -106,6 +106,6 @@ def test_a_link_inside_the_project_is_followed(repository: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["a\0b", "a" * 5000])
-def test_invalid_names_are_one_sentence(repository: Path, name: str) -> None:
+def test_invalid_file_names_are_reported_in_one_sentence(repository: Path, name: str) -> None:
     with pytest.raises(RepairError, match=r"invalid file names|no such file"):
         located(patch(name, root=repository), None)

@@ -65,7 +65,7 @@ def test_evidence_escapes_markdown_and_lists_every_fact_except_digests(tmp_path:
 
 
 @pytest.mark.parametrize("content", [b"", b"x = 1\n", b"diff --git a/x b/x\n", b"\xff\xfe"])
-def test_other_files_are_not_read_as_patches(tmp_path: Path, content: bytes) -> None:
+def test_files_that_are_not_patches_are_refused(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "x.patch"
     path.write_bytes(content)
     with pytest.raises(RepairError, match="is not a patch of TARL"):
@@ -153,7 +153,7 @@ def rewritten(root: Path, *changes: tuple[str, str]) -> Path:
     return path
 
 
-def test_a_patch_that_is_sealed_again_is_read(tmp_path: Path) -> None:
+def test_a_patch_with_a_newly_computed_seal_is_read(tmp_path: Path) -> None:
     found = reading.read(rewritten(tmp_path))
     assert found.sealed
     assert found.told("test") == ["test_it.py::test_it"]
@@ -261,10 +261,10 @@ ODD = [
 
 
 @pytest.mark.parametrize("name", ODD)
-def test_names_that_may_leave_the_project_are_not_inside(name: str) -> None:
+def test_file_names_that_may_lead_out_of_the_project_are_refused(name: str) -> None:
     assert not reading._inside(name)
 
 
 @pytest.mark.parametrize("name", ["a.py", "a/b c.py", "...py", "a/..b/.gitignore", "git/tarl.py", "ö.py"])
-def test_other_names_are_inside(name: str) -> None:
+def test_file_names_inside_the_project_are_accepted(name: str) -> None:
     assert reading._inside(name)

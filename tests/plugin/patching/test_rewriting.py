@@ -408,7 +408,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 @pytest.mark.parametrize(
     "node", ["shuttle/traveller.py", "shuttle/traveller_swapped.py", "line_follower/line_follower.py"]
 )
-def test_every_operand_of_the_examples_can_be_written_under_a_guard(node: str) -> None:
+def test_a_guard_can_be_put_around_every_operand_of_the_examples(node: str) -> None:
     analysis = analyse([EXAMPLES / node], root=EXAMPLES)
     operands = [operand for step in analysis.sites for operand in analysis.operands(step.site)]
     assert len(operands) > 2

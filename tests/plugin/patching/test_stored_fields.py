@@ -97,7 +97,7 @@ def test_the_first_statement_skips_the_docstring_if_another_statement_follows() 
         ("def f(): pass\n", 0, None),
     ],
 )
-def test_new_variables_follow_a_module_variable_just_before(
+def test_new_variables_are_added_after_a_module_variable_that_directly_precedes_them(
     text: str, limit: int, expected: str | None
 ) -> None:
     found = _state(document("node.py", text), limit)

@@ -37,7 +37,7 @@ def test_a_refused_candidate_is_reported_if_no_other_candidate_is_left() -> None
     assert furthest(refused, NONE) is refused
 
 
-def test_a_candidate_that_passed_in_the_drifted_world_ranks_above_one_that_did_not() -> None:
+def test_a_candidate_that_passed_in_the_drifted_world_ranks_above_a_candidate_that_failed_there() -> None:
     weak, costly = Refused(SOME, "gain too small", 9.0), Refused(ANOTHER, "nominal gets worse")
     assert furthest(weak, costly) is costly
     assert furthest(costly, weak) is costly
@@ -177,7 +177,7 @@ def refusal(line_up: Sequence[str], monkeypatch: pytest.MonkeyPatch, **patched: 
     return at, refused.reason
 
 
-def test_the_refused_candidate_is_reported_whatever_it_failed_at(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_refused_candidate_is_reported_regardless_of_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     assert refusal((), monkeypatch) == (None, "no operand helps")
     assert refusal(("bad at once",), monkeypatch) == (0, "gain too small")
     assert refusal(("bad as designed",), monkeypatch) == (0, "nominal gets worse")
@@ -203,7 +203,7 @@ def test_the_budget_is_the_reason_only_if_no_candidate_was_refused_before_it_end
     assert refused.candidate == (field.candidates[0] if budget else None)
 
 
-def test_a_guard_is_narrower_if_it_has_all_conditions_of_another_one_and_more() -> None:
+def test_a_guard_is_narrower_if_it_has_all_conditions_of_the_other_guard_and_more() -> None:
     wet, dark = (Conjunct(Sensor(name, topic=f"/{name}", field="data"), 1, 1) for name in ("wet", "dark"))
     one, other, both = Guard((wet,)), Guard((dark,)), Guard((dark, wet))
     assert _narrower(both, one)
@@ -268,7 +268,7 @@ def test_a_narrower_guard_is_skipped_if_the_reward_is_too_low_under_the_wider_on
     assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
 
 
-def test_one_mission_shows_that_a_change_is_as_harmful_under_another_condition(
+def test_one_mission_shows_whether_a_change_is_equally_harmful_under_another_condition(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, _ = GUARDS
@@ -285,7 +285,7 @@ def test_one_mission_shows_that_a_change_is_as_harmful_under_another_condition(
     assert [drifted for guard, drifted in ran if guard == wet] == [True, False]
 
 
-def test_no_condition_is_tried_on_another_value_that_gains_too_little_without_one(
+def test_a_condition_is_not_tried_on_another_value_that_gains_too_little_without_a_condition(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, both = GUARDS
@@ -461,7 +461,7 @@ def test_a_value_whose_missions_succeed_but_earn_too_little_is_moved_back(low: f
     assert low <= accepted_factor(field, (2.6,)) < 1.9
 
 
-def test_a_value_that_was_moved_back_gets_a_condition_if_the_designed_world_needs_one(
+def test_a_value_that_was_moved_back_gets_a_condition_if_it_harms_the_designed_world(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     wet = Guard((Conjunct(Sensor("wet", topic="/wet", field="data"), 1, 1),))
@@ -510,7 +510,7 @@ def test_a_value_that_loses_few_missions_is_replaced_by_a_value_that_loses_none(
     assert low <= accepted_factor(field, (low * share,)) <= 1.25 * low
 
 
-def test_later_candidates_must_first_pass_the_missions_that_a_refused_one_lost(
+def test_later_candidates_first_run_the_missions_that_a_refused_candidate_lost(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(
@@ -529,7 +529,7 @@ def test_later_candidates_must_first_pass_the_missions_that_a_refused_one_lost(
     assert not second.fresh
 
 
-def test_a_candidate_within_a_few_percent_of_an_examined_one_is_not_examined(
+def test_a_candidate_within_a_few_percent_of_an_examined_candidate_is_not_examined(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(
@@ -591,7 +591,7 @@ def _tested_at_once(drifted: Any, nominal: Any, designed: Any, seeds: Sequence[i
     return Acceptance(good, "" if good else "gain too small", (outcome,), (), True, 1)
 
 
-def test_a_candidate_that_acts_like_a_rejected_one_is_not_tested_again(
+def test_a_candidate_that_acts_like_a_rejected_candidate_is_not_tested_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(

@@ -80,7 +80,7 @@ def test_expressions_of_two_axes_differ_in_the_names_of_the_axes_only(
     assert axes_of(spot(text, one), spot(text, other)) == axes
 
 
-def test_expressions_of_two_functions_are_no_twins() -> None:
+def test_expressions_in_two_functions_are_not_twins() -> None:
     source: Any = document("a.py", "def f(g):\n    a = g.x - 1\n\n\ndef h(g):\n    a = g.y - 1\n")
     nodes = [one for one in source.expressions.values() if isinstance(one, ast.BinOp)]
     site: Any = SimpleNamespace()
@@ -133,14 +133,14 @@ def test_the_second_axis_changes_together_with_the_first(
     )
 
 
-def test_an_axis_may_come_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_axis_may_be_named_before_the_quantity(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pallet = Pallet(tmp_path, monkeypatch)
     first, second = pallet.spots
     ((_, form),) = pallet.forms("derivative", second, before=(first,))
     assert form.partner == first.source.span(first.node)
 
 
-def test_a_sensor_stands_for_the_same_field_of_the_other_axis(
+def test_a_sensor_also_represents_the_same_field_of_the_other_axis(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pallet = Pallet(tmp_path, monkeypatch)
@@ -159,7 +159,7 @@ def test_a_sensor_without_an_axis_serves_both(tmp_path: Path, monkeypatch: pytes
     assert (form.sensor, form.sibling, form.partner) == (load, None, None)
 
 
-def test_what_overshoots_along_both_axes_is_changed_for_both_only(
+def test_a_change_is_made_for_both_axes_only_if_both_overshoot(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pallet = Pallet(tmp_path, monkeypatch)

@@ -133,7 +133,7 @@ def test_the_exponent_of_a_template_stays_on_its_grid_while_its_typical_value_is
     assert stronger(alone, 1.5, mutations) is None
 
 
-def test_a_value_stays_one_step_from_those_that_fail() -> None:
+def test_a_value_stays_one_step_away_from_failing_values() -> None:
     """The reward grows towards the old value, up to a cliff at a factor of 2.8."""
 
     def run(candidate: Candidate, _: int) -> Outcome:
@@ -149,7 +149,7 @@ def test_a_value_stays_one_step_from_those_that_fail() -> None:
 
 
 @pytest.mark.parametrize(("designed", "kept"), [(9.5, True), (9.9, False)])
-def test_a_value_that_earns_what_the_designed_missions_of_its_seeds_do_is_not_fitted_to_them(
+def test_a_value_is_not_fitted_to_seeds_whose_designed_missions_earn_as_little(
     designed: float, kept: bool
 ) -> None:
     trials = world(2.0, 0.3)

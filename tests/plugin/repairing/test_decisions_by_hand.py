@@ -155,7 +155,7 @@ def test_a_smoother_form_of_a_candidate_is_accepted_in_its_place(monkeypatch: py
 
 
 @pytest.mark.parametrize("kind", ["lucky on known seeds", "bad as designed"])
-def test_a_constant_whose_value_fits_only_some_missions_or_one_world_follows_a_sensor(
+def test_a_constant_follows_a_sensor_if_its_value_fits_only_some_missions_or_one_world(
     monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
     one, field, trials = examiner([kind, "good"], monkeypatch)
@@ -172,7 +172,7 @@ def test_a_constant_whose_value_fits_only_some_missions_or_one_world_follows_a_s
     assert asked == field.candidates[:1]
 
 
-def test_a_candidate_that_loses_missions_of_a_rejected_one_gets_no_better_value(
+def test_no_better_value_is_sought_for_a_candidate_that_loses_the_missions_of_a_rejected_candidate(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     one, field, trials = examiner(["good"], monkeypatch)
@@ -298,7 +298,7 @@ def test_a_plainer_candidate_that_waits_is_tested_first(monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize("breaks", [False, True])
-def test_a_value_that_cannot_be_written_neither_reaches_nor_holds_nor_mends(breaks: bool) -> None:
+def test_a_value_that_cannot_be_written_counts_as_a_failure_everywhere(breaks: bool) -> None:
     pairs = tuple(Pair(seed, 1.0) for seed in range(5))
     goal = Goal(pairs, near=8.0, enough=9.0, online=1.0)
     asked: list[int] = []

@@ -46,7 +46,7 @@ rospy.spin()
         (("FLOOR", "STEP"), ("FLOOR", "STEP"), ("FLOOR", "STEP"), []),
     ],
 )
-def test_the_constants_of_entered_statements(
+def test_the_constants_of_entered_statements_are_listed(
     designed: tuple[str, ...],
     drifted: tuple[str, ...],
     changed: tuple[str, ...],

@@ -233,7 +233,7 @@ def test_the_label_and_the_accepted_change_name_the_place_in_the_file(tmp_path: 
         ("/keeper/gain", {"b.yaml": "gain: true\nother: [\n"}, []),
     ],
 )
-def test_the_number_in_force_is_the_one_whose_keys_name_the_node(
+def test_the_value_in_force_is_the_entry_whose_keys_name_the_node(
     name: str, files: Mapping[str, str], expected: list[str]
 ) -> None:
     assert [f"{one.path}:{one.line}" for one in places_in_force(name, 2.0, files)] == expected

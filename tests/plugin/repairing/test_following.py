@@ -81,7 +81,7 @@ def test_the_sensor_of_the_condition_comes_first() -> None:
 
 
 @pytest.mark.parametrize("mutation", [Mutation(NAMED, 1.2), Mutation(NAMED, 1000.0)])
-def test_a_power_that_says_little_or_needs_much_is_left_out(mutation: Mutation) -> None:
+def test_powers_with_little_effect_or_extreme_values_are_left_out(mutation: Mutation) -> None:
     assert list(following(order((1,), (6,), SPEED), Candidate((mutation,), FAST))) == []
 
 
@@ -93,7 +93,7 @@ def test_a_power_that_says_little_or_needs_much_is_left_out(mutation: Mutation) 
         Candidate((Mutation(operand(5, "True", True), value=False),), FAST),
     ],
 )
-def test_several_constants_at_once_zeros_and_booleans_do_not_follow_a_sensor(candidate: Candidate) -> None:
+def test_combinations_of_constants_zeros_and_booleans_do_not_follow_a_sensor(candidate: Candidate) -> None:
     assert list(following(order((1,), (6,), SPEED), candidate)) == []
 
 
@@ -109,7 +109,9 @@ def test_after_a_permanent_change_one_value_suffices() -> None:
     assert list(following(asked, FOUR_TIMES)) == []
 
 
-def test_a_variable_of_the_node_serves_as_well_as_a_sensor(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_constant_can_follow_a_variable_of_the_node_in_place_of_a_sensor(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(module, "variables", lambda *_: [("self.speed", 1.0, 4.0), ("self.way", 1.0, 9.0)])
     (found,) = following(order((6,), (6,), SPEED), FOUR_TIMES)
     form = found.mutations[0].form

@@ -64,7 +64,7 @@ def test_a_value_inside_the_range_stays(low: float, high: float, by: float) -> N
     assert trials.spent - begun <= 1
 
 
-def test_a_value_stays_if_those_inside_the_range_earn_less() -> None:
+def test_a_value_stays_if_the_values_inside_the_range_earn_less() -> None:
     trials = world(1.1, 4.0, slope=1.0)
     for tried in (1.05, 4.2):
         trials(changed(tried), 0)
@@ -95,7 +95,7 @@ def test_the_new_value_has_few_digits() -> None:
 
 
 @pytest.mark.parametrize("value", [-2.0, True])
-def test_a_changed_sign_or_boolean_stays(value: float) -> None:
+def test_a_changed_sign_or_boolean_is_not_moved(value: float) -> None:
     constant = operand(5, "False", False) if value is True else GAIN
     found, trials = Candidate((Mutation(constant, value),), ALWAYS), world(0.0, 9.0)
     assert GoodRange(mutations).amid(found, trials, GOAL, REFERENCE) == found

@@ -119,7 +119,7 @@ def test_lines_that_lose_an_import_or_a_comment_conflict(robot: Path, one: str, 
     assert "node.py:2 is changed in two ways" in joined([first, second], robot).lines[0]
 
 
-def test_an_insertion_contained_in_another_one_is_added_once(robot: Path) -> None:
+def test_an_insertion_that_another_insertion_contains_is_added_once(robot: Path) -> None:
     first = repair(robot, {"node.py": NODE.replace("low = 1\n", "low = 1\nterrain = None\n")})
     more = NODE.replace("low = 1\n", "low = 1\nterrain = None\nrain = None\n").replace("GAIN = 5", "GAIN = 6")
     second = repair(robot, {"node.py": more}, "wind")

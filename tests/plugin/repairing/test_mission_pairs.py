@@ -104,7 +104,7 @@ def recorded(folder: Path, numbers: Any, **given: Any) -> tuple[Any, Recorded]:
     return rollout.order, rollout
 
 
-def test_symptoms_are_measured_where_both_drifted_missions_have_values(tmp_path: Path) -> None:
+def test_symptoms_are_measured_in_steps_in_which_both_missions_have_values(tmp_path: Path) -> None:
     def numbers(seed: int, drifted: bool) -> dict[str, int]:
         return {
             "self.range = ": 2,

@@ -41,7 +41,7 @@ def test_the_first_candidate_that_helps_is_returned_with_its_gains() -> None:
     assert spent == KNOWN + BOTH
 
 
-def test_two_candidates_are_tested_at_most() -> None:
+def test_at_most_two_candidates_are_tested() -> None:
     mutants, judge, found = of_partial({ONE: (5.0, 0.0), TWO: (6.0, 0.0), THREE: (7.0, 0.0)})
     useless = {THREE, TWO}
     runs = mutants.run

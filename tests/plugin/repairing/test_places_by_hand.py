@@ -112,7 +112,7 @@ def test_a_change_is_moved_to_the_definition_if_the_reward_is_the_same_there(tmp
     assert {seed for _, seed in trials.ran} == {10}  # the first seed shows that the outcomes are equal
 
 
-def test_a_change_whose_reward_differs_at_the_definition_must_reach_the_goal_on_three_seeds(
+def test_a_change_that_earns_another_reward_at_the_definition_must_reach_the_goal_on_three_seeds(
     tmp_path: Path,
 ) -> None:
     of, trials = placing(tmp_path), Scripted(lambda moved, seed: 9.5 if moved else 10.0)

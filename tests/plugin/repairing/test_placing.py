@@ -240,7 +240,7 @@ def test_a_parameter_that_the_test_passes_is_reported_and_never_edited(worn: pyt
     assert "the test itself passes it (parameters=…, argv=…), and TARL never edits tests" in told
 
 
-def test_a_parameter_of_a_launch_file_is_not_said_to_be_passed_by_the_test(worn: pytest.Pytester) -> None:
+def test_a_parameter_of_a_launch_file_is_not_reported_as_passed_by_the_test(worn: pytest.Pytester) -> None:
     node(worn, gain='rospy.get_param("~gain", 0.7)')
     files = {
         "package.xml": "<package><name>water</name></package>",

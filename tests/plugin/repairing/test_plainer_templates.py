@@ -43,7 +43,7 @@ def found(name: str, tmp_path: Path) -> tuple[Any, list[Candidate]]:
     return analysis, list(factors(order, Candidate((Mutation(operand, 1.0, form=form),), ALWAYS)))
 
 
-def test_factors_come_in_place_of_an_integral_the_smallest_first(tmp_path: Path) -> None:
+def test_an_integral_is_replaced_by_a_factor_trying_the_smallest_factor_first(tmp_path: Path) -> None:
     analysis, plain = found("integral", tmp_path)
     assert [form_values(one.mutations[0]) for one in plain] == [{"gain": factor} for factor in FACTORS]
     assert plain[1].mutations[0].operand.code == "gain of max(-0.5, min(0.5, error)), gain"
@@ -52,5 +52,5 @@ def test_factors_come_in_place_of_an_integral_the_smallest_first(tmp_path: Path)
 
 
 @pytest.mark.parametrize("name", ["gain", "offset", "limit", "comparison"])
-def test_nothing_comes_in_place_of_a_template_without_state(name: str, tmp_path: Path) -> None:
+def test_a_template_without_state_is_not_replaced(name: str, tmp_path: Path) -> None:
     assert found(name, tmp_path)[1] == []

@@ -131,7 +131,7 @@ class Use:
         ([Use("a", product="p"), Use("a", product="p"), Use("b", product="p")], "a a b"),  # used twice
     ],
 )
-def test_what_is_equivalent_to_another_constant_is_not_searched(
+def test_a_constant_that_is_equivalent_to_a_searched_constant_is_not_searched(
     operands: list[Use], kept: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(products, "_stored", lambda _, one: one.stored)

@@ -77,7 +77,7 @@ def test_a_ranking_states_that_it_is_incomplete_or_that_no_repair_was_found() ->
     assert told.endswith("the budget ended before all were ranked")
 
 
-def test_without_simulation_there_is_no_sentence() -> None:
+def test_without_simulation_the_ranking_has_no_sentence_on_confidence() -> None:
     assert ranking_confidence(ORDER, {}, None, None) == ""
 
 

@@ -87,7 +87,7 @@ def corrected(
     ]
 
 
-def test_an_offset_of_a_reading_is_taken_back_where_it_is_received(
+def test_a_sensor_offset_is_subtracted_where_the_message_is_received(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bent = {HEADING: (0.3, 0.44), TURN: (-0.6, -0.88)}
@@ -95,7 +95,9 @@ def test_an_offset_of_a_reading_is_taken_back_where_it_is_received(
     assert found[0] == (14, "offset", pytest.approx(-0.14))
 
 
-def test_a_factor_of_a_reading_is_taken_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_wrong_scale_of_a_sensor_is_corrected_by_a_factor(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     found = corrected(tmp_path, monkeypatch, {WEIGHT: (4.0, 5.0)}, {WEIGHT: (8.0, 10.0)})
     assert found == [(19, "gain", pytest.approx(0.8))]
 
@@ -136,7 +138,7 @@ def tried(monkeypatch: pytest.MonkeyPatch, total: Any, values: Sequence[float]) 
     return yielded, found
 
 
-def test_corrections_are_confirmed_once_even_if_the_first_seed_is_hard(
+def test_each_correction_is_confirmed_once_even_if_the_first_seed_is_hard(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     yielded, found = tried(monkeypatch, lambda value, seed: 10.0 if value == 2.0 else 0.0, (3.0, 2.0))
@@ -156,7 +158,7 @@ def test_a_correction_that_cannot_be_written_is_left_out(monkeypatch: pytest.Mon
     assert tried(monkeypatch, total, (3.0, 2.0))[0] == [2.0]
 
 
-def test_factors_on_published_fields_come_before_an_extreme_change_once(
+def test_factors_on_published_fields_are_tried_once_before_an_extreme_change(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(early, "corrections", lambda *_: ())

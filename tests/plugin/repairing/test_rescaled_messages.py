@@ -94,7 +94,7 @@ def test_a_stored_message_is_converted_where_it_is_read_later(tmp_path: Path) ->
     assert found == [[(22, "self.goal.x", 0.001), (22, "self.goal.y", 0.001)]]
 
 
-def test_a_factor_that_is_no_unit_is_taken_as_it_is(tmp_path: Path) -> None:
+def test_a_factor_that_is_not_a_ratio_of_units_is_used_unchanged(tmp_path: Path) -> None:
     found = corrected(tmp_path, {WIND: (4.0, 5.0)}, {WIND: (8.0, 10.0)})
     assert [by for _, _, by in found[0]] == [0.8, 0.8]
 
@@ -143,7 +143,7 @@ def test_usual_sizes_show_only_units_of_the_quantity(
     assert [by for one in shown for _, _, by in one] == ([] if found is None else [found])
 
 
-def test_the_unit_of_a_declared_sensor_tells_the_quantity(tmp_path: Path) -> None:
+def test_the_unit_of_a_declared_sensor_determines_the_quantity(tmp_path: Path) -> None:
     code = BOAT.replace("math.sin(msg.data + 0.1) + math.cos(msg.data)", "msg.data")
     missions: tuple[Missions, ...] = ({WIND: (1.0, 14.5)}, {WIND: (1.0, 14.5)})
     for topic, found in (("wind", [0.06895]), ("goal", [])):

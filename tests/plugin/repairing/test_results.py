@@ -68,7 +68,7 @@ def test_a_candidate_with_few_runs_rarely_becomes_the_best_so_far() -> None:
     assert found.gain(one) == pytest.approx((4.0 + 2.0) / 2)
 
 
-def test_the_best_candidate_is_reported_unless_one_was_refused_on_fresh_seeds() -> None:
+def test_the_best_candidate_is_reported_unless_a_candidate_was_refused_on_fresh_seeds() -> None:
     one, fresh = scaled(2.0), Refused(scaled(3.0), "not shown", 1.0, 5)
     found = watch((one, 0, 4.0), (one, 1, 6.0))
     nothing = Refused(None, "budget")
@@ -79,7 +79,7 @@ def test_the_best_candidate_is_reported_unless_one_was_refused_on_fresh_seeds() 
     assert found.progress("sweep") == "sweep (best so far +4.5 of 8)"
 
 
-def test_a_candidate_with_only_one_good_mission_of_three_or_more_counts_as_unconfirmed() -> None:
+def test_a_candidate_with_one_good_mission_of_three_or_more_counts_as_unconfirmed() -> None:
     one, two, far, examined = (scaled(by) for by in (2.0, 3.0, 4.0, 5.0))
     runs = [(two, 0, 8.0), (two, 1, 1.0)]  # twice only
     for candidate, first in ((one, 8.0), (far, 7.9), (examined, 9.0)):
@@ -305,7 +305,7 @@ def test_a_candidate_fails_again_if_it_loses_most_of_the_latest_missions(
     assert not Missed().again(scaled(2.0), trials, GOAL)
 
 
-def test_a_candidate_improves_on_a_refused_candidate_if_it_passes_all_missions_that_the_refused_one_lost() -> (
+def test_a_candidate_is_better_than_a_refused_candidate_if_it_passes_all_missions_that_the_latter_lost() -> (
     None
 ):
     refused = scaled(2.0)

@@ -43,7 +43,7 @@ def scaled(name: str, code: str, within: str, field: str = "", value: float = 1.
         ("gain", "turn", "z = turn", "", [4, 3]),
     ],
 )
-def test_a_factor_on_a_command_comes_with_the_statements_that_compute_it(
+def test_a_factor_on_a_command_is_proposed_with_the_statements_that_compute_the_command(
     name: str, code: str, within: str, field: str, lines: list[int]
 ) -> None:
     found = scaled(name, code, within, field)
@@ -52,6 +52,6 @@ def test_a_factor_on_a_command_comes_with_the_statements_that_compute_it(
 
 
 @pytest.mark.parametrize("name", ["offset", "sign", "integral"])
-def test_other_changes_scale_no_command(name: str) -> None:
+def test_other_changes_do_not_scale_a_command(name: str) -> None:
     found = scaled(name, "turn", "z = turn")
     assert found is None

@@ -38,7 +38,7 @@ def commands(order: Any) -> list[Spot]:
 
 
 @pytest.mark.parametrize(("share", "left"), SHARES)
-def test_each_change_of_a_command_gets_a_few_episodes_but_all_of_them_at_most_a_third(
+def test_each_change_of_a_command_gets_a_few_episodes_and_all_together_get_at_most_a_third(
     tmp_path: Path, share: int, left: int
 ) -> None:
     of = structures(of_many(tmp_path))
@@ -82,7 +82,7 @@ def groups(of: Structures) -> list[_Group]:
 
 
 @pytest.mark.parametrize(("share", "left"), SHARES)
-def test_changes_with_symptoms_and_those_at_the_best_statement_get_half_of_the_episodes(
+def test_changes_with_symptoms_and_changes_at_the_best_statement_get_half_of_the_episodes(
     tmp_path: Path, share: int, left: int
 ) -> None:
     order = of_many(tmp_path)
@@ -103,7 +103,7 @@ def test_changes_with_symptoms_and_those_at_the_best_statement_get_half_of_the_e
 
 
 @pytest.mark.parametrize(("share", "left"), SHARES)
-def test_changes_by_a_telling_sensor_get_at_least_fifty_episodes_and_at_most_a_third(
+def test_changes_by_a_sensor_that_separates_the_worlds_get_at_least_fifty_episodes_and_at_most_a_third(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, share: int, left: int
 ) -> None:
     order = order_of(tmp_path)
@@ -116,7 +116,7 @@ def test_changes_by_a_telling_sensor_get_at_least_fifty_episodes_and_at_most_a_t
     assert first.share(share, left) == min(max(share, LEAST), left // 3)
 
 
-def test_a_sensor_that_tells_only_because_missions_end_early_is_left_out(
+def test_a_sensor_that_differs_only_because_missions_end_early_is_left_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     order = order_of(tmp_path)
@@ -132,7 +132,7 @@ def template(name: str, on: str = "value", cost: int = 1, parameters: tuple[Para
     return Template(name, name, on, cost, f"-{{x}} + {names}" if names else "-{x}", parameters=parameters)
 
 
-def test_templates_of_equal_cost_form_a_group_at_the_first_expressions_and_then_at_the_others(
+def test_templates_of_equal_cost_form_one_group_at_the_first_expressions_and_one_at_the_others(
     tmp_path: Path,
 ) -> None:
     order = of_many(tmp_path)
@@ -201,7 +201,7 @@ def test_each_group_gets_a_share_by_its_number_of_parameters(
     assert of.effects() == {"all": [0, 1, 2], **{f"site {number}": [number] for number in range(3)}}
 
 
-def test_a_group_ends_when_its_candidates_have_used_up_what_later_groups_may_give(
+def test_a_group_ends_when_its_candidates_have_used_up_its_share_and_the_shares_of_later_groups(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     of, three = made(tmp_path, 120)
@@ -248,7 +248,7 @@ def test_after_an_examination_the_share_grows_by_its_episodes(
     assert (of.trials.budget, of.trials.reserve) == (120, 0)
 
 
-def test_a_group_that_spends_its_share_is_followed_by_the_next_and_the_last_one_ends_the_search(
+def test_a_group_that_has_spent_its_share_is_followed_by_the_next_group_and_the_last_group_ends_the_search(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     of, three = made(tmp_path, 120)
@@ -289,7 +289,7 @@ def test_early_changes_spend_at_most_twice_their_episodes_and_restore_the_budget
     assert (trials.budget, trials.reserve, trials.worth) == (300, 9, of.order.goal)
 
 
-def test_what_the_caller_spends_on_an_early_change_does_not_count_as_its_episodes(
+def test_episodes_that_the_caller_spends_on_an_early_change_are_not_counted_twice(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     of = structures(order_of(tmp_path), 300)
@@ -312,7 +312,7 @@ def test_what_the_caller_spends_on_an_early_change_does_not_count_as_its_episode
     assert trials.budget == 300
 
 
-def test_early_changes_by_a_sensor_need_one_that_varies_or_a_range_of_sizes(
+def test_early_changes_by_a_sensor_need_a_varying_sensor_or_a_range_of_sizes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for ranged, varies, expected in ((False, False, []), (True, False, [SENSOR]), (False, True, [SENSOR])):
@@ -338,7 +338,9 @@ def formed(of: Structures, parameter: Parameter, *more: Parameter, on: str = "va
     return lambda factor: of.mutate(operand(1, "x", 2.0), factor)
 
 
-def test_a_parameter_is_moved_by_a_factor_and_only_the_first_one_keeps_its_value(tmp_path: Path) -> None:
+def test_a_parameter_is_moved_by_a_factor_and_only_the_first_parameter_can_keep_its_value(
+    tmp_path: Path,
+) -> None:
     of = structures(order_of(tmp_path))
     moved = formed(of, Parameter("k", 2.0))
     assert [moved(factor).value for factor in (1.0, 1.5, 0.25)] == [1.0, 1.5, 0.25]
@@ -350,7 +352,7 @@ def test_a_parameter_is_moved_by_a_factor_and_only_the_first_one_keeps_its_value
 @pytest.mark.parametrize(
     ("on", "signed", "allowed"), [("value", False, False), ("value", True, True), ("sensor", False, True)]
 )
-def test_only_signed_parameters_and_those_of_sensors_change_their_sign(
+def test_only_signed_parameters_and_parameters_for_sensors_change_their_sign(
     tmp_path: Path, on: str, signed: bool, allowed: bool
 ) -> None:
     of = structures(order_of(tmp_path))
@@ -400,7 +402,7 @@ def test_a_template_without_parameters_has_one_mutation(tmp_path: Path) -> None:
         ("larger", 0.0, False),
     ],
 )
-def test_a_step_is_weaker_if_the_change_has_less_effect_with_it(
+def test_a_step_is_weaker_if_it_reduces_the_effect_of_the_change(
     tmp_path: Path, stronger: str, factor: float, weaker: bool
 ) -> None:
     of = structures(order_of(tmp_path))
@@ -435,7 +437,7 @@ def test_the_fixed_parameters_of_the_same_change_are_given(tmp_path: Path) -> No
         ({"a": [None], "b": [2.0]}, ("b",)),
     ],
 )
-def test_statements_respond_if_a_known_constant_gains_a_fifth_of_what_is_wanted(
+def test_statements_respond_if_a_known_constant_gains_a_fifth_of_the_wanted_gain(
     effects: dict[str, list[float | None]], expected: tuple[str, ...]
 ) -> None:
     given = {

@@ -66,7 +66,7 @@ def test_a_change_whose_size_or_direction_does_not_match_a_sensor_is_only_scaled
         (Candidate((Mutation(operand(5, "True", True), value=False),), LONG), 0),
     ],
 )
-def test_without_a_jump_or_a_sensor_that_rests_at_zero_there_is_nothing_to_smooth(
+def test_nothing_is_smoothed_without_a_jump_or_a_sensor_that_rests_at_zero(
     candidate: Candidate, designed: int
 ) -> None:
     assert list(smoothed(order(designed, 3), candidate)) == []

@@ -71,5 +71,5 @@ def test_an_entry_is_used_where_its_key_is_read(tmp_path: Path, line: str, code:
         ('out = self.p["speed"] * msg.data', ', "speed": "fast"'),  # no number
     ],
 )
-def test_other_reads_are_no_uses(tmp_path: Path, line: str, more: str) -> None:
+def test_reads_of_other_keys_do_not_use_the_entry(tmp_path: Path, line: str, more: str) -> None:
     assert uses(analysed(tmp_path, line, more)) == []

@@ -97,7 +97,7 @@ def test_a_sensor_varies_if_the_drifted_world_uses_at_least_one_and_a_half_times
         ([], [1.0], False),
     ],
 )
-def test_a_sensor_tells_if_at_most_a_quarter_of_the_steps_is_in_common_bins(
+def test_a_sensor_separates_the_worlds_if_at_most_a_quarter_of_the_steps_is_in_common_bins(
     designed: list[float], drifted: list[float], tells: bool
 ) -> None:
     assert bool(telling(visits(designed, drifted))) is tells

@@ -152,7 +152,7 @@ def test_the_distance_to_a_publish_call_is_the_shortest_of_all_flows() -> None:
         ("b", "xb", "bca"),
     ],
 )
-def test_templates_are_tried_first_at_statements_that_responded_and_then_in_turn_at_the_others(
+def test_templates_are_tried_first_at_statements_that_responded_and_then_at_the_other_statements(
     culprits: str, responding: str, names: str
 ) -> None:
     given = order([A, B, C], culprits=tuple(culprits))

@@ -86,7 +86,7 @@ x = """
         ("error", None),
     ],
 )
-def test_the_limited_expression_is_no_limit(code: str, expected: str | None) -> None:
+def test_the_limited_expression_does_not_count_as_the_limit(code: str, expected: str | None) -> None:
     source = document("a.py", HELPERS + code + "\n")
     node = source.tree.body[-1].value  # type: ignore[attr-defined]
     found = within_limits(source, node, {"top", "gain", "mass"})

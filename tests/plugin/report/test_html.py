@@ -219,4 +219,4 @@ def test_the_page_explains_the_test_and_cites_the_paper_in_a_footnote_only(shutt
     assert "Eq." not in before
     assert "Figure " not in before
     assert "paper" not in re.sub(r'class="[^"]*"', "", before)
-    assert "Figures 2 to 5" in footnote
+    assert "figures 2 to 5" in footnote

@@ -242,7 +242,7 @@ def test_a_table_row_has_test_drift_rewards_loss_verdict_and_region(varied: Vari
     assert table.row(quiet)[1:] == ("online", "n/a", "n/a", "0.10", "no difference", "")
 
 
-def test_three_texts_are_listed_and_further_ones_only_counted() -> None:
+def test_three_texts_are_listed_and_further_texts_are_only_counted() -> None:
     assert [*terminal._some(["a", "b", "c"])] == ["a", "b", "c"]
     assert [*terminal._some(["a", "b", "c", "d", "e"])] == ["a", "b", "c", "(and 2 more)"]
 

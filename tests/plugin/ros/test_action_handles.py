@@ -181,7 +181,7 @@ def test_a_status_moves_the_client_through_the_states_of_actionlib(
     assert [CommState.to_string(one) for one in found] == expected
 
 
-def test_a_class_that_is_no_action_is_refused(start: Start) -> None:
+def test_a_class_that_is_not_an_action_is_refused(start: Start) -> None:
     with pytest.raises(NodeError, match="Type is not an action spec"):
         start("""
             import actionlib, rospy

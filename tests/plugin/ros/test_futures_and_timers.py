@@ -100,7 +100,7 @@ def test_a_coroutine_waits_for_its_future_and_wakes_the_executor() -> None:
     assert (one.result(), one.done()) == (5, True)
 
 
-def test_a_coroutine_may_be_given_itself_and_is_closed_by_cancelling() -> None:
+def test_a_coroutine_can_be_passed_as_an_object_and_is_closed_by_cancelling() -> None:
     closed: list[bool] = []
 
     async def work() -> None:

@@ -257,7 +257,7 @@ def test_a_function_can_replace_a_python_node_and_its_errors_are_errors_of_the_t
         tarl.step(0.1)
 
 
-def test_two_nodes_of_one_ros2_program_share_no_module(tarl: Tarl) -> None:
+def test_two_nodes_of_one_ros2_program_do_not_share_modules(tarl: Tarl) -> None:
     tarl.launch("relays/launch/pair.launch.xml", arguments={"robot": "r2"})
     # the left node gets gain 2 and top 4 from YAML; no section names the other node, which keeps its defaults
     assert sent(tarl, "/start", 1.0, 3.0) == pytest.approx(4.0 + 2 * 0.002)

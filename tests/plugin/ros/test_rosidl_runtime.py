@@ -110,7 +110,7 @@ def test_csv_contains_the_values_of_nested_messages() -> None:
     assert message_to_csv(Floats(data=[1.5, 2.5])).endswith("0,1.5,2.5")
 
 
-def test_yaml_has_blocks_or_one_line() -> None:
+def test_yaml_is_printed_in_blocks_or_on_one_line() -> None:
     pytest.importorskip("yaml")
     stamp = message_type("builtin_interfaces/msg/Time")(sec=3)
     assert message_to_yaml(stamp) == "sec: 3\nnanosec: 0\n"

@@ -102,7 +102,7 @@ def test_class_node_with_timer_keeps_state_between_callbacks(start: Start) -> No
     assert [command.linear.x for command in commands] == [3.0, 3.0]
 
 
-def test_subscribers_do_not_see_what_the_publisher_changes_later(start: Start) -> None:
+def test_subscribers_do_not_see_later_changes_by_the_publisher(start: Start) -> None:
     ros = start("""
         import rospy
         from geometry_msgs.msg import Twist

@@ -101,7 +101,9 @@ def test_an_action_state_has_the_outcome_of_its_goal(
     assert state.served == (outcome == "preempted")
 
 
-def test_a_goal_is_cancelled_after_one_time_limit_and_abandoned_after_another(clock: list[float]) -> None:
+def test_a_goal_is_cancelled_after_its_first_time_limit_and_abandoned_after_its_second(
+    clock: list[float],
+) -> None:
     client = Client(None, GoalStatus.ACTIVE, clock)
     state = Acting(client, clock, _limit=1.0, _end=0.55)
     assert state.execute({}) == "aborted"

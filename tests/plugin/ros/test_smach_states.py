@@ -167,7 +167,7 @@ left = [one.preempt_requested() for one in (state, condition, monitor, service)]
     assert names["left"] == [False] * 4
 
 
-def test_a_goal_without_end_is_cancelled_at_its_limit_and_given_up(start: Start) -> None:
+def test_a_goal_that_does_not_end_is_cancelled_at_its_limit_and_then_abandoned(start: Start) -> None:
     names, mover = acted(start, """
 began = rospy.get_time()
 _, outcome = run(exec_timeout=rospy.Duration(1.0), cancel_timeout=rospy.Duration(2.0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.plugin.ros.conftest import Start
 
 
-def test_a_latched_message_is_received_again_by_a_subscriber_after_the_last_one_unregistered(
+def test_a_subscriber_that_subscribes_anew_after_all_have_unregistered_gets_the_latched_message_again(
     start: Start,
 ) -> None:
     publisher = """

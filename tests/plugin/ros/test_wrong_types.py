@@ -130,7 +130,7 @@ def test_responses_of_ros1_and_ros2_are_accepted(start: Start, node: str, made: 
     assert ros.namespace["said"] == "a"
 
 
-def test_serving_something_else_than_a_service_is_refused_at_the_call(start: Start) -> None:
+def test_offering_an_object_that_is_not_a_service_is_refused_at_the_call(start: Start) -> None:
     bus = start("pass").bus
     for wrong, seen in (
         (message_type("std_msgs/Float64"), "the class Float64"),

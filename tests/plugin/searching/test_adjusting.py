@@ -70,7 +70,7 @@ def test_refining_goes_on_while_the_gain_grows_or_is_almost_the_wanted_gain() ->
     assert len(search.tried) == 2
 
 
-def test_a_constant_that_was_refined_without_progress_gives_way_to_one_that_gains_nearly_as_much() -> None:
+def test_a_constant_without_progress_is_replaced_by_a_constant_that_gains_nearly_as_much() -> None:
     found, _ = adjusted(entered((A, 2.2, 3.0), (B, 2.2, 2.5)))
     assert set(found.refined) == {(A, ALWAYS)}
     list(found.refine(0))

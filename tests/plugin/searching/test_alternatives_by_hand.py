@@ -259,7 +259,7 @@ def test_the_factor_halfway_to_one_is_the_square_root_unless_a_factor_between_wa
     assert milder(A, 0.0, {}) is None
 
 
-def test_the_function_inside_returns_a_factor_that_is_nearer_to_one() -> None:
+def test_the_function_inside_returns_a_factor_closer_to_one() -> None:
     assert inside(exp(1.0)) == pytest.approx(exp(0.85), abs=5e-4)
     assert inside(exp(-1.0)) == pytest.approx(exp(-0.85), abs=5e-4)
     assert inside(1.0) == 1.0

@@ -91,7 +91,7 @@ def test_forward_selection_adds_the_best_constant_while_the_gain_exceeds_the_sla
     assert all(len(label.split(",")) <= 2 for label in little.trials.labels)  # no third part
 
 
-def test_a_combination_that_holds_is_yielded_once_without_the_parts_that_it_does_not_need() -> None:
+def test_a_combination_that_holds_is_yielded_once_without_its_unneeded_parts() -> None:
     chosen = selection(lambda by: 10.0 if {"A", "B"} <= by.keys() else 0.0)
     found, gain = finished(chosen.gain(joint((A, 2.2), (B, 2.2), (C, 2.2))))
     assert (found, gain) == ([{"A": 2.2, "B": 2.2}], 10.0)

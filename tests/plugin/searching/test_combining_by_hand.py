@@ -213,7 +213,7 @@ def test_constants_in_no_data_flow_are_also_searched_jointly(together: list[tupl
 @pytest.mark.parametrize(
     "given", [{"proposed": True}, {"generator": None}, {"alone": True}], ids=["proposed", "unseeded", "alone"]
 )
-def test_there_is_no_joint_search_for_proposals_or_for_one_constant_or_without_a_generator(
+def test_there_is_no_joint_search_for_proposals_for_one_constant_or_without_a_generator(
     given: dict[str, Any], together: list[tuple[Any, ...]]
 ) -> None:
     units = [A] if given.get("alone") else [A, B]

@@ -45,7 +45,7 @@ def test_the_designed_missions_run_once_and_only_if_the_mean_is_too_small() -> N
 
 
 @pytest.mark.parametrize("goal", [replace(GOAL, margin=None), replace(GOAL, harder={1: 0.1})])
-def test_without_a_margin_or_with_known_designed_rewards_nothing_else_runs(goal: Goal) -> None:
+def test_no_designed_mission_runs_if_there_is_no_margin_or_the_designed_rewards_are_known(goal: Goal) -> None:
     ran = trials(0.0)
     assert not confirmed(CANDIDATE, ran, goal, 0)
     assert ran.beside == 0

@@ -84,7 +84,7 @@ def test_a_narrow_good_range_of_another_constant_is_found_although_a_large_chang
         ([], []),
     ],
 )
-def test_smaller_changes_that_gain_much_are_refined_before_a_large_one(
+def test_smaller_changes_that_gain_much_are_refined_before_a_large_change(
     entries: list[tuple[int, float, float]], expected: list[int]
 ) -> None:
     table = gains_of(*((UNITS[at], factor, gain) for at, factor, gain in entries))

@@ -209,7 +209,7 @@ def test_a_named_constant_in_the_same_statement_is_tried_before_the_others() -> 
     assert plainer(Oddness.OFFSET, {}, [*others, beside], 5.0, beside) == [others[3], *others[:3], beside]
 
 
-def test_a_named_constant_in_the_next_lines_is_tried_before_one_in_the_lines_above() -> None:
+def test_a_named_constant_in_the_next_lines_is_tried_before_a_named_constant_above() -> None:
     """A value that reads too low is scaled, or the threshold with which it is compared below is lowered."""
     above, beside, threshold, further = (Unit((constant(n, f"N{n}"),)) for n in (50, 51, 52, 60))
     ranked = plainer(Oddness.INNER, {}, [above, further, threshold], 5.0, beside)
@@ -453,7 +453,7 @@ def test_tries_under_an_idle_guard_do_not_show_that_a_unit_has_no_effect() -> No
     assert found.moving(units) == units[1:]
 
 
-def test_a_hollow_gain_may_be_refined_but_is_no_progress() -> None:
+def test_a_hollow_gain_may_be_refined_but_is_not_progress() -> None:
     found = Gains(0.5)
     found.enter((A, ALWAYS), 0.4, 2.0, True, hollow=True)
     assert found.most((A, ALWAYS)) == 2.0

@@ -223,7 +223,7 @@ def test_of_two_guards_with_the_same_merit_the_one_with_fewer_conditions_wins() 
 # wider arcs
 
 
-def test_an_interval_of_angles_is_widened_on_both_sides_and_across_the_end_of_the_range() -> None:
+def test_an_interval_of_angles_is_widened_on_both_sides_and_may_wrap_around() -> None:
     step = 2 * (2 * pi / 8)
     low, high = widened(HEADING, 0.0, pi / 4)
     assert (low, high) == (pytest.approx(-step), pytest.approx(pi / 4 + step))

@@ -94,7 +94,7 @@ def test_a_change_is_held_only_if_it_gains_a_good_part_on_average(
     assert trials.spent == spent
 
 
-def test_what_cannot_be_written_is_left_out() -> None:
+def test_changes_that_cannot_be_written_are_skipped() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         if len(candidate.mutations) > 1:
             raise RepairError("no place")

@@ -54,7 +54,7 @@ def test_a_surrogate_predicts_the_conditional_mean_and_deviation(lengths: tuple[
         assert deviation[0] == pytest.approx(VALUES.std() * np.sqrt(1 - near @ inverse @ near))
 
 
-def test_the_length_scales_are_the_likeliest_found_one_coordinate_at_a_time() -> None:
+def test_the_likeliest_length_scales_are_found_one_coordinate_at_a_time() -> None:
     best = np.ones(2)
     for at in range(2):
         tries = [best.copy() for _ in jointly.LENGTHS]

@@ -184,7 +184,7 @@ def test_constants_that_were_set_aside_come_before_the_steps_of_a_plateau() -> N
     assert found.index("A=5") < found.index("B=2.2") < found.index("A=1.22")
 
 
-def test_the_last_steps_are_left_to_the_structural_changes_that_follow() -> None:
+def test_the_last_steps_are_reserved_for_the_structural_changes_that_follow() -> None:
     found = tried(lambda changes: -3.0 * float(A in changes), [A, LITERAL], structure_follows=True)
     assert "A=10" not in found
     assert "3.0=30" not in found

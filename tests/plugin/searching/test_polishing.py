@@ -133,7 +133,9 @@ def test_a_single_constant_that_fails_on_hard_seeds_is_adjusted_on_them() -> Non
 
 
 @pytest.mark.parametrize(("factor", "seeds"), [(0.628, 2), (0.58, 0), (1.5, 3)])
-def test_a_constant_that_ran_seldom_or_earns_little_is_not_adjusted(factor: float, seeds: int) -> None:
+def test_a_constant_that_ran_in_few_missions_or_earns_little_is_not_adjusted(
+    factor: float, seeds: int
+) -> None:
     search = narrow(0.05)
     candidate = Joint(((GRIP, factor),), ALWAYS).candidate(mutations)
     for seed in range(seeds):

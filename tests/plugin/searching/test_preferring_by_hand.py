@@ -356,7 +356,7 @@ def test_a_small_change_of_another_constant_comes_first_and_is_then_refused() ->
     assert search.refused == {(B, ALWAYS)}
 
 
-def test_a_small_change_that_barely_succeeds_is_replaced_by_a_slightly_larger_one_that_is_confirmed() -> None:
+def test_a_small_change_that_barely_succeeds_is_replaced_by_a_confirmed_larger_change() -> None:
     search = Scripted([A, B], window((A, 2.0, 9.0), (B, 1.2, 1.4)), [(B, 1.22), (B, 1.264)])
     search.gains.enter((A, ALWAYS), 1.5, 0.0)
     made, found = Preferences(search), change(A, 3.0)
@@ -457,7 +457,7 @@ def test_small_steps_end_after_their_episodes_and_skip_refused_constants() -> No
 # moderate changes before extreme ones
 
 
-def test_small_steps_of_other_constants_come_before_an_extreme_change_once() -> None:
+def test_small_steps_of_other_constants_are_tried_only_once_before_an_extreme_change() -> None:
     search = Scripted([A, B], holds=[(B, 1.05)])
     search.gains.enter((B, ALWAYS), 1.22, -3.0)
     preferences, found = Preferences(search), Candidate(A.mutations(mutations, 11.5), ALWAYS)
@@ -556,7 +556,7 @@ def test_constants_of_a_function_are_compared_once_and_of_two_functions_at_most(
     assert FUNCTIONS == 2
 
 
-def test_the_exact_value_of_the_constant_itself_comes_before_any_rival() -> None:
+def test_the_exact_value_of_the_constant_is_tried_before_any_rival() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         (one,) = candidate.mutations
         late = min(abs(one.value - 1.6246), 1.0)

@@ -22,7 +22,7 @@ def arms(*factors: float) -> list[Arm]:
     return [Arm(unit, factor, ALWAYS) for factor in factors]
 
 
-def test_arms_run_on_the_same_seeds_and_no_seed_twice() -> None:
+def test_arms_run_on_the_same_seeds_and_no_seed_is_repeated() -> None:
     ran: list[tuple[float, int]] = []
 
     def counted(candidate: Candidate, seed: int) -> object:

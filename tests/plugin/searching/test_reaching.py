@@ -42,7 +42,7 @@ def test_a_near_miss_is_compared_with_the_designed_mission_of_its_seed(
 
 
 @pytest.mark.parametrize("goal", [replace(GOAL, margin=None), replace(GOAL, harder={1: 0.0})])
-def test_without_a_margin_or_with_known_designed_rewards_the_goal_decides(goal: Goal) -> None:
+def test_only_the_goal_decides_if_there_is_no_margin_or_the_designed_rewards_are_known(goal: Goal) -> None:
     ran = trials(7.9, 7.9)
     assert not ran.reaches(CANDIDATE, 1, goal)
     assert ran.beside == 0

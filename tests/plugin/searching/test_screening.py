@@ -82,9 +82,7 @@ def test_a_change_found_in_a_screening_is_compared_with_named_constants() -> Non
     assert [one.operand for one in next(sweep.candidates()).mutations] == [threshold]
 
 
-def test_a_few_named_constants_are_tried_before_a_screening_and_in_finer_steps_as_long_as_nothing_gains() -> (
-    None
-):
+def test_a_few_named_constants_are_tried_before_a_screening_and_in_finer_steps_while_nothing_gains() -> None:
     literals = [operand(line, "1.0", 1.0) for line in range(60)]
     names = [operand(line, f"NAME_{line}", 1.0, named=True) for line in range(100, 104)]
 

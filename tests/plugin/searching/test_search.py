@@ -137,7 +137,7 @@ def test_an_episode_runs_once_per_candidate_and_seed() -> None:
     assert trials.spent == 1
 
 
-def test_a_candidate_that_gains_no_more_than_a_failed_one_is_dropped_early() -> None:
+def test_a_candidate_that_gains_no_more_than_a_failed_candidate_is_dropped_early() -> None:
     def plateau(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(9.1 + 0.01 * seed, True)
 
@@ -163,7 +163,7 @@ def test_a_candidate_is_dropped_once_each_of_its_first_missions_earned_too_littl
     assert trials.spent == runs
 
 
-def test_a_candidate_that_gains_more_than_a_failed_one_is_confirmed() -> None:
+def test_a_candidate_that_gains_more_than_a_failed_candidate_is_confirmed() -> None:
     def rising(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(7.0 + float(candidate.mutations[0].value), True)
 

@@ -67,7 +67,7 @@ def refused(by: dict[str, float]) -> RepairError:
 # single steps
 
 
-def test_a_gain_is_the_mean_over_the_seeds_that_ran_and_unknown_if_nothing_can_run() -> None:
+def test_a_gain_is_the_mean_over_the_executed_seeds_and_is_unknown_if_nothing_can_run() -> None:
     search, seen = selection(lambda by, seed: 3.0 + seed)
     search.trials(joint((A, 2.2)).candidate(mutations), 2)
     found = search.gain(joint((A, 2.2)))
@@ -92,9 +92,7 @@ def test_each_of_the_two_near_factors_is_added_the_better_one_first() -> None:
     assert found == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
 
 
-def test_the_parts_are_balanced_one_by_one_and_a_larger_factor_that_loses_is_followed_by_a_smaller_one() -> (
-    None
-):
+def test_parts_are_balanced_one_by_one_and_if_a_larger_factor_loses_a_smaller_factor_is_tried() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 8.0 - abs(by["A"] - 3.3) - abs(by["B"] - 0.26)
 
@@ -615,7 +613,7 @@ def test_outcomes_of_another_phase_and_of_an_equal_candidate_are_known() -> None
     assert other.spent == 1
 
 
-def test_the_second_factor_of_each_unit_is_left_out_if_no_unit_has_an_effect_with_its_better_factor() -> None:
+def test_the_second_factor_of_each_unit_is_skipped_if_the_better_factor_has_no_effect_on_any_unit() -> None:
     gains = {A: {2.2: 5.0}, B: {2.2: 1.0}, C: {0.4: 1.0}}
     search, seen = selection(lambda by, seed: 5.0, gains=gains)
     assert list(search.candidates(joint((A, 2.2)))) == []

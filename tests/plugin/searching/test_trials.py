@@ -45,7 +45,7 @@ def trials(totals: Mapping[Candidate, Mapping[int, float]], budget: int = 99) ->
     return made
 
 
-def test_a_candidate_that_acts_like_another_one_gets_the_outcomes_that_it_lacks_from_that_candidate() -> None:
+def test_a_candidate_that_acts_like_another_candidate_takes_over_the_missing_outcomes() -> None:
     made = trials({ONE: {0: 9.0, 1: 8.0}, TWO: {0: 7.0}})
     made.equate(ONE, TWO)
     assert made.totals_of(TWO, PAIRS) == {0: 7.0, 1: 8.0}
@@ -166,7 +166,7 @@ def test_candidates_count_as_equal_on_the_seeds_where_their_outcomes_agree() -> 
     assert ran.same_as(TWO, candidate(7.0)) == 0
 
 
-def test_a_candidate_similar_to_a_failed_one_is_predicted_to_fail() -> None:
+def test_a_candidate_that_resembles_a_failed_candidate_is_predicted_to_fail() -> None:
     ran = trials({ONE: {0: 6.0, 1: 6.0, 2: 9.0}, TWO: {0: 7.0, 1: 7.5}, THREE: {2: 0.0}})
     assert not ran.falls_short(TWO, PAIRS, 9.0)  # nothing fell short yet
     ran.fell_short(ONE, PAIRS)

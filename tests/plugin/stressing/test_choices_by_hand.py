@@ -109,7 +109,7 @@ def test_predictions_vary_in_the_error_that_they_allow_for_and_each_is_tried(
         (drift(0.6, 0.8), 1.0, GAIN, 3),
     ],
 )
-def test_without_a_failing_prediction_the_most_promising_drift_is_tried_if_it_gains_enough(
+def test_if_no_failure_is_predicted_the_most_promising_drift_is_tried_if_it_gains_enough(
     best: Point | None, limit: float, gain: float, tried: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     model = Model([None, None, None], (np.array([0.2, 0.1]), gain))
@@ -398,7 +398,7 @@ def test_a_nominal_world_that_fails_or_earns_less_differs_from_the_recorded_worl
 # how far the guarantee holds
 
 
-def test_the_farther_value_is_tested_first_and_the_nearer_one_with_the_rest_of_the_risk(
+def test_the_farther_value_is_tested_first_and_the_nearer_value_with_the_remaining_risk(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     asked: list[Any] = []

@@ -132,7 +132,7 @@ def test_a_clear_failure_is_confirmed_after_the_first_look() -> None:
     assert {plan.seed for plan in ran.plans} == set(seeds("chain 0", FRESH[0]))
 
 
-def test_a_drift_without_any_loss_is_given_up_after_the_first_look() -> None:
+def test_testing_a_drift_without_any_loss_ends_after_the_first_look() -> None:
     made, _ = evaluator(constant(10.0))
     assert not made.confirm(UP, "chain 0", 0.01)
     assert made.spent == 2 * FRESH[0]
@@ -303,7 +303,7 @@ def test_an_unpaired_test_runs_no_nominal_episodes_and_the_model_learns_losses_f
     assert all(failed for _, failed in made.recalled("chain 0", UP))
 
 
-def test_the_rewards_of_the_search_are_paired_with_nominal_ones() -> None:
+def test_the_rewards_of_the_search_are_paired_with_nominal_rewards() -> None:
     made, _ = evaluator(constant(9.25))
     made.glance(UP)
     assert made.totals(UP) == [(9.25, 10.0)] * GLANCE
@@ -437,7 +437,7 @@ def test_the_risk_of_the_tests_along_a_ray_falls_with_their_number(monkeypatch: 
     assert one.confirmed is None
 
 
-def test_a_place_beyond_a_confirmed_one_is_not_tested() -> None:
+def test_a_place_beyond_a_confirmed_place_is_not_tested() -> None:
     made, _ = evaluator(failing_from(0.6))
     one = Curve(rays(SPACE, {})[0])
     sweep(one, made)
@@ -458,7 +458,7 @@ def test_a_direction_that_does_not_matter_becomes_nominal() -> None:
     assert 0.5 <= found["a"] <= 0.7
 
 
-def test_an_option_that_matters_is_kept_after_one_try() -> None:
+def test_an_option_that_has_an_effect_is_kept_after_one_try() -> None:
     made, _ = evaluator(lambda point, _: (point["camera"] == 0.0, 10.0))
     found = shrunk({"a": 0.0, "b": 0.5, "camera": 1.0}, made)
     assert found == {"a": 0.0, "b": 0.0, "camera": 1.0}

@@ -138,7 +138,7 @@ def test_the_loss_at_the_shortest_failing_vector_is_just_detectable() -> None:
     assert np.linalg.norm(cautious) > np.linalg.norm(vector)
 
 
-def test_a_drift_whose_episodes_fail_violates_the_guarantee_whatever_its_reward() -> None:
+def test_a_drift_whose_episodes_fail_violates_the_guarantee_regardless_of_the_reward() -> None:
     vectors = np.array([[-0.4, 0.0]])
     assert model([(0.4, 0.0)]).failing(vectors)[0] < 0.01
     assert model([(0.4, 0.0)], failed=30).failing(vectors)[0] > 0.9

@@ -176,7 +176,7 @@ def test_spread_drifts_fill_all_directions_within_the_unit_ball() -> None:
     assert np.diff(angles, prepend=-np.pi / 2, append=np.pi / 2).max() < 0.3
 
 
-def test_a_narrow_failing_region_near_nominal_is_found_beside_a_wide_one() -> None:
+def test_a_narrow_failing_region_near_nominal_is_found_although_there_is_a_wide_one() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         x = np.array(list(point.values()))
         wide = 1.2 * float(np.linalg.norm(x - [0.9, 0.9, 0.0]) < 0.5)
@@ -207,7 +207,7 @@ def test_expected_failures_lie_a_little_beyond_the_true_boundary(seed: int) -> N
     assert [one.distance for one in found.expected] == sorted(one.distance for one in found.expected)
 
 
-def test_a_failure_under_another_option_is_approached_as_closely_as_one_under_the_nominal_option() -> None:
+def test_a_failure_is_approached_equally_closely_under_each_option() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         lost = abs(point["a"]) + 2.0 * abs(point["b"]) if point["camera"] else 0.0
         return True, 10.0 - lost + float(draws.normal(0.0, 0.05))

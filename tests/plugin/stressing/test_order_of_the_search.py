@@ -213,7 +213,9 @@ def test_a_chain_tests_the_part_of_the_guarantee_that_its_nearest_drift_breaks(
     assert part_of(model_of([], []), []) == "both"
 
 
-def test_the_clear_failures_at_half_at_three_quarters_and_at_the_end_of_their_list_are_tested() -> None:
+def test_of_the_clear_failures_those_at_half_at_three_quarters_and_at_the_end_of_the_list_are_tested() -> (
+    None
+):
     tried = [drift(a=size, b=size) for size in (0.2, 0.9, 0.5, 0.4, 0.7)]
     tried += [drift(a=0.1), drift(a=0.3, c=0.3)]
     results = {0.3: "holds"}
@@ -485,7 +487,7 @@ def test_an_interrupted_chain_goes_on_if_its_next_drift_is_still_expected_to_fai
     assert happened[3:] == order  # after two first chains and one of clear failures
 
 
-def test_a_confirmed_drift_at_a_jump_is_moved_and_the_result_and_a_drift_halfway_are_tested_once(
+def test_a_confirmed_drift_at_a_jump_is_moved_and_then_tested_once_with_a_drift_halfway(
     leading: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     far, near = drift(a=0.9, b=0.9), drift(a=0.6, b=0.6)

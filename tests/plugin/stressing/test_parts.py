@@ -128,7 +128,7 @@ def test_failures_that_all_drifts_have_on_the_same_seeds_are_explained_by_these_
     )
 
 
-def test_a_failure_that_is_left_out_does_not_hide_farther_ones_after_a_nearer_failure_is_found() -> None:
+def test_an_omitted_failure_does_not_hide_farther_failures_after_a_nearer_failure_is_found() -> None:
     evaluator = evaluator_of(lambda point, _: (point["a"] < 0.45, 1.0), SQUARE)
     together = Together(0.5, [])
     assert together.confirm([at(0.53, 0.1), at(0.51, 0.1)], evaluator)

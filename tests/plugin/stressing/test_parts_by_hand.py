@@ -185,7 +185,7 @@ def test_a_direction_that_is_not_drawn_is_nominal() -> None:
 # predictions
 
 
-def test_vectors_within_the_limits_are_kept_and_longer_ones_get_a_random_length() -> None:
+def test_vectors_within_the_limits_are_kept_and_longer_vectors_get_a_random_length() -> None:
     vectors = np.array([[0.3, 0.4], [3.0, 4.0]])
     draws: Any = SimpleNamespace(random=lambda count: np.full(count, 1 / 16))
     assert _within(vectors, 1.0, draws)[0].tolist() == [0.3, 0.4]
@@ -229,7 +229,7 @@ def test_a_boundary_is_at_the_failing_place_if_the_place_before_has_no_margin() 
     assert curve(DOWN, {1.0: -1.0}, confirmed=1.0).boundary == Boundary(1.0, None, 1.0, True)
 
 
-def test_a_boundary_lies_between_what_was_shown_to_hold_and_to_fail() -> None:
+def test_a_boundary_lies_between_the_values_shown_to_hold_and_the_values_shown_to_fail() -> None:
     found = curve(MUD, {0.25: 1.0, 0.5: -1.0}, confirmed=0.45, held=0.4)
     assert found.boundary == Boundary(0.4, 0.4, 0.45, True)
     found = curve(MUD, {0.25: 1.0, 0.5: -0.1}, confirmed=0.3, held=0.3)
@@ -294,7 +294,7 @@ def test_failures_that_contain_a_nearer_one_must_be_farther_by_some_percent() ->
     assert _apart([aside, small], evaluator) == [aside, small]
 
 
-def test_a_drift_lies_between_nominal_and_another_one_in_every_direction() -> None:
+def test_a_nearer_drift_lies_between_nominal_and_the_other_drift_in_every_direction() -> None:
     evaluator: Any = SimpleNamespace(space=SPACE)
     assert contains(evaluator.space, point(slope=0.5, mud=1.0), point(slope=0.5))
     assert contains(evaluator.space, point(slope=-0.5), point(slope=-0.1))

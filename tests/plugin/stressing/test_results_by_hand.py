@@ -254,7 +254,7 @@ def test_a_drift_kept_from_an_earlier_run_counts_only_if_it_fails_again(
     assert found.loss == pytest.approx(loss)
 
 
-def test_the_search_confirms_clearly_failing_drift_sizes_and_some_larger_ones() -> None:
+def test_the_search_confirms_clearly_failing_drift_sizes_and_some_larger_sizes() -> None:
     option = curve(DOWN, {1.0: -1.0})
     assert _candidates(option, GIVEN, 0.1) == [1.0]
     assert _candidates(curve(MUD, {1.0: 1.0}), GIVEN, 0.1) == []
@@ -298,7 +298,7 @@ def test_a_drift_contains_another_if_no_direction_of_the_other_is_farther_from_n
     assert not contains(SPACE, one, combined(slope=0.1).point)
 
 
-def test_a_chain_has_one_risk_for_each_of_its_tests_and_ends_at_the_first_that_fails() -> None:
+def test_each_test_of_a_chain_has_its_own_risk_and_the_chain_ends_at_the_first_failed_test() -> None:
     risks: list[tuple[str, float]] = []
     released: list[str] = []
 

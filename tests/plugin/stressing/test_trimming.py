@@ -46,7 +46,7 @@ def test_a_drift_that_holds_takes_four_episodes() -> None:
 @pytest.mark.parametrize(
     ("lost", "part"), [(0.5 * 1.3, None), (0.5 * 1.45, "loss")]
 )  # the tolerated loss is 0.5
-def test_a_loss_far_beyond_what_can_be_shown_is_at_a_jump(lost: float, part: str | None) -> None:
+def test_a_loss_far_above_the_detectable_loss_indicates_a_jump(lost: float, part: str | None) -> None:
     evaluator = evaluator_of(lambda point, _: (True, 10.0 - (lost if point["delay"] else 0.0)), SPACE)
     evaluator.examine(AT, 4)
     assert broken(AT, evaluator, SHOWN) == part

@@ -199,7 +199,7 @@ def test_chatter_needs_six_values_and_at_least_two_different_values() -> None:
     ("designed", "reward", "lost"),
     [(1.0, -0.01, True), (1.0, 0.0, False), (-1.0, -2.01, True), (-1.0, -2.0, False), (-1.0, 5.0, False)],
 )
-def test_a_loss_exceeds_every_designed_one_by_two_percent_of_the_reward(
+def test_a_loss_counts_if_it_exceeds_every_designed_loss_by_two_percent_of_the_reward(
     designed: float, reward: float, lost: bool
 ) -> None:
     found = losses(

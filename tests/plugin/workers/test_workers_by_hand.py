@@ -670,7 +670,7 @@ def test_a_worker_for_bags_is_configured_by_arguments(script: Callable[..., dict
 
 
 @pytest.mark.parametrize("problem", [ValueError("odd"), SystemExit("usage")])
-def test_a_configuration_that_fails_is_told_to_the_run(
+def test_a_worker_reports_a_failed_configuration_to_the_run(
     script: Callable[..., dict[str, Any]], problem: BaseException
 ) -> None:
     done = script({"path": [*sys.path], "options": {"plugins": []}, "target": "t"}, problem)
