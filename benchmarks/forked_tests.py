@@ -27,10 +27,10 @@ from reached_lines import Reached
 from warm_pytest import ended
 
 CHANNELS = "FORKED_TESTS"  # environment variable with the two ends of pipes, "read,write"
-IMPORTED = "(import)"  # stands for the import of all modules among the tests that reach a line
+IMPORTED = "(import)"  # name that stands for importing all modules, among the tests that reach a line
 UNCHANGED = 77  # exit status if a fault cannot be put into the functions of the process
-SLOWEST = 1.0  # CPU seconds until a test that is measured is interrupted
-# of one file of tests that is measured, as multiples of those seconds: CPU seconds, and seconds on a busy machine
+SLOWEST = 1.0  # CPU seconds after which a measured test is interrupted
+# limits for one measured file of tests, as multiples of these seconds: CPU seconds, and seconds on a busy machine
 MOST_OF_FILE, LONGEST_FILE = 2.5, 45.0
 
 

@@ -36,7 +36,7 @@ from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.ros import Ros, message_type
 
 EPISODE = 12_800  # size of an episode in the file of the case `recording` (bytes)
-WORSE = 3.0  # maximum growth of time or memory per unit, from the second size to the last
+WORSE = 3.0  # maximum factor by which time or memory per unit may grow from the second size to the last
 NODE = """
 import rospy
 from std_msgs.msg import {kind}

@@ -43,10 +43,10 @@ ROOT = Path(__file__).resolve().parent.parent
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 ELSEWHERE = {"realros"}  # folders of tests that need a real ROS: make test-ros1, make test-ros2
 LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache", "*.egg-info", ".coverage*")
-# CPU seconds of tests that are run for each fault; the times are those measured without the fault
+# limit of the CPU seconds of the tests that run for one fault; the times were measured without the fault
 BUDGET = 120.0
 PATIENCE = 120.0  # seconds allowed beyond three times the CPU time of the tests without the fault
-SLOWED = 10  # times that a test may take its CPU seconds, on a busy machine, until a fork is killed
+SLOWED = 10  # a fork is killed once its test takes this many times its CPU seconds, on a busy machine
 
 
 @dataclass(frozen=True)

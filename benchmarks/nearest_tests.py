@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-FARTHEST = 3  # maximum number of imports between a test file and a module that it reaches
+FARTHEST = 3  # maximum length of a chain of imports from a test file to a module
 
 
 @dataclass(frozen=True)

@@ -282,7 +282,7 @@ def starting() -> tuple[float, float]:
                 subprocess.run(command, cwd=folder, env=alone, check=True, capture_output=True)
                 after = resource.getrusage(resource.RUSAGE_CHILDREN)
                 times.append((after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime) * 1e3)
-    # leave out the first run of each, which writes bytecode
+    # leave out the first run of each variant, because this run writes bytecode
     return median(spent[0][1:]), median(spent[1][1:])
 
 

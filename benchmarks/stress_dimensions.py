@@ -101,7 +101,7 @@ RISK = 0.05  # risk of the test on fresh seeds
 SIZES = (16, 32, 64)  # numbers of fresh episodes after which the test ends if it succeeds
 SIZE = "size"
 SCENARIO = "stress"
-LARGEST = 2.0  # upper limit of distances: no drift in four directions is farther from nominal
+LARGEST = 2.0  # upper limit of distances; no drift of a space with four directions is farther from nominal
 FORMULA = Designation(
     (), (), min_success=0.95, tolerance=TOLERANCE
 )  # the arguments of the marker for the worlds that are formulas

@@ -65,7 +65,7 @@ SUITES = {
         "2f8490dbdbd419366cef1516032ab06d07ccb5839ef54905e842a472692d4204",
         "transitions",
         needs=("six==1.17.0", "dill==0.4.0", "mock==5.2.0"),
-        # this file checks the sources with other tools
+        # this file of tests checks the sources with other tools
         options=("-o", "addopts=", "--ignore=tests/test_codestyle.py"),
     ),
     "jinja2": Suite(

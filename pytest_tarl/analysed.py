@@ -46,7 +46,7 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
             )
         paths.append(path)
     with _working_in(root):  # the analysis names files relative to the working directory
-        # a package's __init__.py passes on names of other files, so imports from the package lead through it
+        # a package's __init__.py exports names of other files, so imports from the package lead through __init__.py
         analysis = _analysis([*paths, *imported(paths, root, packages=True)], root)
     if analysis.errors:
         first = analysis.errors[0]

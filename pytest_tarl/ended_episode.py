@@ -26,8 +26,9 @@ class EndedEpisode:
     requirements: Requirements
     situation: Situation
     faults: Faults
-    drifted: bool  # whether a drift or a fault is active; then a node that publishes nothing is not an error
-    # whether a candidate for a repair runs; with it, a watchdog may rightly be silent in a mission
+    # whether a drift or a fault is active (if so, a node that publishes nothing is not an error)
+    drifted: bool
+    # whether a repair candidate runs; with a candidate, a watchdog node may rightly publish nothing in a mission
     changed: bool
     ros: Ros | None  # the ROS of the episode; None if the test did not use ROS
     drives_ros: bool  # whether nodes were started

@@ -68,7 +68,7 @@ class Tarl:
         self._replay = replay
         # a recorded mission already contains the faults of its robot
         self._faults = NO_FAULTS if replay is not None else faults
-        # whether a drift is active; then a node that publishes nothing is not an error
+        # whether a drift is active (if so, a node that publishes nothing is not an error)
         self._drifted = drifted or bool(self._faults.active)
         self._changed = changed  # whether a candidate's text runs in place of a file
         self._outputs = outputs

@@ -376,7 +376,8 @@ class Comparison:
         default_factory=dict
     )  # part of the reward → cells where it is lower in the deployed world
     target: str = ""  # the pytest argument that records this test
-    node: str = ""  # the pytest argument that compares it, if the test has parameters besides the drift
+    # the pytest argument that selects this comparison, if the test has parameters besides the drift
+    node: str = ""
     flags: tuple[str, ...] = ()  # non-default options of the run
     changes: Mapping[Cell, float] = field(default_factory=dict)  # cell → difference between worlds
     stated: Mapping[str, Guarantee] = field(default_factory=dict)  # guarantees, by the worlds of `totals`

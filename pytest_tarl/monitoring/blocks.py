@@ -43,7 +43,7 @@ class Block:
         joined = b"\n".join((*texts, b""))
         self._lines = (
             joined if joined.count(b"\n") == len(texts) else b""
-        )  # the records as one text, one a line; empty if a record itself has several lines
+        )  # all records as one text, one record per line; empty if a record itself has several lines
         self._at = 0
 
     def left(self) -> bool:

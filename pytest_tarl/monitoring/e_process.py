@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import Floats
 
-# λ(1 - m), the share of its stake that a bet loses when a mission succeeds, for each of the BETS bets (restarts.py);
-# small shares detect mild losses of performance, large ones detect total failure
+# λ(1 - m) for each of the BETS bets (see restarts.py): the share of its stake that the bet loses when a mission
+# succeeds. Small shares detect mild losses of performance; large shares detect total failure.
 SHARES = (0.01, 0.015, 0.023, 0.035, 0.053, 0.08, 0.12, 0.18, 0.27, 0.41, 0.62, 0.9)
 
 

@@ -6,7 +6,7 @@ import ast
 
 from pytest_tarl.patching.document import Document
 
-STEPS = 3  # maximum number of assignments between a number and the value
+STEPS = 3  # maximum number of assignments between a literal and the place where its value is published
 
 
 def writers(source: Document, node: ast.expr, code: str) -> list[ast.stmt]:

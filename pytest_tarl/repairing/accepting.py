@@ -180,7 +180,7 @@ class Examiner:
             if found.reason in (*TOO_LITTLE, *WEAK):
                 weak.append(guard)
                 if guard == candidates.ALWAYS:
-                    break  # no condition can gain more
+                    break  # no narrower condition can gain more reward
         return found
 
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
@@ -278,7 +278,9 @@ class Examiner:
         if same is not None:
             return self.ledger.enter(Tried(candidate, same.reason, ()))
         if self._missed.again(candidate, trials, self.order.goal):
-            return candidate  # no neighbour is worth its missions before those that rejected values lost
+            # test this value at once: it may lose the missions that rejected values lost, and then its neighbours lose
+            # them, too
+            return candidate
         goal, reference = self.order.goal, self.order.reference
         better = self.good_range.amid(candidate, trials, goal, reference)
         if better == candidate:

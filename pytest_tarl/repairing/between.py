@@ -21,7 +21,7 @@ WEAK: tuple[Reason, ...] = (
 )
 STRONG: tuple[Reason, ...] = ("nominal gets worse", "breaks other missions")
 WEAKEST = 0.25  # smallest share of the parameter of a structural change that is tried
-FINEST = 1.05  # the bisection stops when the ratio of the two factors is below this
+FINEST = 1.05  # the bisection stops when the ratio of its two factors is below this limit
 
 
 class Between:

@@ -21,9 +21,10 @@ from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 THIN = 0.35  # candidates that lose less than this share of the margin are not improved
 STEPS = (1.3, 1.12, 1.04)  # ratios between neighbouring values, tried in this order
 SEEDS = 5  # maximum number of seeds on which to compare values
-BEHIND = 2  # number of seeds after which a value that earned less than the best one is dropped
+BEHIND = 2  # number of seeds after which a value is dropped if it earned less than the best value
 MOVES = 3  # maximum number of moves in one direction with one ratio
-ASIDE = (1.25, 0.8, 1.12, 0.89)  # ratios of the values tried in place of one that fails on some seeds
+# ratios of values that are tried in place of a value that fails on some seeds
+ASIDE = (1.25, 0.8, 1.12, 0.89)
 
 
 def centred(

@@ -28,14 +28,16 @@ from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
 SOON = 15  # number of episodes before the changes with the clearest symptoms are tried
-FEW = 10  # number of episodes for these changes; half as many more if one of them gains much
-FROM = 60  # number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
-# replaces FROM if a constant gains at least `PARTLY`, because it may only need another value or a second constant
+FEW = 10  # number of episodes for all these changes; 1.5 times as many if one change gains much
+# number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
+FROM = 60
+# replaces FROM if a constant gains at least `PARTLY`, because this constant may only need another value or a second
+# constant
 LATER = 100
 PARTLY = 0.2  # share of the wanted gain that a constant must reach for `LATER`
 SEEDS = 2  # number of seeds on which a correction of a reading is tried; a seed may be hard in any world
 HALF = 0.5  # corrections of readings are tried unless a constant gains at least this share of the wanted gain
-MOST = 45  # number of episodes for the changes; 1.5 times as many if one of them gains much
+MOST = 45  # number of episodes for all these changes; 1.5 times as many if one change gains much
 
 
 class Early:
@@ -55,7 +57,8 @@ class Early:
         self._traces: dict[Candidate, Trace] = {}  # changed program → its recorded mission
         self._signs: Signs | None = None
         self._structures: Structures | None = None
-        self._surest: Structures | None = None  # the changes with the clearest symptoms, once they were tried
+        # the changes with the clearest symptoms; None until they were tried
+        self._surest: Structures | None = None
         self._corrected = False  # whether the readings were corrected
 
     def candidates(self, best: float = 0.0) -> Iterator[Candidate]:

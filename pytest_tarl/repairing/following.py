@@ -27,7 +27,8 @@ from tarl_lint.model import Operand
 
 ABOVE, BELOW, FOLLOWS = "above", "below", "follows"
 APART = 1.25  # minimum ratio of a sensor's usual values in the two worlds
-# smallest and largest size of a power; with others, the sensor hardly matters or changes too little
+# smallest and largest exponent; with smaller ones, the sensor hardly matters, and larger ones are needed only if the
+# sensor changes too little
 LEAST, MOST = 0.2, 4.0
 SENSORS, VARIABLES = 2, 1  # maximum number of sensors and of variables that are tried
 

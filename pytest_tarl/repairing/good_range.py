@@ -20,16 +20,18 @@ from pytest_tarl.searching.accept import Outcome, Reference
 from pytest_tarl.searching.search import LACKS, Candidate, Goal, Mutate, Trials
 from tarl_lint.model import Operand
 
-# share of the range at each end from which a value is moved, unless it is `CLEAR` of the end
+# a value is moved if it lies in this share of the range at either end, unless its ratio to the end is at least `CLEAR`
 OUTER = 0.25
-CLEAR = 1.4  # ratio of a value to an end of the range at which it is far enough from it
+CLEAR = 1.4  # minimum ratio of a value to an end of the range for the value to be far enough from this end
 MIDDLE = 0.45  # share of the range, from its end nearer to the old value, to which a value is moved
-FAR = 2.0  # maximum ratio of the new value to this end: larger changes are less likely to be right elsewhere
+# maximum ratio of the new value to the nearer end; larger changes are less likely to suit other missions
+FAR = 2.0
 ROUNDING = 0.1  # share of the range by which the new value may be rounded
 PROBES = 3  # maximum number of missions that show where the range ends
 SEEDS = 5  # number of known seeds on which the new value must pass
 COSTS = 0.1  # maximum reward that the new value may lose, as a share of the margin
-FARTHER = 1.3  # minimum ratio of the first value tried beyond a value beyond which none was tried
+# if no value was tried beyond a value, the first value tried there differs by at least this ratio
+FARTHER = 1.3
 OPEN = 1.32  # minimum ratio of both ends of a range of which one end is unknown
 NARROW = 1.1  # minimum ratio of both ends of a range in which a value is moved
 
@@ -100,7 +102,7 @@ class _Ends:
         if self.outer == inf:
             beyond = self.farthest + max((self.farthest - self.inner) / 2, log(FARTHER))
             if self._try(beyond):
-                # no end is known: assume the one with which the value lies in the middle of the range
+                # this end is not known: assume an end with which the value lies in the middle of the range
                 self.outer = max(2.0 * self.place - self.inner, self.inner + log(OPEN))
                 self.farthest = min(self.farthest, self.outer)
         for _ in range(PROBES - 1):

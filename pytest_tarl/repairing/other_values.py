@@ -28,7 +28,7 @@ RATIOS = (1.1, 1.03)  # ratios between neighbours of a value that loses too much
 MOVES = 3  # maximum number of moves in one direction with one ratio
 BETTER = 0.1  # a neighbour is better if it earns more by at least this share of the margin
 KNOWN = 3  # number of known seeds on which a smaller change must reach the goal
-UNGUARDED = 3  # maximum number of values of a candidate that are tried without its condition
+UNGUARDED = 3  # maximum number of values of a candidate that are tried without the candidate's condition
 CLOSE = 1.3  # maximum ratio of two rejected values between which good values may lie
 
 OtherValues = Generator[Candidate, Tried, None]
@@ -50,7 +50,7 @@ class Others:
         self._nearer: set[Place] = set()
         self._mended: set[Candidate] = set()
         self._recentred: set[Place] = set()
-        # values that earned more than a refused one in the missions of its acceptance test
+        # values that earned more than a refused value in the missions of its acceptance test
         self.chosen: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:

@@ -24,7 +24,8 @@ SCREENED = 12  # maximum number of candidates that are screened
 KNOWN = 3  # number of recorded episodes of the designed world in which a candidate is screened
 PLACING = 12  # maximum number of episodes that look for the definition of a candidate's constant
 LEAST = 0.1  # share of the loss that a candidate must have gained in the search
-# maximum loss in the designed world, as a share of the gain, of candidates that are tested if no harmless one helps
+# if no harmless candidate helps, candidates are tested whose loss in the designed world is at most this share of their
+# gain
 TRADED = 0.2
 HARMFUL: tuple[Reason, ...] = (
     "another test gets worse",

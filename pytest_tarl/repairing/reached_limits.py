@@ -28,8 +28,8 @@ from pytest_tarl.symptoms.series import Pair, Series
 from tarl_lint.model import Operand, Step
 
 UP, DOWN = NEAR  # factors that are tried on a limit
-# a value stays at a bound if at least the share `OFTEN` of it equals the bound; a bound, or a result of a comparison,
-# is rare as designed up to the share `RARELY`
+# a value stays at a bound if at least the share `OFTEN` of its samples equals the bound. In the designed world, a bound
+# or a result of a comparison is rare up to the share `RARELY`.
 OFTEN, RARELY = 0.3, 0.05
 SAME = 1e-9  # maximum relative difference between equal values
 

@@ -21,9 +21,9 @@ from pytest_tarl.symptoms.series import Series
 
 OFFSET, GAIN = "offset", "gain"  # templates that correct a reading
 MOST = 2  # maximum number of readings that are corrected
-FIRST = 2  # number of steps before which a first value cannot be an effect of commands
+FIRST = 2  # number of first steps in which a reading cannot yet depend on commands
 AGREE = 0.1  # maximum difference between mission pairs, as a share of the change
-LEAST = 0.02  # minimum change, as a share of the first value's size
+LEAST = 0.02  # minimum change of a reading, as a share of the size of its first value
 
 
 @dataclass(frozen=True)

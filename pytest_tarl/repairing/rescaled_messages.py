@@ -29,10 +29,11 @@ from tarl_lint.model import Flow, SiteId, Step
 
 MOST = 2  # maximum number of messages that are corrected
 EXACT = 0.01  # maximum |log| between a factor of first values and a ratio of units that replaces it
-# the same for a factor of usual sizes, which also differ because the missions do; so narrow that one random factor in
-# five to ten is this close to a ratio of its quantity, and seldom that of every mission
+# maximum |log| between a factor of usual sizes and a ratio of units. Usual sizes also differ because missions differ.
+# One random factor in five to ten is this close to a ratio, but rarely in every mission.
 CLOSE = 0.07
-# minimum |log| of a factor of first values, and of usual sizes: what a node does changes sizes by less than five times
+# minimum |log| of a factor of first values, and of usual sizes; a node itself changes sizes by less than a factor of
+# five
 LEAST, LARGE = 0.05, log(5.0)
 _LEFT_OUT = frozenset({"header", "stamp", "seq", "covariance"})
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)

@@ -21,7 +21,7 @@ from pytest_tarl.sensors import Sensor
 SUM, SCALE = "sum", "scale"
 # a plain sum is tried if the constant's change and the sensor's value differ by at most this ratio
 ALIKE = 2.0
-REST = 0.9  # minimum share of the recorded steps in which the sensor must be about zero
+REST = 0.9  # the sensor must be about zero in at least this share of the recorded steps
 
 
 def smoothed(order: Order, candidate: Candidate) -> Iterator[Candidate]:

@@ -39,8 +39,8 @@ LEAST = 50
 # An exponent is a multiple of a half in most laws of physics. If such an exponent nearly earns enough, the law holds
 # only roughly, and the exponent is moved in hundredths.
 FINER = 0.02
-# if the candidates of a group need more than the group's own episodes, they leave this share of the remaining
-# episodes to later groups
+# if the candidates of a group need more than their own episodes, this share of the remaining episodes stays reserved
+# for later groups
 KEPT = 0.6
 WHOLE = ("number", FIELD)  # kinds of templates that change a whole command
 COMMANDS = 3  # maximum number of commands that are scaled or shifted before all other changes
@@ -84,7 +84,7 @@ class Structures:
         self._found: dict[Operand, Form] = {}
         # expressions at which factors were tried in place of a template with state
         self._scaled: set[Span] = set()
-        # operands whose values nearly earned enough, so that their grid is finer
+        # operands whose values nearly earned enough; their grid is finer
         self._fine: set[Operand] = set()
 
     def candidates(self) -> Iterator[Candidate]:
@@ -222,7 +222,8 @@ class Structures:
         if not form.parameter:
             return Mutation(operand, True, form=form)
         if factor == 1.0 and form.parameter != form.defaults[0][0]:
-            return None  # factor 1 is the same change for all parameters, so only the first one proposes it
+            # factor 1 is the same change for all parameters, so only the first parameter proposes this factor
+            return None
         mine = next((one for one in form.template.parameters if one.name == form.parameter), None)
         grid = mine.grid if mine is not None else 0.0
         if operand in self._fine and grid < 1.0:  # counts stay integers
@@ -295,7 +296,7 @@ class Structures:
     def _at_commands(self, known: Sequence[Template], among: Sequence[Spot]) -> _Group:
         """Return the operands of the templates for any number at the values that are published."""
         nearest = _commands(among)
-        # an offset, which also acts where the command should be 0, comes after the factors
+        # an offset also acts where the command should be 0, so offsets come after the factors
         fitting = sorted((one for one in known if one.on in WHOLE), key=lambda one: one.without == "term")
         found = [operand for one in fitting for operand in self._at(one, nearest[:COMMANDS], first=None)]
         return _Group(found, lambda share, left: min(max(share, LEAST_EACH * len(found)), left // 3))

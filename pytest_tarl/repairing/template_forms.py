@@ -115,8 +115,8 @@ def fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
     kind = "value" if template.on == "sensor" else template.on
     fitting = [spot for spot in among if spot.kind == kind or (kind == "value" and spot.kind == "input")]
     if template.on == "sensor":
-        # sensors are read where messages arrive; they correct sent values before the values are limited, so that the
-        # limits still hold
+        # sensors are read where messages arrive. A term of a sensor is added to a sent value before the value is
+        # limited, so that the limits still hold.
         fitting.sort(key=lambda spot: (spot.kind != kind, not spot.hears, _limited(spot.node), spot.away))
     else:
         fitting.sort(key=lambda spot: spot.kind != kind)

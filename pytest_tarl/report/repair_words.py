@@ -45,8 +45,8 @@ ENDS: dict[Reason, str] = {
 }
 
 NEARLY = 0.8  # share of the loss that a rejected candidate must restore to be worth a wider tolerance
-# suggested tolerance, as a multiple of the remaining loss: larger than 1, so that a test can show that the
-# loss is below it
+# suggested tolerance, as a multiple of the remaining loss; above 1, so that a test can show that the loss is below the
+# tolerance
 SPARE = 1.5
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pytest_tarl.model import SitePlace, Slice
 
 MARGIN = 0.05  # share of the width that is left free at either end
-TICKS = 4  # approximate number of ticks per scale
+TICKS = 4  # approximate number of ticks of an axis
 
 
 @dataclass(frozen=True, slots=True)

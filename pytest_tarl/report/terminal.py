@@ -20,8 +20,8 @@ from pytest_tarl.report import (
 
 SHOWN = 3  # maximum number of culprits, lists and notes shown before "(and 3 more)"
 LABEL = 9  # width of the column of labels
-# minimum number of columns for code that is printed behind its file and line; otherwise, code is printed on
-# the next line
+# minimum width (columns) of code on the same line as its location; if less is free, the code is printed on the next
+# line
 LEGIBLE = 24
 NARROWEST = 40  # minimum width of the report, in columns
 

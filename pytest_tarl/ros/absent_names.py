@@ -64,7 +64,7 @@ def caught_import(error: NameError, file: str) -> str:
 def _of_caught(name: str, module: str, line: int) -> str:
     """Return advice on a module whose import failed at this line."""
     if sys.modules.get(module) is not None:
-        return ""  # the import did not fail
+        return ""  # the name exists, so its import did not fail
     why = interface_advice(module) or module_advice(ModuleNotFoundError(name=module.partition(".")[0]))
     return (
         f"The import of {name} in line {line} failed, and the node continued without it. {why}" if why else ""

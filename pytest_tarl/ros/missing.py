@@ -20,7 +20,8 @@ _STAND_IN: Final = (
     "give the node a small stand-in for it in your test (monkeypatch the call, or put a module of that name into "
     "sys.modules), or drive the node only through the parts that exist."
 )
-_ALIKE: Final = 0.8  # least similarity of a name that is suggested: one letter of five to ten differs
+# minimum similarity of a suggested name; at this value, one letter of five to ten differs
+_ALIKE: Final = 0.8
 _IMPORT_FROM: Final = opmap["IMPORT_FROM"]
 _REPLACE: Final = "put a module of that name into sys.modules in your test"
 _ADVICE: Final[Mapping[str, str]] = {  # package → alternative for the user

@@ -87,7 +87,7 @@ class Process:
         self.unset: dict[
             str, None
         ] = {}  # parameters without a value that the node asked for, under the node's names for them
-        self.label = name  # name shown in messages; the node's own name once the node has one
+        self.label = name  # name shown in messages; as soon as the node has a name, this is the node's name
         self.errors: list[NodeError] = []  # errors during shutdown
         self._parts: dict[Any, Any] = {}
         self._at_end: list[Callable[[], None]] = []

@@ -14,7 +14,7 @@ from math import comb, sqrt
 
 import numpy as np
 
-NEVER = -1  # at this number of missions, a candidate cannot be accepted even if no mission failed
+NEVER = -1  # with this number of missions, no candidate can be accepted, not even without a failure
 
 
 @lru_cache(maxsize=64)

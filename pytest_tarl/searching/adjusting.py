@@ -18,15 +18,17 @@ from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
 ROUNDS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
-LEAST = 0.5  # minimum gain of a unit whose exact value is searched, as a share of the wanted gain
+# the exact value of a unit is searched only if the unit gains at least this share of the wanted gain
+LEAST = 0.5
 REFINED = 8  # maximum number of runs that refine one operand
 # maximum number of consecutive refinements without progress, for an operand that gains less than `PROMISING`
 IDLE = 2
-# a named constant with a sharp peak is refined if the factors on both sides of the peak have at least this ratio
+# a named constant with a sharp peak is refined if the ratio of the factors on both sides of the peak is at least this
 WIDE = 1.4
 AMID = 6  # maximum number of constants that are tried at once between two steps
-GIVES_WAY = 0.75  # factor on the gain of a unit for each refinement without progress, when units are compared
-MORE = 0.05  # minimum increase of the gain, as a share of the wanted gain
+# when units are compared, the gain of a unit is multiplied by this factor for each refinement without progress
+GIVES_WAY = 0.75
+MORE = 0.05  # minimum increase of the gain that counts as progress, as a share of the wanted gain
 
 
 class Search(Protocol):

@@ -36,12 +36,14 @@ FLIP = -1.0  # factor that flips the sign
 # maximum number of units to try with the opposite sign; only units that gained with a smaller value are tried
 FLIPPED = 3
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
-EASY = 3  # maximum number of easy pairs; changes run on their seeds until one gains
+EASY = 3  # maximum number of easy pairs; changes run on the seeds of these pairs until a change gains
 # a gain below this share of the wanted gain is hollow if it comes from missions that fail sooner
 PARTLY = 0.3
-NARROW = 1.6  # maximum ratio of the values on both sides of a constant that is adjusted in small steps
-CLOSE = 1.21  # the same if these values earn nearly as much, so that the constant gets no larger steps
-LOST = 0.5  # a pair can be easy if its loss is at least this share of the wanted gain
+# a constant is adjusted in small steps only if the ratio of the tried values on both sides is at most this
+NARROW = 1.6
+# the same limit if both values earn nearly as much, because the constant then gets no larger steps
+CLOSE = 1.21
+LOST = 0.5  # a mission pair can be easy only if its loss is at least this share of the wanted gain
 
 
 class Attempts:
@@ -90,7 +92,7 @@ class Attempts:
         self.corrections = corrections
         self.slack = SLACK * goal.wanted
         self.turn = 0
-        # units that were confirmed and yielded, but that the caller refused
+        # units that the search confirmed and yielded, but that the caller refused
         self.refused: set[tuple[Unit, Guard]] = set()
         self._acting = Acting(trials, goal)
         self.gains = Gains(self.slack, proposed, None if proposed else self._acting)

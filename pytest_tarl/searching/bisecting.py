@@ -17,7 +17,7 @@ from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.smaller import inside
 from pytest_tarl.searching.units import Unit
 
-JUMP = 2.7  # minimum ratio of two tried values between which others are tried
+JUMP = 2.7  # values between two tried values are tried only if the ratio of the two is at least this
 STEPS = 4  # maximum number of values that are tried, each in one episode
 
 

@@ -14,10 +14,10 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
-EXACT = 0.002  # maximum deviation (see `course`) of a candidate that is not compared with rivals
+EXACT = 0.002  # a candidate is not compared with rivals if its deviation (see `course`) is at most this
 CLOSER = 0.6  # a rival is preferred if its deviation is at most this share of the candidate's deviation
 COMPARED = 3  # number of missions on which two candidates that pass are compared
-# exponents of the factor found: the first factor that passes is often larger than needed
+# exponents that are applied to the factor found, because the first factor that passes is often larger than needed
 POWERS = (1.0, 0.7)
 GAINED = 0.03  # minimum gain of a constant of another function, as a share of the gain of the constant found
 ASIDE = 2  # maximum number of constants of other functions

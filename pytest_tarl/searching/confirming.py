@@ -14,7 +14,7 @@ from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 CONFIRMATIONS = 5  # number of further seeds on which a promising candidate must also earn enough
 HARD = 2  # maximum number of confirmation seeds that are chosen because other candidates failed on them
-SHORT = 3  # number of missions after which a candidate is rejected if each of them clearly earned too little
+SHORT = 3  # a candidate is rejected after this number of missions if each mission clearly earned too little
 
 
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:

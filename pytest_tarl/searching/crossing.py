@@ -10,7 +10,8 @@ from pytest_tarl.searching.attempts import Attempts
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import Unit
 
-CLEARLY = 0.3  # the finer steps on a few constants end at this gain (share of the wanted gain)
+# the finer steps on a few constants end as soon as a change gains this share of the wanted gain
+CLEARLY = 0.3
 
 
 class Crossing:

@@ -14,7 +14,8 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
-POWERS = (1.0, 1.3, 0.77)  # factors on the power with which the constant follows something
+# factors by which the exponent is multiplied with which a constant follows a sensor or a variable
+POWERS = (1.0, 1.3, 0.77)
 
 
 def divided(

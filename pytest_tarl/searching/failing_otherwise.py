@@ -19,7 +19,7 @@ from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
 MOST = 6  # maximum number of constants that are tried under a guard, the nearest values first
-STEPS = 3  # maximum number of values in between, each in one episode
+STEPS = 3  # maximum number of values that are tried between the two, each in one episode
 
 
 class Search(Protocol):

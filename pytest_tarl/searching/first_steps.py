@@ -26,8 +26,9 @@ from tarl_lint.model import Operand
 
 Hint = tuple[tuple[Operand, float], ...]  # constants that change together, each with its factor
 
-LEADING = 3  # number of best units that are tried with larger steps before the next guard is tried
-# minimum gain of the `LEADING` units, and of units that get a smaller step, as a share of the wanted gain
+# number of units, the best first, that are tried with larger steps before the next guard is tried
+LEADING = 3
+# the `LEADING` units, and units that get a smaller step, must gain at least this share of the wanted gain
 HINT = 0.005
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
@@ -37,7 +38,7 @@ SENSITIVE = ((1.1, 0.91), (1.05, 0.95), (1.025, 0.975))
 FEW = 3
 # if a change gains at least this share of the wanted gain, other constants get no `FINER` steps
 HALF = 0.5
-LONGEST = 2  # maximum number of changes that made missions last longer under which limits are relaxed
+LONGEST = 2  # limits are relaxed under at most this number of changes that made missions last longer
 
 
 _DECIDING = re.compile(rf"[<>]|[!=]=|\b(?:{'|'.join(('if', 'while', 'int', 'round', *sorted(BOUNDING)))})\b")

@@ -18,13 +18,13 @@ from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import NEAR, Unit
 
 MOST = 3  # maximum number of parts in a combined repair
-PROMISING = 0.5  # minimum gain of a combination that is balanced, as a share of the wanted gain
+PROMISING = 0.5  # a combination is balanced only if its gain is at least this share of the wanted gain
 # number of further units to combine with the first unit, because a useful unit may gain little alone
 LEADERS = 5
 STEPS = (1.5, 0.65)  # factors that are tried on one part of a combination to balance the combination
 CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is multiplied repeatedly
 CLIMB = 4  # maximum number of times that one fixed parameter is multiplied by a factor of CLIMBS
-AMPLE = 1.02  # maximum gain of a refused combination that is adjusted, as a share of the wanted gain
+AMPLE = 1.02  # a refused combination is adjusted only if its gain is at most this share of the wanted gain
 STRONG = 5.0  # factor for units that have no effect alone
 
 
@@ -109,7 +109,8 @@ class ForwardSelection:
         """
         gain = yield from self.gain(base)
         if base.candidate(self.mutate) in self.settled.held:
-            return  # the combination to start from reaches the goal on this seed, so no further part can show a gain
+            # the combination to start from reaches the goal on this seed, so no further part can show a gain
+            return
         while gain is not None and len(base.parts) < MOST:
             better, most = base, gain
             for turn in range(len(NEAR)):
@@ -154,7 +155,8 @@ class ForwardSelection:
                 if gained is not None and (best is None or gained > best[1]):
                     best, base = (joint, gained), joint
             if best is not None and self._suffices(best[1]):
-                break  # the pair suffices on this seed but not on others: adjust its values instead of adding parts
+                # the pair suffices on this seed but not on others: adjust its values instead of adding parts
+                break
         if best is not None and best[1] > PROMISING * needed:
             joint, gain = yield from self._balanced(*best)
             if len(joint.parts) > 1 and not self._suffices(gain):
@@ -244,7 +246,8 @@ class ForwardSelection:
                     self.trials.harms(one)
                     or self.trials.gain(one, self.goal.pairs) > AMPLE * self.goal.wanted
                 ):
-                    return  # the combination was refused although it earns enough, so refining it does not help
+                    # the combination was refused although it earns enough, so refining it does not help
+                    return
                 break
         yield from self._polished(least)
 

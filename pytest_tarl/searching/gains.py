@@ -9,9 +9,9 @@ from pytest_tarl.searching.plainness import Oddness, kind
 from pytest_tarl.searching.units import NEAR, Unit
 from tarl_lint.model import SiteId
 
-SEEN = 6  # minimum number of units that must have been tried under a guard to call it idle
+SEEN = 6  # a guard can be called idle only after this number of units were tried under the guard
 IDLE = 0.25  # a guard is idle if at most this share of the units tried under it changed an episode
-# minimum number of factors that clearly changed the reward by the same amount for two units to act alike
+# two units act alike if at least this number of factors clearly changed the reward by the same amount
 ALIKE = 3
 
 Key = tuple[Unit, Guard]
@@ -156,7 +156,8 @@ class Gains:
             its = self.of(other, guard)
             both = [factor for factor in mine if factor != 1.0 and factor in its]
             same = sum(mine[one] == its[one] and abs(mine[one]) > self.slack for one in both)
-            apart = any(abs(mine[one] - its[one]) > self.slack for one in both)  # steps may be rounded
+            # tolerance, because steps may be rounded
+            apart = any(abs(mine[one] - its[one]) > self.slack for one in both)
             if other != unit and same >= ALIKE and not apart:
                 found.append(other)
         return found

@@ -17,7 +17,7 @@ from pytest_tarl.searching.units import NEAR, Unit
 from tarl_lint.model import Operand
 
 GAINED = 0.3  # minimum gain of the change that is held, as a share of the wanted gain
-SEEDS = 2  # minimum number of seeds on which it must have run: a gain on one seed may be luck
+SEEDS = 2  # the change must have run on at least this number of seeds, because a gain on one seed may be luck
 EPISODES = 20  # maximum number of tries of other constants
 MOVED = 2  # maximum number of combinations that are moved further
 

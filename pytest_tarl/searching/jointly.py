@@ -31,7 +31,7 @@ DIMENSIONS = 8  # maximum number of constants that are moved together
 LEAST = 2  # minimum number of constants that are moved together
 EPISODES = 50  # maximum number of trials of the joint search
 PATIENCE = 25  # maximum number of consecutive trials without an improvement
-# maximum number of such trials if they all earn the same reward, above that of the unrepaired program: then they only
+# maximum number of consecutive trials with one and the same reward above the unrepaired program's: such trials only
 # avoid the part of the mission that costs reward
 FLAT = 12
 FARTHEST = 3.0  # maximum |log(step)|; a step of e³ is a factor of 20

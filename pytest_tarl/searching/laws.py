@@ -23,7 +23,8 @@ CONSTANTS = 4  # maximum number of constants that are tried
 ADJUSTED = 2  # maximum number of laws whose power is adjusted
 SIGNS = (1.0, -1.0)  # powers that are tried first
 STEPS = (1.5, 1.2, 1.08)  # ratios by which a power that gains is moved
-BACK = (1.0, 1.13, 1.28, 1.44)  # a power that other missions do not confirm is divided by these in turn
+# a power that other missions do not confirm is divided by these numbers, one after the other
+BACK = (1.0, 1.13, 1.28, 1.44)
 SEEDS = 2  # number of seeds on which powers are compared
 
 

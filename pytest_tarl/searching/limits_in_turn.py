@@ -23,7 +23,7 @@ Reached = Callable[
 ]  # the limits that only the drifted missions of a candidate reach
 
 FIRST = 3  # maximum number of limits to start from
-NEXT = 2  # maximum number of limits that are relaxed after another one
+NEXT = 2  # maximum number of limits that are relaxed one after the other
 EPISODES = 16  # number of episodes after which no further limit is relaxed
 FARTHEST = log(20.0)  # maximum |log| of a limit's factor
 

@@ -30,7 +30,7 @@ STEPS: tuple[Step, ...] = (
     *((1.75, INWARD), (0.55, INWARD), (1.16, INWARD), (0.86, INWARD), (1.285, INWARD), (0.78, INWARD)),
     *((1.42, INWARD), (0.7, INWARD), (1.62, INWARD), (0.6, INWARD), (1.05, INWARD), (0.95, INWARD)),
 )
-# number of these steps (up to 1.1 and 0.91) that are tried before literals if there are many literals
+# if there are many literals, this number of the steps (up to 1.1 and 0.91) is tried before literals
 FINE_UNTIL = 10
 NEARBY = 2.5  # a change is large if it multiplies or divides a constant by more than this factor
 AROUND = 40  # maximum number of episodes for inward steps around large changes that gain

@@ -14,11 +14,11 @@ from statistics import fmean
 ALMOST = 0.9  # minimum gain of a combination to adjust, as a share of the wanted gain
 KNOWN = 3  # minimum number of seeds on which a combination to adjust has run
 SEEDS = 3  # number of seeds on which factors are compared
-# ratios by which a factor is moved up or down; the second follows when the first no longer helps
+# ratios by which a factor is moved up or down; the second ratio is used when the first no longer helps
 STEPS = (1.2, 1.08)
 FINE_STEPS = (1.08, 1.03, 1.01)  # ratios for a single change that passes its missions and earns nearly enough
 SHARP_STEPS = (1.08, 1.03)  # ratios for a single constant that earns much on most seeds
-MUCH = 0.7  # minimum gain of a constant that SHARP_STEPS applies to, as a share of the wanted gain
+MUCH = 0.7  # SHARP_STEPS applies to constants that gain at least this share of the wanted gain
 EPISODES = 36  # number of episodes after which no further factor is tried
 # a factor that falls short by more than this share of the wanted gain on the first seeds is dropped
 BEHIND = 0.05

@@ -43,7 +43,7 @@ from pytest_tarl.searching.smaller import (
 from pytest_tarl.searching.units import NEAR, Unit, change_size
 
 PLAINER_ROUNDS = 2  # number of refinements of each constant whose change a maintainer would prefer
-FUNCTIONS = 2  # maximum number of functions; their constants are compared by how their missions proceed
+FUNCTIONS = 2  # maximum number of functions whose constants are compared by the course of their missions
 UNUSUAL = 6  # number of episodes for trying other constants in place of unusual commands
 PLAINER = 12  # maximum number of episodes for trying constants whose change a maintainer would prefer
 

@@ -15,8 +15,9 @@ from pytest_tarl.searching.units import Unit
 
 # confidence of the approximate interval that decides which arms run next, not which repair is accepted
 CONFIDENCE = 0.95
-LEAST = 3  # minimum number of common seeds for judging one arm significantly worse than another
-FINEST = 1.1  # ratio of two factors below which no factor between them is tried
+# an arm can be significantly worse than another only if both ran on at least this number of common seeds
+LEAST = 3
+FINEST = 1.1  # no factor is tried between two factors whose ratio is below this
 
 Gains = Mapping[int, float]  # seed → gain over the unmutated run of that seed
 

@@ -9,11 +9,11 @@ from math import sqrt
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (larger step, smaller step that must not have reduced the reward)
 # ratio of the next factor to the outermost one (or the reverse), if the outermost factor is the best
 OUTWARD = 2.3
-APART = 2.0  # minimum ratio of two factors between which another is tried although neither gains
-FINEST = 1.1  # ratio of two factors below which no factor between them is tried
+APART = 2.0  # a factor between two factors is tried although neither gains if their ratio is at least this
+FINEST = 1.1  # no factor is tried between two factors whose ratio is below this
 # minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
 ALMOST = 0.9
-FLAT = 2.0  # maximum ratio of two factors with equal gains between which no factor is tried
+FLAT = 2.0  # no factor is tried between two factors with equal gains if their ratio is at most this
 NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
 # minimum gain of a promising factor, as a share of the wanted gain; a sharp peak (see SHARP) that exceeds 0 or a
 # neighbour by this share is also refined down to `NARROWEST`

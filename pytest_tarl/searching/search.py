@@ -26,10 +26,11 @@ Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 # factors for a constant, in the order in which they are tried
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)
 FAR = 0.6  # minimum gain of a candidate that releases the reserve of episodes, as a share of the wanted gain
-USUAL = 1.5  # maximum ratio of the largest published message to the designed one that counts as usual
+# a published message counts as usual if it is at most this multiple of the largest designed message
+USUAL = 1.5
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
-# A mission is compared with the designed one of its seed if it lacks at most this share of what separates the drifted
-# missions from `near`.
+# A mission is compared with the designed mission of its seed if its reward falls short of `near` by at most this share
+# of the distance between the drifted missions and `near`.
 LACKS = 0.1
 
 

@@ -18,20 +18,20 @@ from pytest_tarl.searching.units import Unit, change_size
 
 STEPS = (0.82, 1.22)  # factors that are tried on each constant
 BESIDE = (1.06, 0.94)  # factors by which a step that earns nearly enough is multiplied
-LEAST = 1.9  # minimum factor of a change for which a smaller one is sought
+LEAST = 1.9  # a smaller change is sought only if the change found has at least this factor
 LESS = 0.5  # maximum size of a small change (see `change_size`), as a share of the size of the change found
 ONWARD = (
     (0.74, 1.33),
     (0.62, 1.61),
     (0.5, 1.9),
-)  # larger steps in the direction in which a small one gained something
+)  # larger steps, in the direction in which a small step gained reward
 LEADING = 3  # maximum number of constants that are tried with the steps ONWARD
-TRACE = 0.005  # minimum gain of a small step that is followed by steps ONWARD, as a share of the wanted gain
+TRACE = 0.005  # steps ONWARD follow a small step only if it gains at least this share of the wanted gain
 OTHERS = 4  # maximum number of constants that are tried in small steps
 EPISODES = 20  # number of episodes after which no further constant is tried
-EARLY = 0.5  # share of the budget after which a repair is no longer compared
+EARLY = 0.5  # after this share of the budget, a repair is no longer compared with smaller changes
 LOST = 0.01  # maximum reward that a milder value of the same constant may lose, as a share of the wanted gain
-INSIDE = 0.85  # a milder or smaller change is accepted only if a change of this share of its size passes, too
+INSIDE = 0.85  # a milder or smaller change is accepted only if a change by this share of its size passes, too
 WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
 
 

@@ -16,7 +16,8 @@ from pytest_tarl.searching.refining import between
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import NEAR, Unit
 
-GAINED = 0.3  # minimum gain of a change under which others are tried, as a share of the wanted gain
+# other constants are tried under a change only if it gains at least this share of the wanted gain
+GAINED = 0.3
 LONGER = 1.2  # minimum ratio of the length of missions with the change to their length without it
 MOST = 24  # maximum number of other constants that are tried while the change is applied
 FINER = (1.5, 0.65)  # factors for a constant that has an effect under the change

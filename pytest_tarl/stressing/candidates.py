@@ -24,7 +24,7 @@ HOLDING = 3.0
 # If a loss lies this number of standard errors above the tolerated loss, a bound with 0.4 % risk shows in 4 of 5
 # cases that the loss exceeds it.
 FAILING = 4.0
-# places t on a ray, among which the next place to test is chosen
+# places t on a ray; the next place to test is one of them
 PLACES = tuple(step / 100 for step in range(1, 101))
 CENTRES = np.linspace(0.0, 1.25, 251)  # possible values of t at which half of the episodes fail
 SCALES = np.geomspace(0.002, 0.3, 16)  # possible scales of the logistic distribution, in units of t

@@ -29,9 +29,10 @@ POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a 
 # multiples of the near end of a chain that are tested before the near end, if the chain tests only the failure rate
 # and the same seeds fail under all drifts
 OUTWARD = (1.12, 1.08, 1.04)
-# multiples that are tested before the near end of all other chains
+# multiples of the near end that all other chains test before the near end
 BEFORE = (1.03,)
-# after it; the steps grow, because several confirmations in a row show that the model expected the boundary too far out
+# plan of chains after this drift; the steps grow, because several confirmations in a row show that the model expected
+# the boundary too far out
 INWARD = (0.96, 0.92, 0.86, 0.79, 0.72, 0.65, 0.58, 0.5)
 FINE = tuple(0.985**step for step in range(16))  # in a chain of small steps, multiples of its first drift
 # multiples of the drift at the near end of a chain that may become drifts of the chain
@@ -53,7 +54,7 @@ class Plan:
     steps: tuple[tuple[float, float], ...]
 
 
-# plan of chains until a drift in several directions is confirmed, and afterwards
+# plan of chains until the first drift in several directions is confirmed, and plan of the chains afterwards
 FIRST = Plan(0.5, 1.2, ((0.9, 1.06), (0.95, 1.06), (0.98, 1.2)))
 NEXT = Plan(0.35, 1.05, ((0.9, 1.03),))
 

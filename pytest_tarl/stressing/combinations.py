@@ -26,7 +26,7 @@ INSIDE = 0.9
 FIRST = 0.44  # share of the budget for the first search for the nearest failing drift
 # share of the budget after which the first chains of tests stop, so that the model learns from them for the next ones
 BEGUN = 0.7
-# share of the budget after which all of these chains stop, so that enough is left for the single directions
+# share of the budget after which all chains of tests stop, so that enough is left for the single directions
 CONFIRMED = 0.85
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 ALONE = 3  # number of rounds of the search with nominal options before other options are searched
@@ -38,7 +38,7 @@ ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first
 RECORDED = 0.05  # share of the whole risk for the bound of the recorded mean reward
 # shares of the whole risk for the first chains; each further chain gets half of the rest
 SHARES = (0.4, 0.3, 0.1, 0.05)
-QUICK = SIZES[0]  # number of episodes that the search runs at a confirmed failure
+QUICK = SIZES[0]  # number of episodes that the search runs at a drift that was confirmed to fail
 # a new chain comes before the interrupted one if the distance of its near end is below this share of the distance of
 # the next drift of the interrupted chain
 AHEAD = 0.97

@@ -108,7 +108,7 @@ def _written(found: Stress, root: Path, name: str, memory: kept.Kept) -> list[st
         jobs[folder / "report" / f"{name}-stress-map.svg"] = lambda path: write_atomically(
             path, drawn.encode()
         )
-    # an incomplete run that found no failure must not delete the earlier ones
+    # an incomplete run that found no failure must not delete the failures of earlier runs
     if not found.ended or found.failures:
         jobs[memory.folder] = lambda _: memory.write(found.failures)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}

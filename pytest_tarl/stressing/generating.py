@@ -36,7 +36,8 @@ def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], floa
         nonlocal ended, raised
         try:
             found = None if ended else margin(_point(space, drawn))
-        except Exception as problem:  # Hypothesis must not see the error, since it would run the drift again
+        # Hypothesis must not see the error, because Hypothesis would then run the drift again
+        except Exception as problem:
             found, raised = None, problem
         if found is None:
             ended = True

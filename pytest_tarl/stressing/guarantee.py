@@ -21,14 +21,15 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
 from pytest_tarl.rollout import EpisodeRun
 
-LOWEST = -1.5  # lower limit of margins, because still lower ones say little about where the boundary is
-LEAST = 8  # minimum number of episodes for the result "holds"; if 1 in 12 fails, 8 episodes all pass half of the time
+LOWEST = -1.5  # lower limit of margins; still lower margins say little about where the boundary is
+# minimum number of episodes for the result "holds"; if 1 in 12 fails, 8 episodes all pass half of the time
+LEAST = 8
 HOPEFUL = 0.84  # one-sided confidence of a bound that lies one standard error above the mean
 # approximate error probability of each decision of the search; only fresh seeds give a guarantee
 SEARCH_RISK = 0.05
 
 Answer = Literal["fails", "holds", "open"]
-Part = Literal["rate", "loss", "both"]  # the part of the guarantee that a test is about
+Part = Literal["rate", "loss", "both"]  # the part of the guarantee that a test examines
 
 
 @dataclass(frozen=True, slots=True)

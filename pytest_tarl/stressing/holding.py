@@ -17,7 +17,7 @@ from pytest_tarl.stressing.findings import NEAR_RISK, Curve
 from pytest_tarl.stressing.guarantee import LEAST, enough_pass, little_lost
 from pytest_tarl.stressing.rays import Ray
 
-# how the first and the second value divide the risk, and how the two tests at a value divide its part
+# shares of the risk for the first and the second value, and for the two tests at each value
 SHARES = (0.85, 0.15)
 SECOND = 0.5  # the second value tested, as a share of the first value tested
 BATCH = 8  # a test checks after each batch of this many episodes whether it can still succeed

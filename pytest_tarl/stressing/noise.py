@@ -11,11 +11,11 @@ import numpy as np
 from pytest_tarl.stressing.coordinates import Vector
 from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
 
-HIGHEST = 1.0 - LOWEST  # larger losses count as this one, because margins below LOWEST count as LOWEST
+HIGHEST = 1.0 - LOWEST  # larger losses count as this loss, because margins below LOWEST count as LOWEST
 WIDTH = 0.3  # standard deviation of the weights of drifts by their mean loss, in units of the tolerated loss
 # weight (degrees of freedom) of the typical variance, averaged with the variances of drifts of similar mean loss
 LIKE = 2.0
-# an unpaired test is preferred if its standard error is at most this multiple of that of a paired test
+# an unpaired test is preferred if its standard error is at most this multiple of the paired test's
 WORSE = 1.2
 PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
 

@@ -165,7 +165,7 @@ class RateField:
             step = pull - roots * np.linalg.solve(middle, roots * (matrix @ pull)) - weights
             change = float(np.abs(matrix @ step).max())
             # The weights are still zero at the first step. If logits are given, this step computes the weights that
-            # match them, so it is not shortened.
+            # match the logits, so the step is not shortened.
             whole = start is not None and number == 0
             weights = weights + (1.0 if whole else min(1.0, LEAP / max(change, 1e-9))) * step
             logits = usual + matrix @ weights

@@ -18,15 +18,16 @@ Symptom = Callable[[Sequence[Pair]], float]
 
 TALL = 0.25  # minimum height of a spike, as a share of the range of the values
 BACK = 0.5  # maximum change across a spike, as a share of its height
-SPIKES = 0.04  # the symptom is certain if the share of spikes grows by this
+SPIKES = 0.04  # the symptom is certain if the share of spikes grows by this amount
 ROUGH = 0.01  # roughness that does not matter, as a share of the range of the values
-ROUGHER = (1.5, 6.0)  # noise begins if the roughness grows by the first factor, and is certain at the second
-SWITCHES = 0.1  # the symptom is certain if the share of steps with a switch grows by this
+# noise begins if the roughness grows by the first factor, and is certain at the second factor
+ROUGHER = (1.5, 6.0)
+SWITCHES = 0.1  # the symptom is certain if the share of steps with a switch grows by this amount
 JUMP = 0.4  # minimum change from one value to the next that counts as a jump, as a share of the range
 SOON = 5  # maximum number of steps from a jump to the loss that it causes
 LOSS = 0.02  # minimum additional loss of a step that counts, as a share of a designed mission's reward
 STEADY = 0.02  # standard deviation at the end of a mission that does not matter, as a share of the range
-# a swing begins if this standard deviation grows by the first factor, and is certain at the second
+# a swing begins if this standard deviation grows by the first factor, and is certain at the second factor
 SWINGS = (2.0, 6.0)
 CROSSINGS = 3  # minimum number of times that a swing crosses its mean
 ASIDE = 0.5  # an offset is certain if the mean at the end grows by this share of the range

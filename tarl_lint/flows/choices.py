@@ -17,7 +17,8 @@ class Entrance(NamedTuple):
     condition: int
     frame: Frame  # the frame of the value
     outer: Frame  # the frame of the condition
-    value: int  # the node that uses the value; the value itself if no condition decides whether it is used
+    # the node that uses the value; if no condition decides whether the value is used, the value itself
+    value: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +57,7 @@ class Choices:
                 if any(decision in nodes for decision, _ in choice):
                     found.add(made)
                     starts.setdefault(choice, set()).add(made)
-        # like `starts`, but only with conditions that are among the nodes
+        # as `starts`, but only with conditions that are among the nodes
         inside: dict[Branches, set[int]] = {}
         for choice, values in starts.items():
             inside.setdefault(frozenset(b for b in choice if b[0] in nodes), set()).update(values)

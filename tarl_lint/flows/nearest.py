@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Set
 from typing import Final, Generic, Protocol, TypeVar
 
-# a subset is worth a result of its own if it has this many nodes more than any known one
+# a subset gets a result of its own if it has this many nodes more than any known subset
 WORTHWHILE: Final = 500
 MAX_KEPT: Final = 8  # maximum number of results that are kept
 

@@ -77,7 +77,8 @@ class Parts:
         self._formers: dict[int, tuple[tuple[int, ...], int]] = {}
         self._bits: dict[
             int, int
-        ] = {}  # the one object for equal bits, since nodes in many contexts have the same
+            # bits → the one object that stands for equal bits, since nodes in many contexts have equal bits
+        ] = {}
         self._ways: dict[tuple[Frame, Frame], Way | None] = {}
         # node → (condition, node that uses the value, calls between) of each condition that chooses its value
         self._entrances: dict[int, Sequence[tuple[int, int, Way]]] = {}
@@ -110,7 +111,7 @@ class Parts:
             if after is None:
                 continue
             here = part.function[after] = places[node].frame.function
-            # the first node of a statement decides whether this statement belongs to an earlier iteration
+            # the first node of a statement decides whether the statement belongs to an earlier iteration
             seen, earlier = part.precedence.before.get(after, 0), 0
             formers, asked = self._formers.get(node) or self._formers_of(node, after)
             for former in formers if asked & ~seen else ():

@@ -86,7 +86,7 @@ class Linker(Interpreter):
                 self._settle()
             if len(self.roots) == before:
                 break
-        if self.waiting:  # no root stores anything new any more, so what is unknown now stays unknown
+        if self.waiting:  # no root stores anything new any more, so values that are unknown now stay unknown
             self.patient = False
             self.pending.update(self.waiting)
             self._settle()

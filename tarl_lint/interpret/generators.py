@@ -48,7 +48,8 @@ def suspended(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
     unused = isinstance(statement, ir.Evaluate) and statement.value is expr
     if statement is None or (unused and box not in ctx.posted):
         return UNKNOWN
-    # even if nothing has been sent yet: nodes keep the conditions that are known when they are made
+    # add these conditions even if nothing has been sent yet, because nodes keep the conditions that are known at their
+    # creation
     frame.function.may_leave(statement, SUSPENDED)
     if box not in ctx.posted:
         return UNKNOWN

@@ -34,7 +34,7 @@ class Part:
     runs: int
     ended: int
     answers: dict[int, frozenset[str] | None] = field(default_factory=dict)
-    method: Obj | None = None  # the method that returns the outcome
+    method: Obj | None = None  # the method of a part that returns its outcome
 
     def outcomes(self) -> frozenset[str]:
         """Return all outcomes that it may have; empty if they are not known."""
@@ -59,7 +59,7 @@ class Group(Generic[P]):
     first: str = ""
     automatic: dict[str, dict[str, None]] = field(
         default_factory=dict
-    )  # outcomes of a label that lead to the next one
+    )  # outcomes of a label that lead to the next label
     renames: Mapping[str, str] = field(default_factory=dict)
     offers: frozenset[str] = frozenset()
 

@@ -150,7 +150,8 @@ class Frame(Obj):
         self.turn: tuple[
             int, ...
         ] = ()  # numbers of the current elements of unrolled loops and comprehensions
-        self.turns: Turns = ()  # current iterations of the unrolled loops whose iterations decide about later ones
+        # current iterations of the unrolled loops whose iterations decide about later ones
+        self.turns: Turns = ()
         self.called_in: Turns = ()  # the `turns` of the caller at the call
         self.rows = 1  # number of iterations of the unrolled loops around the current statement
         # statements executed exactly once in each iteration of an unrolled loop
@@ -172,7 +173,7 @@ class Frame(Obj):
         ] = {}  # loop and iterations of outer loops → state at the loop's head in its last fixpoint
         self.captured = False
         self.told_apart: set[tuple[int, str]] = set()  # branches that have conditions of their own
-        # variable → its values that are, or were parts of, one of several objects
+        # variable → those of its values that are one of several objects, or were parts of one
         self.taken: dict[Key, list[Taken]] = {}
         self.returns: list[tuple[dict[Key, Value], Value]] = []
         self.jumps: list[tuple[int, dict[str, list[dict[Key, Value]]]]] = []

@@ -182,7 +182,7 @@ def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
             return held_method(ctx, obj, name)
         holder = recency.intern(ctx, "lib", ("inherited", obj.key, name), name)
         return pointer(holder)
-    # `content` covers the elements, and the attributes whose names are computed
+    # `content` covers both the elements and the attributes with computed names
     result = content(ctx, obj)
     for attributes in replaced_attributes(ctx, obj):
         result = join(result, read_field(ctx, attributes, item_field(name)))

@@ -43,7 +43,7 @@ def joined(ctx: Interpreter, deltas: Sequence[Delta]) -> Delta:
     made: Made = {}
     for key in keys:
         value = first.get(key)
-        # most keys have the same value in all continuations, because a layer repeats what an outer one stored
+        # most keys have the same value in all continuations, because a layer repeats the stores of outer layers
         for other in others:
             if other.get(key) is not value:
                 value = None

@@ -59,7 +59,7 @@ class Shared:
     # key → the one tuple that all records of calls share for it; otherwise each read would store its own tuple
     one: dict[Key, Key] = field(default_factory=dict)
     loaded: int = 0  # number of objects that turned out to hold data
-    edition: int = 0  # number of changes so far of a class, a `from … import *` or a `__dict__`
+    edition: int = 0  # number of changes so far to a class, a `from … import *` or a `__dict__`
 
     def read(self, key: Key, root: Root) -> None:
         """Register a root as reader of a key."""

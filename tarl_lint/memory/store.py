@@ -54,7 +54,7 @@ class Store:
     insides: dict[object, Inside] = field(default_factory=dict)  # cached results of `deep`
     # small sets of objects from which `deep` visits many objects
     wide: set[frozenset[Obj]] = field(default_factory=set)
-    tick: int = 0  # number of changes so far of the state outside frames
+    tick: int = 0  # number of changes so far to the part of the state that is outside frames
     split: dict[frozenset[Obj], Split] = field(default_factory=dict)
     versions: dict[Obj, int] = field(
         default_factory=dict
@@ -83,7 +83,7 @@ class Store:
         if value is None:
             owner = key[0]
             whole = owner.outermost or owner
-            # as in `_new`, written out because most reads of the memory pass here
+            # the same code as in `_new`, repeated here for speed, because most reads of the memory run this line
             if whole.kind in CLEARED and (born := (whole, BORN)) in self.now:
                 if born not in reads.written:
                     reads.keys.add(key)

@@ -13,10 +13,11 @@ from tarl_lint.memory.values import UNKNOWN, Nodes, Value, const, in_order, join
 from tarl_lint.models import sizes
 from tarl_lint.models.iterators import gate, listed, pairs
 
-COMPARED = frozenset(["sequence", "mapping", "instance"])  # kinds of objects that consist of what is compared
+# kinds of objects that consist of the compared values
+COMPARED = frozenset(["sequence", "mapping", "instance"])
 # name of the pair of a key and its value; keys differ, so comparisons do not reach the values
 ENTRY = "entry"
-UNORDERED = "<unordered>"  # field of a sorted list: its elements without what decided their order
+UNORDERED = "<unordered>"  # field of a sorted list: its elements without the values that decided their order
 
 
 def ordered(ctx: Interpreter, elements: Value, it: Invocation) -> Value:

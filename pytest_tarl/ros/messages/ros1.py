@@ -18,7 +18,8 @@ from pytest_tarl.ros.messages.times import Duration, Time, TVal
 from pytest_tarl.ros.messages.values import INTEGERS, FieldError
 from pytest_tarl.ros.messages.workspace import by_order
 
-CARRIED: dict[str, type[Message]] = {}  # unknown types, built from the definition in a bag or topic header
+# types without an installed class, built from the definition in a bag or a topic header
+CARRIED: dict[str, type[Message]] = {}
 
 
 class Message:

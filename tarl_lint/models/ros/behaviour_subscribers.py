@@ -17,7 +17,8 @@ from tarl_lint.models.blackboards import any_client, holder_of, value_of
 from tarl_lint.models.ros import subscriptions
 
 BATTERY: Final = "py_trees_ros.battery.ToBlackboard"
-WARNING: Final = "battery_low_warning"  # key that the behaviour of the battery fills, beside "battery"
+# second key that the battery behaviour writes, in addition to "battery"
+WARNING: Final = "battery_low_warning"
 CHECKS: Final = "py_trees_ros.subscribers.CheckData"
 HANDLER: Final = "py_trees_ros.subscribers.Handler"  # base class whose objects keep the last message in `msg`
 
