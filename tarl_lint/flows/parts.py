@@ -75,10 +75,8 @@ class Parts:
         self.bits = Bits()  # of all statements; the orders of all parts share them
         # node → the nodes of other statements that it depends on, and the bits of these statements
         self._formers: dict[int, tuple[tuple[int, ...], int]] = {}
-        self._bits: dict[
-            int, int
-            # bits → the one object that stands for equal bits, since nodes in many contexts have equal bits
-        ] = {}
+        # bits → the one object that stands for equal bits, since nodes in many contexts have equal bits
+        self._bits: dict[int, int] = {}
         self._ways: dict[tuple[Frame, Frame], Way | None] = {}
         # node → (condition, node that uses the value, calls between) of each condition that chooses its value
         self._entrances: dict[int, Sequence[tuple[int, int, Way]]] = {}
