@@ -40,8 +40,8 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
             raise AnalysisError(f"The marker names the node {node!r}: no such file in {folder}.")
         if path.suffix in SETTINGS:
             raise AnalysisError(
-                f"The marker names {node!r} among the nodes: it is not a Python file. nodes= takes the node's Python "
-                "files only. A node gets the parameters of a launch file or of a parameter file that the test passes "
+                f"nodes= contains {node!r}, which is not a Python file. nodes= takes only Python files of the node. "
+                "A node gets the parameters of a launch file or of a parameter file that the test passes "
                 "(tarl.launch, or parameters= of tarl.start), and TARL finds them there."
             )
         paths.append(path)
@@ -69,7 +69,7 @@ def _what_to_name(paths: Sequence[Path], folder: Path, root: Path) -> str:
 
 
 def passed_with_imports(paths: Sequence[Path], root: Path) -> tuple[Path, ...]:
-    """Return the files through which flows pass if the files that `paths` import are analysed, too."""
+    """Return the files that flows pass through when `paths` are analysed together with the files that they import."""
     more = imported(paths, root)
     if not more:
         return ()

@@ -21,7 +21,7 @@ KEPT = ROOT / "build" / "gallery"
 
 
 class Shown(NamedTuple):
-    """A test of an example whose report pages are in the gallery, and a description."""
+    """A test of an example, with a description; its report pages are in the gallery."""
 
     example: str
     test: str

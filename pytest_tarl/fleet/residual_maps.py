@@ -34,7 +34,7 @@ class ResidualMap:
 
 @dataclass(frozen=True)
 class Designed:
-    """The recorded world: its model, and the variances of a cell's mean residual and of a single visit's residual."""
+    """The recorded world: its model, and the variances of the mean residual of a cell and the residual of a visit."""
 
     model: Model
     variance: Floats

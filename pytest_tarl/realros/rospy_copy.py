@@ -16,7 +16,7 @@ _PARTS = ("client", "core", "names", "rostime", "timer", "topics", "service", "n
 
 
 class RospyCopy:
-    """A private copy of rospy. `process` is the process that uses it in this episode, or None for the world's copy."""
+    """A private copy of rospy. `process` uses the copy in this episode; None for the copy of the world."""
 
     def __init__(self, argv: Sequence[str]) -> None:
         self.argv = tuple(argv)

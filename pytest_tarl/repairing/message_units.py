@@ -1,4 +1,4 @@
-"""Ratios of the units in which a message may arrive, by the quantity that its names, its type and its use suggest.
+"""Ratios of units that a message may have, by its quantity; names, type and use of the message suggest the quantity.
 
 A topic `/tank/pressure` may change from bar to psi; nothing explains the same ratio on a topic `/ball`. Parts of ten
 occur with every quantity: millimetres, percent, thousandths.

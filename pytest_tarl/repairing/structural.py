@@ -50,7 +50,7 @@ LEAST_EACH = 4
 
 @dataclass(frozen=True)
 class _Group:
-    """Operands that are searched together; `share` returns their episodes, given their equal share and all left."""
+    """Operands that are searched together; `share` returns their episodes, given (equal share, remaining episodes)."""
 
     operands: Sequence[Operand]
     share: Callable[[int, int], int] = lambda share, _: share

@@ -1,7 +1,7 @@
 """Literal factors that convert a unit: they follow from the definition of the units, and no drift changes them.
 
 In `kpa = msg.fluid_pressure / 1000.0`, a smaller divisor has the same effect as a lower threshold for `kpa`, but nobody
-looks for the change there. A sensor that reads too much is corrected by a factor of its own.
+looks for the change there. A sensor whose values are too large is corrected by a separate factor.
 """
 
 from __future__ import annotations
@@ -23,8 +23,9 @@ _PI = ("pi", "math.pi", "np.pi", "numpy.pi")
 def converts_unit(source: Document, node: ast.expr) -> bool:
     """Return whether an expression is a literal factor or divisor that converts a unit.
 
-    Apart from units of time and degrees, a ratio must scale a number of the message that a function receives. A ratio
-    that may as well be a gain must be all that happens to this number in the statement.
+    A ratio of units of time or of degrees counts anywhere. Any other ratio counts only if it scales a number of the
+    message that the function receives. A ratio that may also be a gain counts only if the statement does nothing else
+    with this number.
     """
     around = source.parents.get(node)
     if not isinstance(node, ast.Constant) or not isinstance(around, ast.BinOp):

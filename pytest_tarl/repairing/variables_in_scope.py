@@ -1,4 +1,4 @@
-"""Find the variables of a node that a constant can follow: those that hold a number where the constant is used."""
+"""Find the variables to which a constant can be proportional: they hold numbers where the constant is used."""
 
 from __future__ import annotations
 

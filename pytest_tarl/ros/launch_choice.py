@@ -55,8 +55,8 @@ def _common(script: Path, differing: Sequence[Start]) -> Given:
     stated = "argv=[…]" if what == "arguments" else "parameters={…}"
     return replace(
         common,
-        note=f"{script.name} is started with different {what} by launch files ({shown}), so it got {got}: "
-        f"name one with tarl.start(…, launch=FILE), or state {stated}.",
+        note=f"{script.name} gets different {what} in these launch files: {shown}. In this test, it got {got}: "
+        f"choose a launch file with tarl.start(…, launch=FILE), or pass {stated}.",
     )
 
 

@@ -13,7 +13,7 @@ def read(filename: str) -> dict[str, Any]:
     try:
         import yaml
     except ModuleNotFoundError:
-        raise unsupported("--params-file without the package PyYAML (pip install PyYAML)") from None
+        raise unsupported("--params-file without PyYAML (pip install PyYAML)") from None
     said = f"failed to initialize: Couldn't parse params file: '--params-file {filename}'. Error:"
     try:
         found = yaml.safe_load(Path(filename).read_text("utf-8"))

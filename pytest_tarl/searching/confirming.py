@@ -1,8 +1,8 @@
 """The rule that confirms a candidate: it must pass on further seeds and earn about as much as designed.
 
-Seeds that lost much reward often belong to missions that earn less as designed, too, such as those with a longer way.
-A candidate that passes on them but earns less than the mean designed mission is therefore compared with the designed
-missions of the same seeds.
+A mission that lost much reward is often a hard mission, such as one with a longer way, which earns less in the designed
+world, too. A candidate that passes on the seeds of such missions but earns less than the mean designed mission is
+therefore compared with the designed missions of the same seeds.
 """
 
 from __future__ import annotations

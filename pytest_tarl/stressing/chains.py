@@ -31,8 +31,8 @@ POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a 
 OUTWARD = (1.12, 1.08, 1.04)
 # multiples of the near end that all other chains test before the near end
 BEFORE = (1.03,)
-# multiples of the near end that a chain tests after the near end; the steps grow, because several confirmations in a row
-# show that the model expected the boundary too far out
+# multiples of the near end that a chain tests after the near end; the steps grow, because several confirmations in a
+# row show that the model expected the boundary too far out
 INWARD = (0.96, 0.92, 0.86, 0.79, 0.72, 0.65, 0.58, 0.5)
 FINE = tuple(0.985**step for step in range(16))  # in a chain of small steps, multiples of its first drift
 # multiples of the drift at the near end of a chain that may become drifts of the chain

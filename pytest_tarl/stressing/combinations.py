@@ -220,7 +220,7 @@ class Combined:
             self._search_on()
 
     def end(self) -> None:
-        """Search for nearer failing drifts, test pairs, and confirm the results. Raise BudgetSpentError."""
+        """Search for nearer failing drifts, then test pairs of directions, then confirm. Raise BudgetSpentError."""
         proposed: list[Point] = []
         with self.evaluator.limited(LAST):
             self._leading.improve()

@@ -99,7 +99,7 @@ def _sections(stress: Stress) -> Iterator[str]:
 
 
 def _figure(name: str, extent: Span, curves: list[Curve], measured: list[tuple[float, Evidence]]) -> str:
-    """Return an SVG figure of the margin over the values of a direction."""
+    """Return an SVG plot of the margin against the values of one direction."""
 
     def x(value: float) -> float:
         return EDGE + (WIDTH - 2 * EDGE) * (value - extent.low) / (extent.high - extent.low)

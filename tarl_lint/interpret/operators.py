@@ -107,7 +107,7 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
 
 
 def narrowed(value: Value, classes: Value) -> Value:
-    """Return a value without the objects that are certainly no instances of the classes that a pattern names."""
+    """Return a value without the objects that cannot be instances of the classes in a pattern."""
     if not classes.pts or any(c.kind not in ("class", "ext") for c in classes.pts):
         return value
     scalar = all(c.name.removeprefix("builtins.") in SCALARS for c in classes.pts)

@@ -49,7 +49,7 @@ def text_of(ctx: Interpreter, base: Value, name: str, arguments: Arguments) -> C
 
 
 def tested(base: Value, name: str, arguments: Arguments) -> Value | None:
-    """Return whether known texts begin or end with a known text; None if it is unknown, or differs between them."""
+    """Return whether all texts begin or end with the given text; None if a text is unknown or the results differ."""
     texts, given = base.texts(), [value.constant() for value in arguments[0]]
     if not texts or base.pts or len(given) != 1 or not isinstance(given[0][1], str):
         return None

@@ -1,4 +1,4 @@
-"""JUnit XML of systems: a case for each hazard in its file, and a passed case for each flow of a launch file."""
+"""JUnit XML of systems: a test case for each hazard of a file, and a passed case for each flow of a launch file."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def test_the_error_for_a_settings_file_among_the_nodes_explains_parameters(tmp_p
     (tmp_path / "node.py").write_text("import rospy\n")
     (tmp_path / name).write_text("gain: 2.0\n")
     found = refused(tmp_path, "node.py", name)
-    assert found.startswith(f"The marker names {name!r} among the nodes: it is not a Python file.")
+    assert found.startswith(f"nodes= contains {name!r}, which is not a Python file.")
     assert "parameters= of tarl.start" in found
 
 

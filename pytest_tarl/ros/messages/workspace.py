@@ -80,7 +80,7 @@ def forget() -> None:
 
 
 def by_order(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Cache the results of a function for each order of the workspaces, until `forget`."""
+    """Cache the results of a function separately for each order of the workspaces; `forget` clears the cache."""
 
     @cache
     def known(_order: tuple[Path, ...], *arguments: Any, **named: Any) -> Result:

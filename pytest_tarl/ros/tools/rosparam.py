@@ -44,9 +44,7 @@ def load_str(text: str, filename: str, default_namespace: str | None = None, ver
     try:
         import yaml
     except ModuleNotFoundError:
-        raise unsupported(
-            "Reading YAML for rosparam without the package PyYAML (pip install PyYAML)"
-        ) from None
+        raise unsupported("Reading YAML for rosparam without PyYAML (pip install PyYAML)") from None
     try:
         documents = [one for one in yaml.safe_load_all(text) if one]
     except yaml.YAMLError as error:

@@ -14,7 +14,7 @@ from tarl_lint.workspace.python.elements import settled
 from tarl_lint.workspace.python.operators import limited
 from tarl_lint.workspace.python.values import OpaqueError, Stream
 
-try:  # the parser of `re`, under its name since Python 3.11 and its name before
+try:  # the parser of `re`: `re._parser` since Python 3.11, `sre_parse` before
     from re import _parser as _patterns  # type: ignore[attr-defined] # the modules have no stubs
 except ImportError:
     import sre_parse as _patterns

@@ -312,7 +312,7 @@ def test_if_launch_files_conflict_only_parameters_with_equal_values_are_set_and_
     assert found.private == {"kp": 1.5, "limits": {"top": 3, "low": 1}}
     assert found.shared == {"/robot/mass": 12.5}
     assert found.note.startswith(
-        "node.py is started with different parameters by launch files (one.launch, two.launch), so it got only those"
+        "node.py gets different parameters in these launch files: one.launch, two.launch. In this test, it got only"
     )
     write(launches, {"launch/two.launch": LAUNCH1.format(rate=9).replace("arm.yaml", "low.yaml"),
                      "config/low.yaml": "kp: true\nlimits: {top: 3.0, low: 1}\n"})  # fmt: skip
