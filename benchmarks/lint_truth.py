@@ -5,9 +5,9 @@
 
 TREES is a directory of checkouts, one directory per repository. The population is every call `x.publish(…)` in their
 Python files. These calls are found in the syntax tree, without the linter; the linter only says which of them have a
-report. `draw` takes as many calls with a report as without one and prints them sorted by place, so that the list does
-not show which is which. `--without` names files of earlier draws (or a text with `file.py:line`), whose calls are
-excluded.
+report. `draw` takes equally many calls with and without a report. It prints them sorted by place, so that the list does
+not show which calls have a report. `--without` names files of earlier draws (or a text with `file.py:line`), whose
+calls are excluded.
 
 Judgements are made from the source alone, before `compare` runs. A judged call names its sources, each with its kind
 (`data` or `control`) and the lines of the path that every correct report must contain:

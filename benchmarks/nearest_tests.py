@@ -22,8 +22,8 @@ class Nearest:
     def files(self, path: str, most: int) -> list[str]:
         """Return at most `most` test files for the module with a path relative to `root`.
 
-        Files named after the module come first, then those with fewer imports between them and the module, then those
-        in the folder named after its package, then small ones.
+        Files named after the module come first. The others are sorted by the number of imports between the file and the
+        module, then by whether their folder is named after the module's package, then by size.
         """
         parts = Path(path).parts
         home = parts[1] if len(parts) > 2 else ""

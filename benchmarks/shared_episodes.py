@@ -3,10 +3,10 @@
     python benchmarks/shared_episodes.py [--runs 1000] [--total 160] [--recorded 60] [--seed 0]
 
 Totals of episodes are normal with standard deviation 1; a drift of size d lowers their mean by d. All drifts of a world
-are compared with one recording. The looks, the choice of the comparison that continues, and the permutation test are
-those of the plugin; regions of sensor space are left out, so a loss is found as soon as it is significant.
-The row "even, as many run" shows the smallest even share for which the comparisons, which may end early, run
-on average the same number of episodes as with the shared total. A user cannot know this share beforehand.
+are compared with one recording. The script uses the plugin's interim looks, its permutation test, and its choice of the
+comparison that continues. It ignores regions of sensor space, so a loss counts as found as soon as it is significant.
+The row "even, as many run" shows the smallest even share for which the comparisons, which may end early, run on average
+the same number of episodes as with the shared total. A user cannot know this share beforehand.
 """
 
 from __future__ import annotations

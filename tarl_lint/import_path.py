@@ -1,8 +1,9 @@
 """Restrict imports of `tarl-lint` to the standard library and installed packages; linted files are never imported.
 
-Python puts the working directory (`python -m`), the directory of a script and the entries of `PYTHONPATH` before its
-own library, and editable installations append source trees; a file `types.py` in any of them could be imported.
-Only `sys` and `os`, which Python has already loaded, are imported here; even `from __future__` would import a file.
+Python searches the working directory (`python -m`), the directory of a script and the entries of `PYTHONPATH` before
+its own library. Editable installations append source trees. A file `types.py` in any of these folders could be
+imported. Only `sys` and `os`, which Python has already loaded, are imported here; even `from __future__` would import a
+file.
 """
 
 import os

@@ -134,9 +134,8 @@ CHASING, KEEPING, BRAKING = range(3)
 def chasing_cars(inputs: Signal) -> Mapping[str, Signal]:
     """Return the positions `y1` to `y5` of five cars, from throttle and brake of the first (0 to 1).
 
-    The first car drives towards lower values. Every other car chases the car in front of it until it is 10
-    behind, keeps its speed until it is 15 behind (then it chases) or 5 behind (then it brakes), and brakes
-    until it is 20 behind.
+    The first car drives towards lower values. Every other car chases the car in front until the distance is 10. Then it
+    keeps its speed: at a distance of 15 it chases again, and at a distance of 5 it brakes until the distance is 20.
     """
     places, speeds, modes = [0.0, 10.0, 20.0, 30.0, 40.0], [0.0] * 5, [CHASING] * 5
     found = np.empty((5, len(inputs)))

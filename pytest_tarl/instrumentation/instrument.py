@@ -51,10 +51,10 @@ def instrument(
     """Return the module with recording at every statement or lambda body that starts at a position in `sites`.
 
     Compile the result with `compiled`, and insert a hook and a buffer with `constants.bound`. Sites record the value of
-    their statement, with these exceptions: sites in `publishes` and calls of methods named publish record 0, conditions
-    1 or 0, the head of a function its message parameter, and loops the target in each iteration. With `inline`, code
-    appends plain floats to the buffer without a call. This function modifies `tree` and adds recorded positions to
-    `placed`.
+    their statement, with these exceptions. Sites in `publishes` and calls of methods named publish record 0. Conditions
+    record 1 or 0, the head of a function records its message parameter, and a loop records its target in each
+    iteration. With `inline`, code appends plain floats to the buffer without a call. This function modifies `tree` and
+    adds recorded positions to `placed`.
     """
     found: set[Offset] = set() if placed is None else placed
     changed = _Recording(sites, frozenset(publishes), found, inline=inline).visit(tree)

@@ -1,7 +1,7 @@
 """Give each program its own copies of the project's modules, as if it were a separate process.
 
-Otherwise, two nodes in one interpreter would share a module such as `utils`, namely that of the node that started
-first, and two nodes of the same program would share the globals of its modules.
+Otherwise, two nodes in one interpreter would share a module such as `utils`: the second node would get the module of
+the first. Two nodes of the same program would share the globals of its modules.
 """
 
 from __future__ import annotations

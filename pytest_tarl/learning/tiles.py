@@ -1,9 +1,9 @@
 """The parametric utility: tile coding (Sutton & Barto 2018, §9.5.4), solved by least squares.
 
-A sensor with `tilings=T` has T grids of tiles. Each tile is T bins wide, and each grid is shifted by one bin. A cell's
-utility is the sum of the weights of the T tiles that contain it, one per grid, so neighbouring cells share what they
-learn. Sensors without tilings keep their bins. The weights are fitted to the same counts as the table (least-squares
-temporal differences, Bradtke & Barto 1996).
+A sensor with `tilings=T` has T grids of tiles. Each tile is T bins wide, and each grid is shifted by one bin. The
+utility of a cell is the sum of the weights of the T tiles that contain the cell, one tile per grid. Neighbouring cells
+have common tiles, so they learn from each other. Sensors without tilings keep their bins. The weights are fitted to the
+same counts as the table (least-squares temporal differences, Bradtke & Barto 1996).
 """
 
 from __future__ import annotations

@@ -32,9 +32,9 @@ def centred(
 ) -> Candidate:
     """Return the candidate with the best value found by hill climbing on known seeds.
 
-    A candidate that fails on these seeds, or loses little, is returned unchanged. What it loses is known only from the
-    designed missions of these seeds: if they earn less than the mean, too, better values would only be fitted to a few
-    starts. Raise BudgetSpentError.
+    A candidate that fails on these seeds, or loses little, is returned unchanged. Whether such a value loses reward is
+    known only from the designed missions of these seeds. If these missions also earn less than the mean, better values
+    would only be fitted to a few starts. Raise BudgetSpentError.
     """
     pairs = sorted(goal.pairs, key=lambda pair: not trials.ran(candidate, [pair]))[:SEEDS]
     harder = fmean(goal.harder.get(pair.seed, 0.0) for pair in pairs)

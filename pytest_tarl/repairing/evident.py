@@ -24,9 +24,9 @@ def evident(
     """Yield the operands of the `CHANGES` with the strongest symptoms, the strongest first.
 
     Equal strengths are ordered by the cost of the template. Each template has `PLACES`. If the value is wrong where it
-    is received, the places next to the subscription come first, otherwise those next to the publish call, and the
-    arguments of the call itself last, since a named value reads better. What shows a symptom along two axes is changed
-    for both. Symptoms weaker than `least` are left out.
+    is received, the places next to the subscription come first; otherwise, the places next to the publish call come
+    first. The arguments of the publish call come last, since a named value reads better. What shows a symptom along two
+    axes is changed for both. Symptoms weaker than `least` are left out.
     """
     before = _before_sending(order)
     found: list[tuple[float, int, list[tuple[Operand, Form]]]] = []

@@ -1,10 +1,11 @@
 """Parameters that nodes read under names that the analysis does not know, changed in the file that sets them.
 
-In `config[mean]`, `get_param(f"~{axis}_gain")` or a loop over names, the use stands for several parameters, and in
-`[get_param("~x", 0.0), get_param("~y", 0.0)]`, the node may store them where the analysis loses them. The episodes of
-the comparison tell the names and values of the parameters that were read. The number of such a parameter in a YAML,
-launch or `.cfg` file is then a constant of the search by itself, and is always changed there. So is the default of a
-parameter that no file sets, if the analysis loses its value, as in `min(get_param("~cutoff", 10), rate / 2)`.
+In `config[mean]`, `get_param(f"~{axis}_gain")` or a loop over names, one expression reads several parameters. In
+`[get_param("~x", 0.0), get_param("~y", 0.0)]`, the node may store the parameters where the analysis cannot follow them.
+The episodes of the comparison tell the names and values of the parameters that were read. The number of such a
+parameter in a YAML, launch or `.cfg` file is then a constant of the search by itself, and is always changed there. So
+is the default of a parameter that no file sets, if the analysis loses its value, as in `min(get_param("~cutoff", 10),
+rate / 2)`.
 """
 
 from __future__ import annotations

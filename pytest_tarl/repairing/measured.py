@@ -48,10 +48,11 @@ class Change:
 def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand]) -> list[Hint]:
     """Return the changes of named constants that the recorded mission pairs suggest, the most certain ones first.
 
-    A constant that is compared with a value, added to it or subtracted from it has the unit of this value, so it must
-    change as the value did: constants next to values with the same factor change together, then each alone, then by the
-    difference. A constant that multiplies or divides a value changes by the factor of the result, in either direction.
-    A threshold that only designed missions cross moves to where the drifted ones cross it, even if it is a literal.
+    A constant that is compared with a value, added to it or subtracted from it has the unit of this value, so the
+    constant must change as the value did. Constants next to values with the same factor first change together, then one
+    by one, then by the difference. A constant that multiplies or divides a value changes by the factor of the result,
+    in either direction. A threshold that only designed missions cross moves to where the drifted ones cross it, even if
+    it is a literal.
     """
     changes = _changes(order, recorded)
     values = _values(order, recorded)

@@ -105,9 +105,9 @@ def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     """Run an episode of a candidate and return its outcome. Raise StaleTextError.
 
     The unrepaired program ran in this test without an error, so any error now (such as a reward that is not a number)
-    is due to the candidate. A node that becomes silent is no error: a watchdog with a higher threshold may rightly
-    publish nothing in a mission, and its reward tells whether it should. After an error or a crash of the node, the
-    reward so far is meaningless. The total is then at most that of the worst recorded episode.
+    is due to the candidate. A node that publishes nothing is not an error: a watchdog with a higher threshold may
+    rightly publish nothing in a mission. The reward shows whether it should publish. After an error or a crash of the
+    node, the reward so far is meaningless. The total is then at most that of the worst recorded episode.
     """
     try:
         ended = run()

@@ -1,8 +1,8 @@
 """Find where a name means the same constant, so that all of its uses can be changed together.
 
 A name of the module, such as `LASER_YAW`, means the same in the whole file, and `self.kp` in the whole class. A
-parameter of a function, such as `dt`, means it only in the function: if a function passes it to another one, a factor
-on both uses would count twice.
+parameter of a function, such as `dt`, is a name of this function only: if the function passes the parameter to another
+function, a factor on the uses in both functions would count twice.
 """
 
 from __future__ import annotations

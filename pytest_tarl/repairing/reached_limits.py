@@ -49,8 +49,8 @@ class _Reached:
 def reached_limits(order: Order, pairs: Sequence[Recorded], before: Trace | None = None) -> list[Limit]:
     """Return the constants of limits that only the second mission of a pair reaches, each with a relaxing factor.
 
-    The limits that are new since `before`, a drifted mission of the first pair's seed, come first; among these, the
-    ones that are reached first, because what follows may be their effect.
+    The limits that are new since `before`, a drifted mission of the first pair's seed, come first. They are sorted by
+    the time at which they are reached, because later limits may be an effect of earlier ones.
     """
     found: list[_Reached] = []
     steps = {str(step.site): step for step in order.analysis.sites}

@@ -74,9 +74,9 @@ def reaching(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float 
     """Return the factor of a threshold that lets the drifted missions cross it as the designed ones did, else None.
 
     `pairs` are the values of designed and drifted missions, of shape (values,) each. In each pair, the designed values
-    lie on both sides of the threshold, and the drifted ones only on one side, the same in all pairs: for example, a
-    base stops a little before its goal, and the error never falls below the tolerance. The new threshold is `MARGIN`
-    beyond the drifted values that come nearest to it, in the mission in which they stay farthest.
+    lie on both sides of the threshold, and the drifted values lie on one side only, which is the same side in all
+    pairs. For example, a base stops a little before its goal, and the error never falls below the tolerance. The new
+    threshold is `MARGIN` beyond the drifted values that come nearest to it, in the mission in which they stay farthest.
     """
     size, pairs = _sized(threshold, pairs)
     if not pairs or not all(one.size and other.size for one, other in pairs):

@@ -49,11 +49,11 @@ def strategy(
 ) -> Strategy:
     """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
 
-    The sweep calls `interlude` before each of its steps, with the largest gain so far, and `measured` for changes that
-    recorded missions suggest, `reached` for limits that the missions of a change reach, `entered` for constants of the
-    statements that it lets them enter, and `corrections` before it yields an extreme change. `following` returns
-    candidates in which a changed constant follows a sensor or a variable, `proportional` those in which an unchanged
-    one does.
+    Before each of its steps, the sweep calls `interlude` with the largest gain so far. It calls `measured` for changes
+    that recorded missions suggest, and `reached` for limits that the missions of a change reach. It calls `entered` for
+    constants of statements that missions run only with a change, and `corrections` before it yields an extreme change.
+    `following` returns candidates in which a changed constant follows a sensor or a variable, `proportional` those in
+    which an unchanged one does.
     """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)

@@ -1,8 +1,8 @@
 """Uses of the constants in a table of settings, such as `self.p["speed"]` for `{"speed": 0.4}`.
 
 Many nodes keep their parameters in a dictionary that a loop fills. The analysis then knows only that some statement
-reads the table. The key says which constant it reads: the statement is then ranked for this constant alone, the
-constant is a named one, and it can be changed under a condition, where it is used.
+reads the table. The key determines the constant that the statement reads. The statement is then ranked for this
+constant alone, and the constant counts as named. It can be changed under a condition at its use.
 """
 
 from __future__ import annotations

@@ -204,8 +204,8 @@ class Attempts:
         """Adjust the value of a change that passes its missions and earns nearly enough, before others are tried.
 
         Such a change is of the right kind, and only its value is not exact. A constant is adjusted in such small steps
-        only between two close values that earn much less, or so close to its neighbours that `adjusting` does not try
-        any value between them; otherwise the larger steps of `adjusting` reach farther.
+        in two cases: both neighbouring values are close and earn much less, or the neighbours are so close that
+        `adjusting` tries no value between them. Otherwise the larger steps of `adjusting` reach farther.
         """
         goal, key = self.goal, (unit, candidate.guard)
         ran, totals = self.trials.ran(candidate, goal.pairs), self.trials.totals_of(candidate, goal.pairs)

@@ -1,8 +1,8 @@
 """Group constants that stand for the same quantity of several axes, sides or joints.
 
 A drone has one stiffness for each axis; if the wind blows in all directions, changing one of them alone does not help.
-Constants are a family if they are entries of one table (`STIFFNESS["x"]`, `GAINS[1]`), or if their names differ only in
-a word such as `left` or `x`, and if their values are similar.
+Constants form a family if their values are similar, and if they are entries of one table (`STIFFNESS["x"]`, `GAINS[1]`)
+or their names differ only in a word such as `left` or `x`.
 """
 
 from __future__ import annotations

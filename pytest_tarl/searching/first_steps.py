@@ -54,9 +54,9 @@ class FirstSteps:
 
     `responding` contains ids of statements whose constants raised the reward. `measured` returns changes that recorded
     missions suggest; it is called once, when the first steps on named constants gained less than `HALF`. `reached`
-    returns the limits that only the drifted missions of a change reach (see `limits_in_turn`), `entered` the constants
-    of the statements that it lets them enter (see `further_on`), and `proportional` candidates in which a constant is
-    proportional to what varies (see `laws`).
+    returns the limits that only the drifted missions of a change reach (see `limits_in_turn`). `entered` returns the
+    constants of statements that missions run only with the change (see `further_on`). `proportional` returns candidates
+    in which a constant is proportional to a sensor or a variable (see `laws`).
     """
 
     def __init__(

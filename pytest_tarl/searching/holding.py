@@ -25,9 +25,9 @@ MOVED = 2  # maximum number of combinations that are moved further
 def held(base: Joint, rest: Sequence[Unit], selection: ForwardSelection) -> Iterator[tuple[Joint, Outcome]]:
     """Run the constants of `rest` under a change on the mission that it restores least; yield what earns more.
 
-    Each constant is increased, then decreased; the best ones are then moved further, also if they earn about the same:
-    the best one with a large step need not be the best one with its right value. Nothing runs if the change gains too
-    little on average, or if it restores all missions that it ran. Raise BudgetSpentError.
+    Each constant is increased, then decreased. The best constants are then moved further, also if several earn about
+    the same, because the constant that is best after a large step need not be the best with a suitable value. Nothing
+    runs if the change gains too little on average, or if it restores all missions that it ran. Raise BudgetSpentError.
     """
     pair = _hardest(base, selection)
     if pair is None:

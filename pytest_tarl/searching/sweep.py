@@ -55,18 +55,17 @@ class Sweep:
 
     If the first guard is `ALWAYS`, only this guard is used throughout, otherwise the first two are. The others are used
     only at the end. If `proposed` is true, the operands are parameters of a change that the program does not contain
-    yet. Such parameters are first tried with their own values. If the change has no effect, factors that make
-    it `weaker` are skipped. Only parameters of the same change are combined. The last steps of the sweep are
-    tried on every operand. If a search for structural changes follows, only the nearest of these steps are
-    tried, on named constants. If `brief` is true, the search ends after the first steps unless something gains
-    `BRIEFLY`. `responding` contains the ids of statements whose constants increased the reward. `interlude` is called
-    with the largest gain before each step and each long phase, and may yield candidates of another search. `measured`
-    returns changes that recorded missions suggest, `reached` and `entered` what the missions of a change reach,
-    `proportional` constants that follow what varies (see `FirstSteps`), and `corrections` confirmed corrections of
-    sensor readings, which come before extreme changes. `finer` is called with an operand that nearly earned enough, so
-    that `mutate` may allow values between those of its grid. `following` returns, for a changed constant, candidates in
-    which the constant follows a sensor or a variable instead. `scaled` says whether a change of another search scales a
-    command (see `constants_first`).
+    yet. Such parameters are first tried with their own values. If the change has no effect, factors that make it
+    `weaker` are skipped. Only parameters of the same change are combined. The last steps of the sweep are tried on
+    every operand. If a search for structural changes follows, only the nearest of these steps are tried, on named
+    constants. If `brief` is true, the search ends after the first steps unless something gains `BRIEFLY`. `responding`
+    contains the ids of statements whose constants increased the reward. `interlude` is called with the largest gain
+    before each step and each long phase, and may yield candidates of another search. `measured` returns changes that
+    recorded missions suggest. `reached`, `entered` and `proportional` are those of `FirstSteps`. `corrections` returns
+    confirmed corrections of sensor readings, which come before extreme changes. `finer` is called with an operand that
+    nearly earned enough, so that `mutate` may allow values between those of its grid. `following` returns, for a
+    changed constant, candidates in which the constant follows a sensor or a variable instead. `scaled` says whether a
+    change of another search scales a command (see `constants_first`).
     """
 
     def __init__(

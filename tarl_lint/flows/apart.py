@@ -16,8 +16,9 @@ Record = TypeVar("Record", SourceRecord, SinkRecord)
 def told_apart(records: Iterable[Record]) -> list[Record]:
     """Return one source, or one sink, for each line and its topics.
 
-    A record is merged into another one of its line if the other has all its topics and more: the analysis may have
-    reached the line before it knew the names. If a record has no topic, both must be of one call context.
+    A record is merged into another record of the same line if the other record has all its topics and more, because the
+    analysis may have reached the line before it knew the names. If a record has no topic, both must be of one call
+    context.
     """
     found: list[Record] = []
     for same in by_line(records):

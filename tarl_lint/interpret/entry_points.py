@@ -100,8 +100,9 @@ def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, star
 def _passed_by_others(ctx: Interpreter, cls: Obj, statement: ir.Class, module: Obj) -> bool:
     """Return whether code outside the files may make an object of a class to pass it on, or to pass others to it.
 
-    Other code passes objects of a class that annotates a parameter, or of its last subclasses, and may pass objects
-    of the files to the constructor of a class that publishes or has a timer.
+    If a class annotates a parameter, other code is assumed to pass objects of this class or of its most derived
+    subclasses. It may also pass objects of the analysed files to the constructor of a class that publishes or has a
+    timer.
     """
     if not ctx.wanted.isdisjoint(lineage(cls)):
         return not any(o.kind == "class" and o is not cls and cls in lineage(o) for o in ctx.objects.values())

@@ -2,8 +2,8 @@
 
 A loop over such code is unrolled, so that each iteration has its own topics, callbacks and objects. Code that adds
 states and behaviours to others counts as well. A loop whose element chooses the publisher is unrolled, too. Functions
-and classes are told apart by their names only: code that calls one of two functions with the same name is assumed to
-call both, and is then unrolled without need.
+and classes are distinguished only by their names. Code that calls one of two functions with the same name is assumed to
+call both, so some loops are unrolled without need.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a launch file determines about one node: its names, and its parameters, including lists and mappings."""
+"""The values that a launch file gives to one node: its names and its parameters, including lists and mappings."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ UNORDERED = "<unordered>"  # field of a sorted list: its elements without the va
 
 
 def ordered(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
-    """Return elements that a call chooses or sorts: what it compares decides which one is where.
+    """Return elements that a call chooses or sorts; the compared values decide the place of each element.
 
     What it compares are the results of `key=`, or else the data inside elements that are containers or instances. The
     results are not data of the elements, just as the condition of an `if` is not data of what it chooses.

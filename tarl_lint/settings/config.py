@@ -158,9 +158,9 @@ def resolve(options: Options) -> Config:
 def describing(paths: Sequence[Path], root: Path | None) -> Config:
     """Return the settings that describe the code at the paths, not what a report shows of it, for use by a program.
 
-    These are sources, sinks, sanitizers, wrappers, and `tf2` and `clients`, which are on unless the settings file says
-    otherwise: a program that runs the code sees that a look-up of a transform depends on messages, and a goal or a
-    request moves a robot as a message does. Raises ConfigError.
+    These are sources, sinks, sanitizers, wrappers, `tf2` and `clients`. `tf2` and `clients` are on unless the settings
+    file says otherwise: a program that runs the code can observe that a look-up of a transform depends on messages, and
+    a goal or a request moves a robot as a message does. Raises ConfigError.
     """
     file = find_settings(common_directory(paths))
     table = read_settings(file, required=False) if file else {}

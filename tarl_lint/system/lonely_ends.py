@@ -29,9 +29,9 @@ class Lonely(NamedTuple):
 def near(system: System, one: Lonely, others: Iterable[Lonely], *, longer: bool = False) -> list[Lonely]:
     """Return the ends that were probably meant for an end, each node and name once, sorted.
 
-    Nodes that were not read may be the other end of both names. They do not matter for private names, which only the
-    node itself uses, and for misspelt names, unless they mention one of the names. `longer` says that names may also
-    differ by whole words; in the root, only those of special types.
+    Nodes that were not read may be the other end of both names. Such nodes do not matter for private names, because
+    only the node itself uses these. They matter for misspelt names only if they mention one of the two names. `longer`
+    says that names may also differ by whole words; in the root, only those of special types.
     """
     able = tuple(system.able(one.end))
     found = {

@@ -46,8 +46,8 @@ def of_call(
     """Return the quality of service in a call at a position; None if it is not constant.
 
     `others` are the outlines of all modules of the program, which may define the profile. If the call is one of a
-    wrapper, `inside` are the calls in it. If the profile is a variable of a wrapper, it is taken from the tables and
-    calls that name it beside one of the `topics`, or else from all calls of the wrapper.
+    wrapper, `inside` are the calls in it. If the profile is a variable of a wrapper, its value is taken from the tables
+    and calls that contain it beside one of the `topics`, or else from all calls of the wrapper.
     """
     call = outline.call(pos)
     if call is None:

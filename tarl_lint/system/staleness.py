@@ -39,8 +39,8 @@ _Function = ast.FunctionDef | ast.AsyncFunctionDef
 def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Finding, ...]:
     """Return the flows into commands that a timer or loop publishes again and again from the last message.
 
-    One function receives the message and stores it; another one publishes it, and no function that runs again and again
-    clears what was stored or seems to check the age of the message.
+    One function receives the message and stores it, and another function publishes it. No function that runs again and
+    again clears the stored value or seems to check the age of the message.
     """
     flows = [one.flow for one in findings if one.flow is not None]
     if not any(is_command(one.sink.type, one.sink.topics) for one in flows):

@@ -60,8 +60,8 @@ class Command:
 class Cmake:
     """The installed programs (file, installed name) and Python packages (name, folder) of a package.
 
-    `compiled` are its C++ programs, `tests` those that it builds for tests only, `components` the classes of its
-    composable nodes, and `configurations` the `.cfg` files that it declares.
+    `compiled` lists its C++ programs, and `tests` the programs that it builds for tests only. `components` lists the
+    classes of its composable nodes, and `configurations` the `.cfg` files that it declares.
     """
 
     programs: tuple[tuple[str, str], ...] = ()

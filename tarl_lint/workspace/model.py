@@ -15,9 +15,9 @@ INTERFACES: Final = ("msg", "srv", "action")
 class Problem:
     """Something that could not be read: the file, a line (0 for the whole file) and the reason.
 
-    `hides` says that a launch file may start further nodes there; `package` is the one that contains an included file
-    that is not in the workspace, or "", and `given` are the values that this file receives. `unreadable` says that
-    nothing of the file could be read.
+    `hides` states that a launch file may start further nodes there. If an included file is not in the workspace,
+    `package` is its package and `given` are the values that it receives; otherwise, `package` is "". `unreadable` says
+    that nothing of the file could be read.
     """
 
     file: Path

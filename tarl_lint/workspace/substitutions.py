@@ -37,8 +37,8 @@ class SymbolicError(Exception):
 class Scope:
     """The names for substitutions: the arguments of the file, its folder, and the packages.
 
-    An argument without a value is None. The value of an argument that is known only on the robot is symbolic, such as
-    `$(env ROBOT)`, so that it is the same text in all files that pass it on.
+    An argument without a value is None. If the value of an argument is known only on the robot, the value is symbolic,
+    such as `$(env ROBOT)`. All files that pass the argument on then have the same text.
     """
 
     workspace: Workspace
