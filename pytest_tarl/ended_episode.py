@@ -79,8 +79,8 @@ class EndedEpisode:
     def silence(self) -> str:
         """Return which sensor or node was silent in the whole episode and what to check, or "".
 
-        A silent mission is no error if others are not: a door may stay closed, or a battery full. Drifts and candidates
-        for a repair may silence a node in all missions.
+        A mission without messages is not an error if other missions have messages: a door may stay closed, or a battery
+        full. Drifts and candidates for a repair may silence a node in all missions.
         """
         if self.replay is not None or self.drifted:
             return ""

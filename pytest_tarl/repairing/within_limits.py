@@ -34,7 +34,7 @@ def within_limits(source: Document, node: ast.expr, known: Collection[str]) -> a
 
 
 def _clamped(source: Document, call: ast.Call, known: Collection[str]) -> ast.expr | None:
-    """Return the argument of a clamp that is no limit."""
+    """Return the argument of a clamp that is not a limit."""
     name = called(call)
     if name in CLAMPS and len(call.args) == 3:
         possible = call.args[:1]

@@ -41,7 +41,8 @@ class Gains:
     ) -> None:
         """Store the gain of a factor, and whether it changed an episode (by default: whether the gain is not 0).
 
-        A `hollow` gain comes from missions that only fail sooner. It may be refined, but it is no progress.
+        A `hollow` gain comes from missions that only fail sooner. Such a gain may be refined, but does not count as
+        progress.
         """
         (self._hollow.add if hollow else self._hollow.discard)((key, factor))
         self._by_key.setdefault(key, {} if self.proposed else {1.0: 0.0})[factor] = gain

@@ -57,7 +57,7 @@ class LimitsInTurn:
         """Run a combination; while missions change but earn too little, relax the limits that they reach next.
 
         A combination that clearly earns less than its parent (`before`), or that reaches the goal on this seed, is not
-        extended: the limit was no obstacle, or no further one shows on this seed.
+        extended: either the limit was not an obstacle, or this seed shows no further limit.
         """
         selection = self.selection
         if selection.trials.spent - self._begun >= EPISODES:

@@ -64,7 +64,7 @@ MESSAGES = frozenset(["message", "goal"])
 THERE = frozenset([*MESSAGES, *OURS])  # kinds of objects that are never None
 SCALARS = frozenset(["str", "int", "float", "bool", "bytes"])
 MAX_TEXT = 300
-FALSE = frozenset([False, None, ""])  # values of `a and False` for an unknown `a` that is no container
+FALSE = frozenset([False, None, ""])  # values of `a and False` for an unknown `a` that is not a container
 
 
 def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:

@@ -88,5 +88,5 @@ def _entries_of(ctx: Interpreter, obj: Obj) -> list[tuple[object, Value]] | None
         try:
             found.append((literal_eval(name[1:-1]), value))
         except (ValueError, SyntaxError):
-            return None  # a key is no literal, but for example a class
+            return None  # the key is not a literal but, for example, a class
     return found

@@ -44,7 +44,7 @@ class Origins:
         if value is None:
             return frozenset()
         if value.pts:
-            # `min(value, limit)` with a loaded limit is no constant if messages set the value
+            # `min(value, limit)` with a loaded limit is not a constant if messages set the value
             constant = self.graph.live.isdisjoint(value.deps)
             return self._loaded(value) if constant else frozenset()
         if not value.deps:
