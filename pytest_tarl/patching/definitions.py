@@ -104,11 +104,22 @@ def _defined_at(analysis: Analysis, operand: Operand, span: Span) -> Place | Non
     if node is None or value is None or operand.value not in (None, value):
         return None
     name = parameter(analysis, operand) or _name(source, node) or operand.code
+    return number_at(source, node, name, value)
+
+
+def number_at(
+    source: Document, node: ast.expr, name: str, value: bool | int | float, share: float = 1.0
+) -> Place | None:
+    """Return the place of a number with some value and name, inside the quotes if it is written as a string.
+
+    Return None if the string is written in another way than its value, such as with escape sequences.
+    """
     start, end = source.start(node), source.end(node)
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
-        start = source.text.find(node.value, start, end)  # offset of the number inside the quotes
-        end = start + len(node.value)
-    return Place(span.path, start, end, node.lineno, name, value) if start >= 0 else None
+        numeral = node.value.strip()
+        start = source.text.find(numeral, start, end)
+        end = start + len(numeral)
+    return Place(source.path, start, end, node.lineno, name, value, share) if start >= 0 else None
 
 
 def parameter(analysis: Analysis, operand: Operand) -> str:
@@ -191,11 +202,9 @@ def _launched(path: str, key: str, text: str) -> Iterator[Place]:
     if source is None:
         return
     for one in numerals(key, source.tree):
-        start, end = source.start(one.node), source.end(one.node)
-        if isinstance(one.node, ast.Constant) and isinstance(one.node.value, str):
-            start = text.find(one.node.value.strip(), start, end)  # offset of the number inside the quotes
-            end = start + len(one.node.value.strip())
-        yield Place(path, start, end, one.node.lineno, _target(source, one.node) or key, one.value, one.share)
+        place = number_at(source, one.node, _target(source, one.node) or key, one.value, one.share)
+        if place is not None:
+            yield place
 
 
 def _target(source: Document, node: ast.expr) -> str:

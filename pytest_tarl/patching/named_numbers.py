@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.definitions import Place, literal_number
+from pytest_tarl.patching.definitions import Place, literal_number, number_at
 from pytest_tarl.patching.document import Document, called, document, strings
 from tarl_lint.model import Operand
 
@@ -27,7 +27,7 @@ def named_numbers(analysis: Analysis, operand: Operand) -> list[Place]:
 
     Numbers that differ from the operand's value, if it is known, and zeros are left out.
     """
-    found: dict[Place, None] = {}
+    found: dict[Place | None, None] = {}
     name = _name(analysis, operand)
     for path in sorted(analysis.sources, key=lambda one: one != operand.span.path):
         try:
@@ -40,10 +40,10 @@ def named_numbers(analysis: Analysis, operand: Operand) -> list[Place]:
             found |= dict.fromkeys(_elements(source, own))
         for node in ast.walk(source.tree) if name else ():
             found |= dict.fromkeys(_place(source, name, number) for number in _numbers(node, name))
-    return [one for one in found if one.value and operand.value in (None, one.value)]
+    return [one for one in found if one is not None and one.value and operand.value in (None, one.value)]
 
 
-def _inside(source: Document, own: ast.expr) -> Iterator[Place]:
+def _inside(source: Document, own: ast.expr) -> Iterator[Place | None]:
     """Yield the only number of a call that reads a constant by its name: `read("gain", 2.0)`."""
     given = [*own.args, *(one.value for one in own.keywords)] if isinstance(own, ast.Call) else []
     texts = strings(given)
@@ -52,7 +52,7 @@ def _inside(source: Document, own: ast.expr) -> Iterator[Place]:
         yield _place(source, texts[0], numbers[0])
 
 
-def _elements(source: Document, own: ast.expr) -> Iterator[Place]:
+def _elements(source: Document, own: ast.expr) -> Iterator[Place | None]:
     """Yield the element of a list that a call turns into an array: `C[1]` after `C = array([1.0, 2.0])`."""
     if not isinstance(own, ast.Subscript):
         return
@@ -114,7 +114,6 @@ def _is_number(node: ast.expr) -> bool:
     return number is not None and not isinstance(number, bool)
 
 
-def _place(source: Document, name: str, node: ast.expr) -> Place:
+def _place(source: Document, name: str, node: ast.expr) -> Place | None:
     value = literal_number(node)
-    assert value is not None  # noqa: S101
-    return Place(source.path, source.start(node), source.end(node), node.lineno, name, value)
+    return None if value is None else number_at(source, node, name, value)

@@ -22,6 +22,7 @@ from pytest_tarl.patching.definitions import (
     Place,
     configured,
     literal_number,
+    number_at,
     package_files,
     parameter,
 )
@@ -95,8 +96,9 @@ def _defaults(analysis: Analysis, path: str) -> Iterator[tuple[str, Place, set[S
             if value is None or not names:
                 continue
             key = key_of(names[0])
-            place = Place(path, source.start(number), source.end(number), number.lineno, key, value)
-            yield key, place, {source.span(number), source.span(node)}
+            place = number_at(source, number, key, value)
+            if place is not None:
+                yield key, place, {source.span(number), source.span(node)}
 
 
 def files_of_packages(order: Order) -> dict[str, str]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -19,6 +20,7 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
 from tarl_lint.api import Analysis, analyse
+from tarl_lint.model import Operand, SiteId, Span
 from tests.plugin.patching.constants import DATA, FORMS, HERE, node
 from tests.plugin.patching.repairs import TinyRos
 
@@ -101,3 +103,13 @@ def test_a_constant_is_found_and_changed_where_it_is_defined(name: str, tmp_path
     changed = [line for line, old in zip(text.split("\n"), before, strict=True) if line != old]
     assert len(changed) == 1
     assert HERE in changed[0] or path.endswith(".json")
+
+
+def test_a_number_in_quotes_is_changed_inside_them() -> None:
+    text = 'parser.add_argument("--gain", type=float, default="2.0")\nspeed = args.gain\n'
+    analysis: Any = SimpleNamespace(sources={"keeper.py": text})
+    use = Operand(
+        SiteId("keeper", "", "speed = args.gain"), Span("keeper.py", 2, 9, 2, 18), "args.gain", None
+    )
+    (place,) = named_numbers(analysis, use)
+    assert text[place.start - 1 : place.end + 1] == '"2.0"'

@@ -262,6 +262,13 @@ def test_the_default_of_a_parameter_is_changed_if_nothing_sets_it(
     assert ('get_param("~gain_left", 5))' if file == "keeper.py" else "  gain_left: 5.0  #") in text
 
 
+def test_a_default_that_is_written_as_a_string_keeps_its_quotes(tmp_path: Path) -> None:
+    quoted = {**LIMITED, "first": LIMITED["first"].replace('"~gain_left", 2)', '"~gain_left", "2")')}
+    order = order_of(tmp_path, quoted, {})
+    ((_, text),) = changed(order, in_files(order)["gain_left"], 2.5).items()
+    assert 'get_param("~gain_left", "5"))' in text
+
+
 def test_the_default_of_a_parameter_that_is_an_operand_is_not_added(tmp_path: Path) -> None:
     named = {"first": 'self.gain = rospy.get_param("~gain_left", 1.0)', "use": "self.gain"}
     assert in_files(order_of(tmp_path, named, {})) == {}
