@@ -58,7 +58,8 @@ def strategy(
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
     if method == "sweep":
-        moved, same = one_of_each(order.analysis, operands(order))
+        every = operands(order)
+        moved, same = one_of_each(order.analysis, every)
         return Sweep(
             moved,
             mutants.mutate,
@@ -67,7 +68,7 @@ def strategy(
             order.goal,
             generator,
             late=same,
-            aside=aside_operands(order),
+            aside=aside_operands(order, every),
             structure_follows=order.options.structure,
             charts=charts(order, moved),
             scope=name_scope(order.analysis),
@@ -160,13 +161,13 @@ def _given_to_several(
     }
 
 
-def aside_operands(order: Order) -> tuple[Operand, ...]:
+def aside_operands(order: Order, ranked: Sequence[Operand]) -> tuple[Operand, ...]:
     """Return operands that decide when or what the nodes publish but are in no data flow, most readable first.
 
-    The slices do not rank them.
+    The slices do not rank them; they rank the operands in `ranked`, which are left out.
     """
     analysis = order.analysis
-    known = set(operands(order))
+    known = set(ranked)
     found = (o for step in (*analysis.timing, *analysis.deciding) for o in analysis.operands(step.site))
     new = dict.fromkeys(one for one in found if one not in known)
     return tuple(sorted(quantities(analysis, new), key=writing))

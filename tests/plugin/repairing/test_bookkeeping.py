@@ -65,7 +65,8 @@ def test_the_search_gets_only_the_numbers_that_control_the_node(tmp_path: Path) 
         online=SimpleNamespace(recorded=SimpleNamespace(parameters={})),
         comparison=SimpleNamespace(culprits=()),
     )
-    found = {one.value for one in (*operands(order), *aside_operands(order))}
+    ranked = operands(order)
+    found = {one.value for one in (*ranked, *aside_operands(order, ranked))}
     assert {1.25, 0.5, 0.2} <= found
     assert not found & {10.0, 6, 7, 2.5, 0, 1.5, 9}
 

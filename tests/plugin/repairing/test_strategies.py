@@ -108,8 +108,8 @@ def test_the_constants_of_several_objects_of_a_class_are_changed_where_the_objec
 
 
 def test_the_rate_of_a_loop_is_an_operand_that_is_set_aside(order: Any) -> None:
-    assert codes(aside_operands(order)) == ["20.0 in 29"]
-    assert not set(aside_operands(order)) & set(operands(order))
+    assert codes(aside_operands(order, operands(order))) == ["20.0 in 29"]
+    assert not set(aside_operands(order, operands(order))) & set(operands(order))
 
 
 class Seen:
