@@ -68,17 +68,23 @@ class Early:
         """
         if self._recorded and best < HALF * self.order.goal.wanted:
             yield from self.corrected()
-        partly = best >= PARTLY * self.order.goal.wanted
+        partly = self._partly(best)
         if self._recorded and self.trials.spent >= SOON:
             yield from self._surely(symptoms=not partly)
-        begin = LATER if partly else FROM
-        if self._structures is not None or self.trials.spent < begin:
+        if not self.due(best):
             return
         begun = self.trials.spent
         found = self.signs(self.trials)
         self.spent += self.trials.spent - begun
         self._structures = Structures(self.order, self.guards, self.trials, signs=found)
         yield from self._counted(self._structures.early(MOST, once=not partly))
+
+    def due(self, best: float) -> bool:
+        """Return whether the changes begin now; `best` is the largest gain of a constant so far."""
+        return self._structures is None and self.trials.spent >= (LATER if self._partly(best) else FROM)
+
+    def _partly(self, best: float) -> bool:
+        return best >= PARTLY * self.order.goal.wanted
 
     def before_extreme(self) -> Iterator[Candidate]:
         """Yield what is likelier than an extreme change of a constant: corrected readings and scaled commands.

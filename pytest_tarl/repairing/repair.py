@@ -142,6 +142,7 @@ def _search(
         early.reached,
         early.entered,
         lambda used: proportional(mutants.order, used) if share < 1.0 else iter(()),
+        early.due if share < 1.0 else lambda _: False,
     )
     try:
         if found.accepted is None:

@@ -46,14 +46,15 @@ def strategy(
     reached: Callable[[Mutants, Candidate], Sequence[Limit]] = lambda *_: (),
     entered: Callable[[Mutants, Candidate], Sequence[Operand]] = lambda *_: (),
     proportional: Proportional = lambda _: iter(()),
+    due: Callable[[float], bool] = lambda _: False,
 ) -> Strategy:
     """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
 
-    Before each of its steps, the sweep calls `interlude` with the largest gain so far. It calls `measured` for changes
-    that recorded missions suggest, and `reached` for limits that the missions of a change reach. It calls `entered` for
-    constants of statements that missions run only with a change, and `corrections` before it yields an extreme change.
-    `following` returns candidates in which a changed constant follows a sensor or a variable, `proportional` those in
-    which an unchanged one does.
+    Before each of its steps, the sweep calls `interlude` with the largest gain so far; `due` says whether `interlude`
+    then begins its structural changes. It calls `measured` for changes that recorded missions suggest, and `reached`
+    for limits that the missions of a change reach. It calls `entered` for constants of statements that missions run
+    only with a change, and `corrections` before it yields an extreme change. `following` returns candidates in which a
+    changed constant follows a sensor or a variable, `proportional` those in which an unchanged one does.
     """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
@@ -73,6 +74,7 @@ def strategy(
             charts=charts(order, moved),
             scope=name_scope(order.analysis),
             interlude=interlude,
+            due=due,
             measured=lambda: measured(moved),
             corrections=corrections,
             following=following,

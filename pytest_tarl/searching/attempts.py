@@ -17,6 +17,7 @@ from pytest_tarl.searching.adjusting import Adjusting
 from pytest_tarl.searching.combining import Combining
 from pytest_tarl.searching.constants_first import Scaled, constants_first
 from pytest_tarl.searching.divided import divided, stronger_and_weaker
+from pytest_tarl.searching.farther import farther
 from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.plainness import Oddness, writing
@@ -71,6 +72,7 @@ class Attempts:
         following: Callable[[Candidate], Iterator[Candidate]] = lambda _: iter(()),
         scope: Scope = everywhere,
         interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
+        due: Callable[[float], bool] = lambda _: False,
         corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
         scaled: Callable[[Candidate], Scaled | None] = lambda _: None,
     ) -> None:
@@ -88,6 +90,8 @@ class Attempts:
         self.following = following
         self.scope = scope
         self._structures = interlude
+        self._due = due
+        self._went_farther = False
         self._scaled = scaled
         self.corrections = corrections
         self.slack = SLACK * goal.wanted
@@ -111,8 +115,20 @@ class Attempts:
         self._settled = Settled()
 
     def interlude(self, gain: float) -> Iterator[Candidate]:
-        """Yield structural changes, but first the constants that gained; `gain` is the largest gain so far."""
+        """Yield structural changes, but first the constants that gained; `gain` is the largest gain so far.
+
+        Named constants get farther steps before the first structural changes, unless they had them before.
+        """
+        if self._due(gain):
+            yield from self.farther()
+            gain = max(gain, self.gains.best())
         yield from constants_first(self._structures(gain), self, self.trials, self.goal, self._scaled)
+
+    def farther(self) -> Iterator[Candidate]:
+        """Try farther steps on named constants, once (see `farther`)."""
+        if not (self.proposed or self._went_farther):
+            self._went_farther = True
+            yield from farther(self)
 
     @property
     def pair(self) -> int:

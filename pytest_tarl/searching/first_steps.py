@@ -117,6 +117,7 @@ class FirstSteps:
         yield from self._between_failures(guard, moving)
         yield from self.crossing.across(guard, plateau.STEPS[:2])
         yield from self._narrow(guard, moving)
+        yield from tries.farther() if gains.anything() else ()
         for factor, before in () if gains.anything() else FURTHER:
             leading = tries.leading(before, guard, tries.goal.wanted * HINT)
             yield from tries.sweep(factor, guard, leading[:LEADING])

@@ -90,6 +90,10 @@ class Gains:
         """Return whether a unit changed any episode."""
         return any(moved == unit for moved, _ in self._moved)
 
+    def moved_by(self, unit: Unit, factor: float) -> bool:
+        """Return whether a factor of a unit changed any episode."""
+        return (unit, factor) in self._moved
+
     def idle_guard(self, guard: Guard) -> bool:
         """Return whether changes under a guard hardly have effects: it holds where the robot does little."""
         tried = self.under(guard)

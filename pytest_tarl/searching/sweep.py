@@ -60,7 +60,8 @@ class Sweep:
     every operand. If a search for structural changes follows, only the nearest of these steps are tried, on named
     constants. If `brief` is true, the search ends after the first steps unless something gains `BRIEFLY`. `responding`
     contains the ids of statements whose constants increased the reward. `interlude` is called with the largest gain
-    before each step and each long phase, and may yield candidates of another search. `measured` returns changes that
+    before each step and each long phase, and may yield candidates of another search. `due` says whether `interlude`
+    would begin the structural changes, before which named constants get farther steps. `measured` returns changes that
     recorded missions suggest. `reached`, `entered` and `proportional` are those of `FirstSteps`. `corrections` returns
     confirmed corrections of sensor readings, which come before extreme changes. `finer` is called with an operand that
     nearly earned enough, so that `mutate` may allow values between those of its grid. `following` returns, for a
@@ -89,6 +90,7 @@ class Sweep:
         responding: Collection[str] = (),
         scope: Scope = everywhere,
         interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
+        due: Callable[[float], bool] = lambda _: False,
         measured: Callable[[], Sequence[Hint]] = tuple,
         corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
         reached: Reached = lambda _: (),
@@ -120,6 +122,7 @@ class Sweep:
             following=following,
             scope=scope,
             interlude=interlude,
+            due=due,
             corrections=corrections,
             scaled=scaled,
         )
