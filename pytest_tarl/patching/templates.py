@@ -107,6 +107,16 @@ class Template:
     symptoms: tuple[str, ...] = ()  # symptoms that indicate the template (see `pytest_tarl.symptoms`)
     inside: bool = False  # for sensors: whether to change what a clamp limits, if the value has a clamp
 
+    @property
+    def from_first(self) -> bool:
+        """Return whether the state starts from the first value, so that a value that never varies stays the same."""
+        return any(initial in ("None", "[]") for _, initial in self.state)
+
+    @property
+    def from_zero(self) -> bool:
+        """Return whether the result is a state that starts from 0, as if the value had been 0 before."""
+        return any(initial == "0.0" and self.expression == f"{{{name}}}" for name, initial in self.state)
+
     def uses(self, placeholder: str) -> int:
         """Return how often a placeholder occurs in the lines and the expression."""
         return sum(_PLACEHOLDER.findall(text).count(placeholder) for text in (*self.lines, self.expression))

@@ -31,11 +31,13 @@ Recorded = tuple[Trace, Trace]  # the designed and the drifted mission of a seed
 class Signs:
     """The strength of each symptom by site id, and the sensor cells of each step, by mission pair.
 
-    Steps before the first message have no cell. Both missions of a pair have the same number of steps here.
+    Steps before the first message have no cell. Both missions of a pair have the same number of steps here. `steady`
+    has the ids of the statements whose value never varied within a mission.
     """
 
     strengths: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     cells: tuple[tuple[tuple[Cell, ...], tuple[Cell, ...]], ...] = ()
+    steady: frozenset[str] = frozenset()
 
     def strength(self, site: str, symptoms: Sequence[str]) -> float:
         """Return the strength of the strongest of some symptoms at a site."""
@@ -71,7 +73,9 @@ def mission_pairs(order: Order, trials: Trials) -> tuple[Recorded, ...]:
 
 def signs(order: Order, pairs: Sequence[Recorded]) -> Signs:
     """Return the symptoms of mission pairs."""
-    return Signs(dict(_strengths(order, pairs)), tuple(map(_cells, pairs))) if pairs else NO_SIGNS
+    if not pairs:
+        return NO_SIGNS
+    return Signs(dict(_strengths(order, pairs)), tuple(map(_cells, pairs)), frozenset(_steady(order, pairs)))
 
 
 def recorded(order: Order, seed: int, drift: str | None, overlay: Mapping[Path, str] = NOTHING) -> Trace:
@@ -93,6 +97,15 @@ def _strengths(order: Order, recorded: Sequence[Recorded]) -> Iterator[tuple[str
         pairs = [Pair(series(one, number), series(other, number)) for one, other in recorded]
         if place.role != "publish" and all(pair.drifted.values.size for pair in pairs):
             yield place.id, {name: symptom(pairs) for name, symptom in SYMPTOMS.items()}
+
+
+def _steady(order: Order, recorded: Sequence[Recorded]) -> Iterator[str]:
+    """Yield the ids of the statements whose value never varied within a mission; each designed mission has a value."""
+    for number, place in enumerate(plan(order.analysis).places):
+        values = [series(trace, number).values for pair in recorded for trace in pair]
+        same = all(one.min() == one.max() for one in values if one.size)
+        if same and place.role != "publish" and all(one.size for one in values[::2]):
+            yield place.id
 
 
 def series(trace: Trace, number: int) -> Series:

@@ -89,7 +89,10 @@ class Structures:
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield confirmed candidates: first those with symptoms, then cheap templates. Raise BudgetSpentError."""
-        known, places = templates(self.order.root), list(spots(self.order, self.responding))
+        known, places = (
+            templates(self.order.root),
+            list(spots(self.order, self.responding, self.signs.steady)),
+        )
         first = [
             _Group(self._evident(known, places), lambda share, left: max(share, left // 2)),
             _Group(
@@ -110,7 +113,7 @@ class Structures:
         its first steps if none of them gains anything.
         """
         order = self.order
-        known, places = templates(order.root), list(spots(order))
+        known, places = templates(order.root), list(spots(order, steady=self.signs.steady))
         varying = [one for one in self._telling() if order.goal.ranged or varies(order, one)]
         found = [self._evident(known, places), self._told(known, places, varying)]
         bare = [self._once(known, places), self._gains_of_commands(known, places)] if once else []
@@ -122,7 +125,7 @@ class Structures:
 
         Spend at most about `most` episodes.
         """
-        known, places = templates(self.order.root), list(spots(self.order))
+        known, places = templates(self.order.root), list(spots(self.order, steady=self.signs.steady))
         built = [spot for spot in places if spot.kind == FIELD]
         fields = [operand for one in known if one.on == FIELD for operand in self._at(one, built, first=None)]
         groups = [_Group(fields), _Group(self._evident(known, places, SURE)[:SUREST] if symptoms else [])]

@@ -12,6 +12,7 @@ from pytest_tarl.patching.mutate import Mutation, form_values
 from pytest_tarl.patching.structures import Form, described
 from pytest_tarl.patching.templates import FIELD, FIXED, OF_SENSORS, PAIR, Template
 from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.steady_values import adds_to, has_effect
 from pytest_tarl.repairing.telling_sensors import continuous, usual
 from pytest_tarl.repairing.template_places import Spot, axes_of, axis_twin, pairs
 from pytest_tarl.sensors import Sensor
@@ -102,6 +103,7 @@ def _by(template: Template, sensor: Sensor, spot: Spot, twin: Spot | None) -> Fo
 
 def fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
     """Return the expressions that a template fits, in the order to try them."""
+    among = [spot for spot in among if _may_help(template, spot)]
     if template.on == FIELD:
         return [spot for spot in among if spot.kind == FIELD]
     if template.on.startswith("sent"):
@@ -121,6 +123,10 @@ def fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
     else:
         fitting.sort(key=lambda spot: spot.kind != kind)
     return fitting
+
+
+def _may_help(template: Template, spot: Spot) -> bool:
+    return has_effect(template, spot.constant, spot.steady, adds_to(spot.source, spot.node))
 
 
 def _limited(node: ast.expr) -> bool:

@@ -14,6 +14,7 @@ from pytest_tarl.patching.document import Document, called, document
 from pytest_tarl.patching.templates import FIELD
 from pytest_tarl.repairing.labels import is_member
 from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.steady_values import defined_once, is_constant
 from pytest_tarl.repairing.typical_sizes import TypicalSizes, threshold
 from pytest_tarl.repairing.unit_factors import converts_unit
 from pytest_tarl.repairing.within_limits import within_limits
@@ -58,12 +59,15 @@ class Spot:
     numeric: bool = True
     field: str = ""  # for the kind "field": the field of the published message
     within: Spot | None = None  # the expression that the value limits, if its usual size is known
+    constant: bool = False  # whether the value is computed from constants
+    steady: bool = False  # whether the value did not vary within any recorded mission
 
 
-def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
+def spots(order: Order, responding: Sequence[str] = (), steady: Collection[str] = ()) -> Iterator[Spot]:
     """Yield the expressions in the statements of flows, in the order of the statements.
 
-    The statements whose ids are in `responding` come first, in that order.
+    The statements whose ids are in `responding` come first, in that order. The values of those in `steady` did not vary
+    within any recorded mission.
     """
     sizes = TypicalSizes(order)
     drifted = TypicalSizes(order, order.online.recorded.sample)
@@ -94,17 +98,27 @@ def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
                     larger = max(usual, drifted.of(step.site, node))
                 hears = source.path in hearing
                 numeric = kind != "sent" or sizes.known(step.site, node) is not None
-                codes = {one.code for one in order.analysis.operands(step.site)}
-                own = frozenset(constants(source, node, codes))
+                operands = order.analysis.operands(step.site)
+                own = frozenset(constants(source, node, {one.code for one in operands}))
                 spot = Spot(
                     step.site, source, node, kind, usual, larger, away[step.site], hears, own, numeric, field
                 )
+                if not field:
+                    fixed_here = is_constant(source, node, defined_once(operands))
+                    same = str(step.site) in steady and _is_the_value(source, node)
+                    spot = replace(spot, constant=fixed_here, steady=fixed_here or same)
                 inner = None if field else within_limits(source, node, fixed)
                 size = sizes.known(step.site, inner) if inner is not None else None
                 if inner is not None and size:
                     most = max(size, drifted.known(step.site, inner) or 0.0)
                     spot = replace(spot, within=replace(spot, node=inner, typical=size, larger=most))
                 yield spot
+
+
+def _is_the_value(source: Document, node: ast.expr) -> bool:
+    """Return whether the recorded value of a statement is that of an expression."""
+    statement = source.statement(node)
+    return isinstance(statement, ast.Assign | ast.AnnAssign | ast.Return) and statement.value is node
 
 
 def _steps(order: Order, away: Mapping[SiteId, int], responding: Sequence[str]) -> list[Step]:
