@@ -200,7 +200,7 @@ class ForwardSelection:
             return None
         if near and candidate not in self.settled.tried:
             yield from self._settling(joint, candidate)
-        return self.trials.gain(candidate, self.goal.pairs)
+        return self.trials.gain(candidate, self.goal.pairs, self.goal)
 
     def climbed(self, base: Joint, unit: Unit) -> Iterator[Candidate]:
         """Add a unit and move it in small steps up or down while the gain increases."""

@@ -32,6 +32,9 @@ PAIRED = 2  # minimum number of common seeds for comparing two candidates
 # A mission is compared with the designed mission of its seed if its reward falls short of `near` by at most this share
 # of the distance between the drifted missions and `near`.
 LACKS = 0.1
+LATE = (
+    1.2  # minimum ratio of the length of a failed mission to that of designed ones if it did not end in time
+)
 
 
 @dataclass(frozen=True)
@@ -99,6 +102,14 @@ class Goal:
     def lost(self, outcome: Outcome) -> bool:
         """Return whether an episode failed its mission although missions succeed in the designed world."""
         return self.passing and not outcome.passed
+
+    def feigned(self, outcome: Outcome) -> bool:
+        """Return whether a failed mission earns as much as a repaired one only because it does not end in time.
+
+        A machine that stands still until the time is up may earn more than one that works.
+        """
+        late = None not in (self.steps, outcome.steps) and outcome.steps >= LATE * self.steps  # type: ignore[operator]
+        return self.lost(outcome) and late and outcome.total >= self.enough
 
     def enough_on(self, seeds: Sequence[int]) -> float:
         """Return the mean total reward that confirms a candidate on these seeds."""
@@ -242,10 +253,17 @@ class Trials:
         self.in_time()
         self.beside += 1
 
-    def gain(self, candidate: Candidate, pairs: Iterable[Pair]) -> float:
-        """Return a candidate's mean gain over the unmutated runs, on all seeds on which it ran (at least one)."""
+    def gain(self, candidate: Candidate, pairs: Iterable[Pair], goal: Goal | None = None) -> float:
+        """Return a candidate's mean gain over the unmutated runs, on all seeds on which it ran (at least one).
+
+        With a goal, a feigned reward (see `Goal.feigned`) is no gain.
+        """
         known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in pairs)
-        return fmean(outcome.total - total for outcome, total in known if outcome is not None)
+        return fmean(
+            0.0 if goal is not None and goal.feigned(outcome) else outcome.total - total
+            for outcome, total in known
+            if outcome is not None
+        )
 
     def ran(self, candidate: Candidate, pairs: Iterable[Pair]) -> list[Outcome]:
         """Return a candidate's outcomes on those of the given seeds on which it has run."""

@@ -275,3 +275,26 @@ def test_missions_fail_sooner_only_if_each_of_them_does(
     for seed in (0, 1):
         made(ONE, seed)
     assert made.fails_sooner(ONE, goal) is sooner
+
+
+@pytest.mark.parametrize(
+    ("passed", "steps", "total", "feigned"),
+    [
+        (False, 121, 9.5, True),
+        (True, 121, 9.5, False),  # it succeeded
+        (False, 119, 9.5, False),  # it failed in time, perhaps narrowly
+        (False, 121, 8.9, False),  # it does not earn enough
+        (False, None, 9.5, False),
+    ],
+)
+def test_a_mission_that_stands_still_until_its_end_feigns_a_gain(
+    passed: bool, steps: int | None, total: float, feigned: bool
+) -> None:
+    goal = replace(GOAL, passing=True, steps=100.0)
+    made = Trials(lambda _, __: Outcome(total, passed, steps=steps), 9)
+    outcome = made(ONE, 0)
+    assert goal.feigned(outcome) is feigned
+    assert made.gain(ONE, PAIRS, goal) == (0.0 if feigned else total)
+    assert made.gain(ONE, PAIRS) == total
+    assert not replace(goal, passing=False).feigned(outcome)
+    assert not replace(goal, steps=None).feigned(outcome)
