@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from statistics import fmean
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
@@ -318,10 +319,22 @@ class ForwardSelection:
         """Yield combinations with one more part; the first turn has the better of its two near factors."""
         taken = {unit for unit, _ in base.parts}
         for unit in self.units:
-            gains = self.gains.get(unit, {})
-            ranked = sorted(NEAR, key=lambda factor: -gains.get(factor, 0.0))
+            ranked = sorted(NEAR, key=lambda factor: self._progress(unit, factor, base.guard), reverse=True)
             if unit not in taken and unit.mutations(self.mutate, ranked[turn]):
                 yield base.with_part(unit, ranked[turn])
+
+    def _progress(self, unit: Unit, factor: float, guard: Guard) -> tuple[float, float, float]:
+        """Return a key by which two factors of a unit are compared; a larger one is better.
+
+        Among failed missions that earn about the same, a longer one is better, although its steps may cost reward.
+        """
+        gain = self.gains.get(unit, {}).get(factor, 0.0)
+        if not self.goal.passing or abs(gain) > self.slack:
+            return gain, 0.0, 0.0
+        candidate = Joint(((unit, factor),), guard).candidate(self.mutate)
+        known = [(self.trials.steps(candidate, [pair]), pair.steps) for pair in self.goal.pairs]
+        ratios = [after[0] / before for after, before in known if after and before]
+        return 0.0, fmean(ratios) if ratios else 1.0, gain
 
     def _balanced(self, base: Joint, gain: float) -> Generator[Candidate, None, tuple[Joint, float]]:
         """Move the factors of the parts one by one while the gain increases; return the result and its gain."""

@@ -92,6 +92,25 @@ def test_each_of_the_two_near_factors_is_added_the_better_one_first() -> None:
     assert found == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
 
 
+@pytest.mark.parametrize(
+    ("slack", "passing", "first"), [(1.0, True, 2.2), (0.01, True, 0.4), (1.0, False, 0.4)]
+)
+def test_of_two_factors_that_fail_alike_the_one_with_longer_missions_is_added_first(
+    slack: float, passing: bool, first: float
+) -> None:
+    def run(candidate: Candidate, _: int) -> Outcome:
+        increased = candidate.mutations[0].value == 2.2
+        return Outcome(-0.1 if increased else 0.0, False, steps=20 if increased else 8)
+
+    goal = replace(GOAL, pairs=tuple(Pair(seed, 0.0, 10) for seed in range(4)), passing=passing)
+    gains = {B: {2.2: -0.1, 0.4: 0.0}}
+    search = ForwardSelection((A, B), mutations, Trials(run, 90), goal, gains, slack)
+    for factor in (2.2, 0.4):
+        search.trials(joint((B, factor)).candidate(mutations), 0)
+    (wider,) = search._with_another(joint((A, 0.4)), 0)
+    assert wider.parts[1] == (B, first)
+
+
 def test_parts_are_balanced_one_by_one_and_if_a_larger_factor_loses_a_smaller_factor_is_tried() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 8.0 - abs(by["A"] - 3.3) - abs(by["B"] - 0.26)
