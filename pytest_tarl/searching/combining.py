@@ -14,7 +14,7 @@ from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.holding import held
 from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
 from pytest_tarl.searching.plainness import named
-from pytest_tarl.searching.refining import ALMOST
+from pytest_tarl.searching.refining import ALMOST, PROMISING
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 from pytest_tarl.searching.units import Scope, Unit, whole_constants
 from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
@@ -71,7 +71,10 @@ class Combining:
         yield from joining.candidates(Joint(((unit, factor),), guard))
 
     def jointly(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Jointly search the constants that change missions most, starting at the best points so far."""
+        """Jointly search the constants that change missions most, starting at the best points so far.
+
+        If what gains much cannot be moved jointly, such as a number of a table, the others gain nothing without it.
+        """
         search = self.search
         if search.generator is None or search.proposed:
             return
@@ -81,7 +84,10 @@ class Combining:
         if len(chosen) < LEAST:
             return
         jointly = Jointly(chosen, search.joining({}), search.trials, search.goal, search.generator, hidden)
-        leaders = [part for _, part in search.gains.leaders(guard) if part[0] in chosen and part[1] > 0]
+        best, moved = search.gains.leaders(guard), {one for unit in chosen for one in unit.operands}
+        if best and best[0][0] >= PROMISING * search.goal.wanted and moved.isdisjoint(best[0][1][0].operands):
+            return
+        leaders = [part for _, part in best if part[0] in chosen and part[1] > 0]
         yield from jointly.candidates([Joint((part,), guard) for part in leaders[:STARTS]], guard)
 
     def leaders(self, guard: Guard) -> Iterator[Candidate]:

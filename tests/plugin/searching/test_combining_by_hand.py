@@ -222,6 +222,19 @@ def test_there_is_no_joint_search_for_proposals_for_one_constant_or_without_a_ge
     assert together == []
 
 
+@pytest.mark.parametrize(("gain", "searched"), [(3.9, True), (4.0, False)])
+def test_there_is_no_joint_search_without_the_unit_that_gains_much(
+    gain: float, searched: bool, together: list[tuple[Any, ...]]
+) -> None:
+    several = Unit(
+        (constant(7, "SEVERAL", None),)
+    )  # stands for several constants, which are not moved jointly
+    tries = [(A, 2.2, 3.0), (B, 2.2, 2.0), (several, 0.4, gain)]
+    search = searching([A, B, several], *tries, generator=np.random.default_rng(0))
+    list(Combining(search).jointly([ALWAYS]))
+    assert bool(together) is searched
+
+
 # unmasking
 
 
