@@ -35,6 +35,9 @@ WORSE: Reason = "nominal gets worse"
 # Minimum number of search episodes for finding a confirmed candidate's guard: three missions in each world for about
 # six guards. Without them, all episodes that led to the candidate are lost.
 EXAMINED = 40
+SAME = (
+    3  # minimum number of equal missions with and without a condition that holds throughout drifted missions
+)
 SCREENED = 20  # maximum number of candidates that are run on fresh seeds per search
 
 
@@ -117,6 +120,8 @@ class Examiner:
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
                 # this guard is as wide as the guard of the search, so narrower guards cannot gain more
                 break
+            if examined.fresh and examined.reason in TOO_LITTLE and self._holds_throughout(examined, trials):
+                break  # without the condition, drifted missions are the same, so no other condition can gain more
         for others in (
             *(self.others.inward(edge, trials) for edge in edges),
             *(self.others.beyond(edge) for edge in edges),
@@ -131,6 +136,12 @@ class Examiner:
             if accepted is not None or self._exhausted():
                 return accepted
         return None
+
+    def _holds_throughout(self, examined: Tried, trials: Trials) -> bool:
+        """Return whether a condition never held in the designed world and changes nothing in drifted missions."""
+        candidate = replace(examined.candidate, mutations=examined.candidate.changes)
+        known = trials.same_as(candidate, replace(candidate, guard=candidates.ALWAYS))
+        return bool(candidate.guard.conjuncts) and known >= SAME and not firing(self.order, candidate)
 
     def _harmful(self, candidate: Candidate) -> Iterator[Candidate]:
         """Yield the candidate without its condition if that restores the drifted world and harms the designed one."""

@@ -70,6 +70,7 @@ LOT: dict[str, World] = {
     ),
     "bad as designed": lambda seed, drifted: DESIGNED if drifted else 4.0,
     "good": lambda seed, drifted: DESIGNED,
+    "slightly better as drifted": lambda seed, drifted: DESIGNED + 0.1 if drifted else 4.0,
 }
 ENDS = {
     "bad at once": "gain too small",
@@ -232,10 +233,16 @@ class Guarded(Field):
         return Outcome(LOT[self.kinds[candidate.guard]](seed, drift is not None), passed=True)
 
 
-def examined(kinds: dict[Guard, str], monkeypatch: pytest.MonkeyPatch) -> tuple[list[Guard], Guard | None]:
-    """Return the guards that were examined, in order, and the guard of the accepted candidate."""
+def examined(
+    kinds: dict[Guard, str], monkeypatch: pytest.MonkeyPatch, never: Guard | None = None
+) -> tuple[list[Guard], Guard | None]:
+    """Return the guards that were examined, in order, and the guard of the accepted candidate.
+
+    The guard `never` holds in no designed mission.
+    """
     monkeypatch.setattr(
-        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+        "pytest_tarl.searching.candidates.firing_episodes",
+        lambda guard, sample, _: () if guard == never else sample.seeds,
     )
     field: Any = Guarded(kinds)
     examiner = Examiner(field, tuple(kinds))
@@ -258,6 +265,17 @@ def test_no_guard_is_tried_if_the_change_gains_too_little_everywhere(
 ) -> None:
     always, wet, _, _ = GUARDS
     assert examined({always: kind, wet: "good"}, monkeypatch) == ([always], None)
+
+
+def test_no_other_guard_is_tried_if_one_holds_exactly_in_the_drifted_missions_and_does_not_suffice(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    always, wet, dark, _ = GUARDS
+    kinds = {always: "bad as designed", wet: "lucky on known seeds", dark: "good"}
+    assert examined(kinds, monkeypatch, never=wet) == ([always, wet], None)
+    assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
+    kinds[always] = "slightly better as drifted"  # the guard does not hold in all drifted steps
+    assert examined(kinds, monkeypatch, never=wet) == ([always, wet, dark], dark)
 
 
 def test_a_narrower_guard_is_skipped_if_the_reward_is_too_low_under_the_wider_one(
