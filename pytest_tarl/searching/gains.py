@@ -81,6 +81,10 @@ class Gains:
         bound = self.slack if least is None else least
         return self.best() > bound
 
+    def always_lost(self, key: Key) -> bool:
+        """Return whether a unit lost more than `slack` under a guard with each factor that was tried."""
+        return all(gain < -self.slack for gain in self._by_key.get(key, {1.0: 0.0}).values())
+
     def idle(self, unit: Unit) -> bool:
         """Return whether a proposed change had no effect at factor 1, its proposed value."""
         tried = any(1.0 in gains for (one, _), gains in self._by_key.items() if one == unit)

@@ -235,6 +235,8 @@ class Sweep:
     def _finely(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
         """Try small steps on operands that change the reward and were not refined: only a few values may be good.
 
+        A proposed change that clearly lost with every value so far is harmful by itself and gets none. A constant may
+        still have a good value close to the old one.
         If no step gains, try the steps between these on named constants.
         """
         tries, gains = self.attempts, self.attempts.gains
@@ -244,6 +246,8 @@ class Sweep:
             among = tries.units if factor in FINE else named(tries.units)
             for guard in guards:
                 moved = [unit for unit in gains.moving(among) if gains.matters(unit)]
+                if tries.proposed:
+                    moved = [unit for unit in moved if not gains.always_lost((unit, guard))]
                 yield from tries.sweep(
                     factor,
                     guard,

@@ -212,6 +212,15 @@ def test_a_proposal_with_an_effect_is_not_skipped() -> None:
     assert "3.0=1.2" in found
 
 
+@pytest.mark.parametrize(("reward", "finer"), [(-1.1, False), (-0.9, True)])
+def test_a_proposal_that_clearly_loses_with_all_its_values_gets_no_finer_steps(
+    reward: float, finer: bool
+) -> None:
+    found = tried(lambda _: reward, [LITERAL], proposed=True)
+    assert {"3.0=4.5", "3.0=1.95"} <= {*found}
+    assert ({"3.0=3.66", "3.0=2.46", "3.0=3.3", "3.0=2.73"} & {*found} != set()) is finer
+
+
 def test_a_constant_that_cannot_be_written_is_skipped_and_the_rest_goes_on() -> None:
     def world(changes: Changes) -> float:
         if A in changes:
