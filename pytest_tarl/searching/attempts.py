@@ -117,9 +117,9 @@ class Attempts:
     def interlude(self, gain: float) -> Iterator[Candidate]:
         """Yield structural changes, but first the constants that gained; `gain` is the largest gain so far.
 
-        Named constants get farther steps before the first structural changes, unless they had them before.
+        If anything gained, named constants get farther steps before the first structural changes, unless they had them.
         """
-        if self._due(gain):
+        if self._due(gain) and self.gains.anything():
             yield from self.farther()
             gain = max(gain, self.gains.best())
         yield from constants_first(self._structures(gain), self, self.trials, self.goal, self._scaled)

@@ -1,4 +1,4 @@
-"""Farther steps on named constants, tried once before the structural changes.
+"""Farther steps on named constants, tried once before combinations and structural changes.
 
 A constant that needs five times its value may gain nothing, or even lose a little, with its first steps: half of the
 right correction can be as wrong as none. A few named constants cost less than many expressions.

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
+import pytest
+
 from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.attempts import Attempts
@@ -72,24 +74,27 @@ def test_at_most_six_constants_get_a_step_those_that_lost_least_first() -> None:
     assert ran == [f"{name}=5" for name in names[:MOST]]
 
 
-def test_they_come_before_structural_changes_and_not_within_them() -> None:
+@pytest.mark.parametrize(("gain", "farther"), [(2.0, ["A=5", "A=0.15"]), (0.2, [])])
+def test_they_come_before_structural_changes_if_another_constant_gained(
+    gain: float, farther: list[str]
+) -> None:
     begun: list[int] = []
     steps: list[float] = []
 
     def structures(_: float) -> Iterator[Candidate]:
-        begun.append(len(ran))
+        begun.append(len(steps))
         yield from ()
 
-    def loss(factors: Mapping[str, float]) -> float:
+    def earned(factors: Mapping[str, float]) -> float:
         steps.extend(factors.values())
-        return -0.1
+        return gain if "B" in factors else -0.1
 
-    tries, ran = trying(loss, "A", interlude=structures, due=lambda _: len(steps) > 1)
+    tries, ran = trying(earned, "A", "B", interlude=structures, due=lambda _: len(steps) > 1)
     for factor in (2.2, 0.4):
-        list(tries.sweep(factor, ALWAYS, tries.units))
+        list(tries.each(factor, ALWAYS, tries.units, 0))
     list(tries.interlude(0.0))
-    assert ran == ["A=2.2", "A=0.4", "A=5", "A=0.15"]
-    assert begun == [0, 1, 4]
+    assert [one for one in ran[4:] if one.startswith("A")] == farther
+    assert begun == [len(ran)]
 
 
 def test_parameters_of_a_structural_change_get_none() -> None:
