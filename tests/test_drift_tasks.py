@@ -38,6 +38,7 @@ JUDGING = (
     "drift_judging_21",
     "drift_judging_22",
     "drift_judging_23",
+    "drift_judging_24",
     "drift_structure",
 )
 TASKS = sorted(
@@ -329,6 +330,20 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "two constants",
     ],
+    "drift_judging_24": [
+        "helper",
+        "helper",
+        "one constant",
+        "one constant",
+        "one constant",
+        "one constant",
+        "permanent",
+        "range",
+        "rare failures",
+        "structure",
+        "structure",
+        "two constants",
+    ],
 }
 
 
@@ -390,6 +405,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_21",
         "drift_judging_22",
         "drift_judging_23",
+        "drift_judging_24",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
