@@ -97,7 +97,7 @@ def publish_calls(trees: Path) -> list[Place]:
 def reported(trees: Path) -> dict[Place, list[Flow]]:
     """Return the flows that tarl-lint reports in each repository, by the place of the publish call."""
     flows = dict[Place, list[Flow]]()
-    for tree in sorted(path for path in trees.iterdir() if path.is_dir()):
+    for tree in sorted(path for path in trees.iterdir() if path.is_dir() and not path.name.startswith(".")):
         for finding in run(Options(paths=(tree,), jobs=1, cache=False), Config(root=tree)).findings:
             flow = finding.flow
             if flow is not None and not flow.sink.api.startswith(ANSWERS):
