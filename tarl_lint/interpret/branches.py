@@ -77,7 +77,9 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         if elements := _told_apart(ctx, s, source, frame, each=registers or way != ""):
             return _turns(ctx, s, s.target, source, elements, frame)
         if registers and sizes.is_empty(ctx, source):
-            return _loop_end(ctx, s, [{}], [], frame)
+            if source.consts is not None:
+                return _loop_end(ctx, s, [{}], [], frame)
+            source = Value(source.deps)  # an unknown list or an empty one, as in `names or []`
         elements = rows.of(ctx, source) if registers or way else []
         if elements and len(elements) * frame.rows <= MAX_NESTED_ROWS:
             passes = 1 if registers else MAX_PASSES

@@ -12,7 +12,7 @@ from tarl_lint.memory.frames import Former, Frame
 from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.shared import BORN
 from tarl_lint.memory.store import AGING
-from tarl_lint.memory.values import NONE, Nodes, Value, pointer
+from tarl_lint.memory.values import NO_CONSTANTS, NONE, Nodes, Value, pointer
 from tarl_lint.models import rows, sizes
 
 MAX_EACH = 4  # maximum number of known elements over which a comprehension is unrolled
@@ -23,8 +23,13 @@ READING = frozenset(["get", "getattr", "get_param"])  # calls that return a stor
 
 
 def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -> Value:
-    """Return the value of a list, tuple or set literal."""
+    """Return the value of a list, tuple or set literal; an empty one has no constants.
+
+    The join of an empty one with an unknown value has unknown constants, so that loops are not skipped over it.
+    """
     obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
+    if not expr.items:
+        return Value(pts=frozenset([obj]), consts=NO_CONSTANTS)
     items = [
         (i, ctx.ops.evaluate(ctx, i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items
     ]
