@@ -107,11 +107,15 @@ def _invoke(
         for key, value in run.delta.items():
             ctx.store.put(key, value)
         run.noted = True
+    if run.blocked and not frame.function.generator:
+        ctx.ops.may_wait(ctx, frozenset(run.blocked), caller)
     if frame.function.generator:
         collected = recency.allocate(ctx, "sequence", caller, ("generator", call.slot))
         collected.name = heap.GENERATOR
         collected.describe(generators.mailbox(ctx, frame))
         updates.add_element(ctx, pointer(collected), frame.yielded)
+        if run.blocked:
+            sizes.decide_length(ctx, collected, frozenset(run.blocked))
         ctx.store.put((collected, heap.RESULT), result)
         return pointer(collected)
     return result
@@ -125,6 +129,7 @@ def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) ->
     depth = len(ctx.store.layers) - 1
     frame.depth_of_layers = depth
     frame.jumps, frame.tries, frame.escapes, frame.statement = [], [], [], None
+    frame.blocked = {}
     bind_parameters(ctx, frame, closure, passed)
     ctx.guards, guards = [], ctx.guards
     ctx.stack.append(frame)

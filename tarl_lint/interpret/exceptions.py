@@ -70,12 +70,18 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
 
 
 def may_wait(ctx: Interpreter, decides: Nodes, frame: Frame) -> None:
-    """Make the rest of the function, or of a loop's iteration, depend on the event for which a call waits."""
+    """Make the rest of the function, or of a loop's iteration, depend on the event for which a call waits.
+
+    So does the rest of the callers, unless the call is in a loop: statements after a loop do not depend on it.
+    """
     statement = frame.statement
     if not decides or statement is None or frame.cls is not None:
         return
     frame.function.may_leave(statement, BLOCKED)
-    ctx.graph.depend(ctx.condition(frame, statement), decides)
+    decision = ctx.condition(frame, statement)
+    ctx.graph.depend(decision, decides)
+    if not frame.jumps or frame.function.generator:
+        frame.blocked[decision] = None
 
 
 def _expected(ctx: Interpreter, frame: Frame) -> str:

@@ -37,6 +37,7 @@ class Run:
     result: Value
     returned: list[Value]
     escapes: list[Escape]
+    blocked: dict[int, None]  # decisions of the calls that may wait for ever
     thrown: Delta | None  # stores before an exception leaves the function
     delta: Delta
     edges: int  # number of edges that the run made
@@ -84,7 +85,7 @@ def _executed(
     frame.returns = [({}, value) for value in returned]
     return Run(
         passed, mode, reads, found, stored, ctx.work.spent - before,
-        join_all(returned), returned, list(frame.escapes), frame.thrown, delta, ctx.graph.edges - edges,
+        join_all(returned), returned, list(frame.escapes), dict(frame.blocked), frame.thrown, delta, ctx.graph.edges - edges,
         len(returned) == 1, store.heard() if reads.waits else {},
     )  # fmt: skip
 

@@ -94,6 +94,7 @@ class Frame(Obj):
         "answer",
         "arguments",
         "base",
+        "blocked",
         "call",
         "call_pos",
         "called_in",
@@ -183,6 +184,7 @@ class Frame(Obj):
         self.root_waits = False
         self.tries: list[Attempt] = []
         self.escapes: list[Escape] = []
+        self.blocked: dict[int, None] = {}  # decisions of the calls that may wait for ever
         # stores of the function before an exception leaves it; None if no exception does
         self.thrown: dict[Key, Value] | None = None
         self.result = BOTTOM
