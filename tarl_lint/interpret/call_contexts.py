@@ -19,7 +19,7 @@ from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import generations, heap, instances, joins, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
-from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.frames import Frame, Origin
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import (
@@ -91,7 +91,14 @@ def _invoke(
     _note_arguments(ctx, frame, arguments, caller, call)
     frame.guards |= frozenset(ctx.guards)
     frame.root_waits = caller.root_waits
-    run = replay.run(ctx, frame, passed, lambda: _execute(ctx, frame, closure, passed))
+    parts: tuple[Origin, ...] = ()
+    if (
+        (caller.taken or caller.spread or "**" in passed[1])
+        and not frame.shared
+        and caller.statement is not None
+    ):
+        parts = ctx.ops.origins(ctx, caller, call, passed)
+    run = replay.run(ctx, frame, passed, parts, lambda: _execute(ctx, frame, closure, passed, parts))
     result = shared_contexts.leave(ctx, frame, run.result) if frame.shared else run.result
     nullness.note_result(ctx, call, run.returned, frame)
     if ctx.thorough:
@@ -121,7 +128,9 @@ def _invoke(
     return result
 
 
-def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) -> Delta:
+def _execute(
+    ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments, parts: tuple[Origin, ...]
+) -> Delta:
     """Execute a function's body in its own layer; return the changes that outlive the call."""
     function = frame.function
     ctx.work.activations[function] = ctx.work.activations.get(function, 0) + 1
@@ -131,6 +140,8 @@ def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) ->
     frame.jumps, frame.tries, frame.escapes, frame.statement = [], [], [], None
     frame.blocked = {}
     bind_parameters(ctx, frame, closure, passed)
+    if parts:
+        ctx.ops.note_origins(ctx, frame, parts)
     ctx.guards, guards = [], ctx.guards
     ctx.stack.append(frame)
     ctx.ops.run(ctx, frame)
@@ -169,14 +180,14 @@ def _result(frame: Frame) -> Value:
 def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: ir.Call) -> Arguments:
     """Give each argument a node of the calling statement."""
     plain, named = arguments
-    written = _written(call, plain)
+    exprs = written(call, plain)
     passed: list[Value] = []
     for number, value in enumerate(plain):
         if _receiver(value) or caller.statement is None:
             passed.append(value)
             continue
         node = ctx.node(caller, ("argument", call.slot, number), "call")
-        expr = written[number]
+        expr = exprs[number]
         if isinstance(expr, ir.Starred) and (len(value.deps) == 1 or not value.constant()[0]):
             ctx.graph.copies.add(node)  # an element of `*values` is passed on unchanged
         elif expr is not None:
@@ -198,7 +209,7 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
     return passed, renamed
 
 
-def _written(call: ir.Call, plain: Sequence[Value]) -> list[ir.Expr | None]:
+def written(call: ir.Call, plain: Sequence[Value]) -> list[ir.Expr | None]:
     """Return the expression of each positional argument: `*values` for each of its elements, None for a receiver."""
     given: list[ir.Expr | None] = [*call.arguments]
     stars = [number for number, one in enumerate(given) if isinstance(one, ir.Starred)]

@@ -44,6 +44,8 @@ def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
         value = expressions.evaluate(ctx, argument, frame)
         if isinstance(argument, ir.Starred):
             known = one_by_one(ctx, value)
+            if len(value.pts) > 1 or frame.spread:
+                frame.spread[expr.slot] = value
             if known is None:
                 named["*"] = join(named.get("*", BOTTOM), heap.elements(ctx, value))
             else:

@@ -7,7 +7,7 @@ from typing import Protocol, TypeVar
 
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory.frames import Former, Frame
+from tarl_lint.memory.frames import Former, Frame, Origin
 from tarl_lint.memory.shared import Root
 from tarl_lint.memory.values import (
     NONE,
@@ -153,6 +153,14 @@ class Operations(Protocol[Ctx]):
 
     def narrow_part(self, ctx: Ctx, test: ir.Expr, frame: Frame, *, holds: bool) -> Former:
         """Narrow variables for the rest of an expression; return their former and their new values."""
+        ...
+
+    def note_origins(self, ctx: Ctx, frame: Frame, given: Sequence[Origin]) -> None:
+        """Record where the parameters of a call got their values, after they are bound."""
+        ...
+
+    def origins(self, ctx: Ctx, caller: Frame, call: ir.Call, passed: Arguments) -> tuple[Origin, ...]:
+        """Return the arguments that are parts of one of several objects, or one of several objects themselves."""
         ...
 
     def read_item(self, ctx: Ctx, base: Value, index: Value) -> Value:

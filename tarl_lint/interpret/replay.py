@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from tarl_lint.interpret import worklist
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
-from tarl_lint.memory.frames import Escape, Frame
+from tarl_lint.memory.frames import Escape, Frame, Origin
 from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.same_reads import unchanged
 from tarl_lint.memory.store import Delta, Store
@@ -26,9 +26,10 @@ Mode = tuple[object, ...]
 
 @dataclass(slots=True, eq=False)
 class Run:
-    """One run of a function in a call context: arguments, reads, results."""
+    """One run of a function in a call context: arguments, of what they are parts, reads, results."""
 
     passed: Arguments
+    parts: tuple[Origin, ...]
     mode: Mode
     reads: Reads
     found: dict[Key, Value | None]  # key → value that the run read; None if unset
@@ -45,11 +46,13 @@ class Run:
     heard: dict[Key, Value]  # key → value that other roots may have stored when the run waited
 
 
-def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[], Delta]) -> Run:
+def run(
+    ctx: Interpreter, frame: Frame, passed: Arguments, parts: tuple[Origin, ...], execute: Callable[[], Delta]
+) -> Run:
     """Return the last run of a frame if a new one would give the same result, else execute the frame."""
     mode = _mode(ctx)
     last = frame.recorded
-    same = isinstance(last, Run) and _same(ctx, last, passed, mode)
+    same = isinstance(last, Run) and last.parts == parts and _same(ctx, last, passed, mode)
     if isinstance(last, Run) and same and not ctx.checking:
         ctx.work.spent += last.cost
         ctx.work.saved += last.cost - len(last.found) // READS
@@ -58,7 +61,7 @@ def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[],
         ctx.store.reads.add(last.reads)
         frame.escapes, frame.thrown = list(last.escapes), last.thrown
         return last
-    made = _executed(ctx, frame, passed, mode, execute)
+    made = _executed(ctx, frame, passed, parts, mode, execute)
     if isinstance(last, Run) and same and made.reads.whole:
         _check(ctx, frame, last, made)
     frame.recorded = made if made.reads.whole and ctx.probe is None and ctx.watch is None else None
@@ -66,7 +69,12 @@ def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[],
 
 
 def _executed(
-    ctx: Interpreter, frame: Frame, passed: Arguments, mode: Mode, execute: Callable[[], Delta]
+    ctx: Interpreter,
+    frame: Frame,
+    passed: Arguments,
+    parts: tuple[Origin, ...],
+    mode: Mode,
+    execute: Callable[[], Delta],
 ) -> Run:
     outer = ctx.store.reads
     reads = ctx.store.reads = ctx.graph.reads = Reads()
@@ -84,9 +92,9 @@ def _executed(
     # without the states of memory, which are in `delta` now
     frame.returns = [({}, value) for value in returned]
     return Run(
-        passed, mode, reads, found, stored, ctx.work.spent - before,
-        join_all(returned), returned, list(frame.escapes), dict(frame.blocked), frame.thrown, delta, ctx.graph.edges - edges,
-        len(returned) == 1, store.heard() if reads.waits else {},
+        passed, parts, mode, reads, found, stored, ctx.work.spent - before,
+        join_all(returned), returned, list(frame.escapes), dict(frame.blocked), frame.thrown, delta,
+        ctx.graph.edges - edges, len(returned) == 1, store.heard() if reads.waits else {},
     )  # fmt: skip
 
 

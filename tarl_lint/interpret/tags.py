@@ -29,12 +29,12 @@ def note(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Value, slot:
     """Record that the current statement assigned a value to a variable: `job = queue.get()` or `kind = job[0]`."""
     if not isinstance(target, ir.Name):
         return
-    if _several(value):
+    if several(value):
         _remember(ctx, target, value, None, slot, frame)
     elif (of := of_variable(source)) is not None:
-        key = _key(of[0], frame)
+        key = key_of(of[0], frame)
         whole = ctx.store.get(key)
-        if whole is not None and _several(whole):
+        if whole is not None and several(whole):
             _remember(ctx, target, whole, of[1], slot, frame, key)
 
 
@@ -42,15 +42,17 @@ def note_element(
     ctx: Interpreter, target: ir.Expr, whole: Value, number: int, slot: str, frame: Frame
 ) -> None:
     """Record that the current statement assigned an element of a value to a variable."""
-    if isinstance(target, ir.Name) and _several(whole):
+    if isinstance(target, ir.Name) and several(whole):
         _remember(ctx, target, whole, const(number), slot, frame)
 
 
-def _key(name: ir.Name, frame: Frame) -> Key:
+def key_of(name: ir.Name, frame: Frame) -> Key:
+    """Return the key of a variable in the heap."""
     return expressions.holder(name, frame), name.name
 
 
-def _several(value: Value) -> bool:
+def several(value: Value) -> bool:
+    """Return whether a value may be one of several objects, which tags can tell apart."""
     return len(value.pts) > 1 and any(o.kind in TAGGED for o in value.pts)
 
 
@@ -63,13 +65,14 @@ def _remember(
     frame: Frame,
     of: Key | None = None,
 ) -> None:
-    key = _key(target, frame)
+    key = key_of(target, frame)
     now = ctx.store.get(key)
     if now is not None and frame.statement is not None:
-        _keep(frame, key, Taken(now, before, frame.statement, slot, field, of))
+        keep(frame, key, Taken(now, before, frame.statement, slot, field, of))
 
 
-def _keep(frame: Frame, key: Key, taken: Taken) -> None:
+def keep(frame: Frame, key: Key, taken: Taken) -> None:
+    """Record where a variable got its current value."""
     known = frame.taken.setdefault(key, [])
     known[:] = [*[one for one in known if one.value is not taken.value][1 - MAX_TAKEN :], taken]
 
@@ -99,7 +102,7 @@ def decide(ctx: Interpreter, s: ir.If, frame: Frame, narrowed: Narrowed, *, hold
     test excludes constants, what chose among them decides both branches.
     """
     if not calls_nothing(s.test) or any(
-        not value.pts and _taken(ctx, key, frame) is None for key, value in narrowed.items()
+        not value.pts and taken_from(ctx, key, frame) is None for key, value in narrowed.items()
     ):
         return
     node = ctx.way(frame, s, "then" if holds else "else")
@@ -107,7 +110,7 @@ def decide(ctx: Interpreter, s: ir.If, frame: Frame, narrowed: Narrowed, *, hold
     frame.statement = s
     ctx.graph.flow(operators.truth(ctx, value, frame, ("test", holds)), node)
     for key, now in narrowed.items():
-        taken = _taken(ctx, key, frame)
+        taken = taken_from(ctx, key, frame)
         ctx.graph.flow((now if taken is None else taken.before).deps, node)
 
 
@@ -146,10 +149,10 @@ def _narrow(ctx: Interpreter, test: Test, frame: Frame) -> Iterator[tuple[Key, V
 
 def _constants(ctx: Interpreter, name: ir.Name, test: Test, frame: Frame) -> Iterator[tuple[Key, Value]]:
     """Yield a variable without the constants that do not match."""
-    key = _key(name, frame)
+    key = key_of(name, frame)
     now = ctx.store.get(key)
     known = now.keys() if now is not None else None
-    if now is None or now.pts or not known or _taken(ctx, key, frame) is not None:
+    if now is None or now.pts or not known or taken_from(ctx, key, frame) is not None:
         return
     kept = known & test.tags if test.holds else known - test.tags if test.exact else known
     if kept and kept != known:
@@ -161,18 +164,25 @@ def _objects(
     ctx: Interpreter, name: ir.Name, field: str | Value, test: Test, frame: Frame
 ) -> Iterator[tuple[Key, Value]]:
     """Yield a variable without the objects whose tag does not match."""
-    key = _key(name, frame)
+    key = key_of(name, frame)
     now = ctx.store.get(key)
-    if now is None or not _several(now):
+    if now is None or not several(now):
         return
     kept = frozenset(o for o in now.pts if _matches(ctx, o, field, test))
-    if kept and kept != now.pts:
-        yield key, _with(ctx, key, now, kept, frame)
+    if not kept or kept == now.pts:
+        return
+    yield key, _with(ctx, key, now, kept, frame)
+    taken = taken_from(ctx, key, frame)
+    befores = [now, taken.before] if taken is not None and taken.frame is not None else [now]
+    for other in list(frame.taken):
+        its = taken_from(ctx, other, frame)
+        if its is not None and its.field is not None and its.before in befores:
+            yield other, _with(ctx, other, its.value, kept, frame)
 
 
 def _companions(ctx: Interpreter, name: ir.Name, test: Test, frame: Frame) -> Iterator[tuple[Key, Value]]:
     """Yield the variables that were taken from the same objects as a variable that is a tag."""
-    taken = _taken(ctx, _key(name, frame), frame)
+    taken = taken_from(ctx, key_of(name, frame), frame)
     if taken is None or taken.field is None:
         return
     before, field = taken.before, taken.field
@@ -180,14 +190,16 @@ def _companions(ctx: Interpreter, name: ir.Name, test: Test, frame: Frame) -> It
     if not kept or kept == before.pts:
         return
     for key in list(frame.taken):
-        its = _taken(ctx, key, frame)
-        if its is not None and its.field is not None and its.before == before:
+        its = taken_from(ctx, key, frame)
+        if its is None or (its.field is None and its.frame is None):
+            continue
+        if its.before == before:
             yield key, _with(ctx, key, its.value, kept, frame)
     if taken.of is not None and ctx.store.get(taken.of) is before:
         yield taken.of, _with(ctx, taken.of, before, kept, frame)
 
 
-def _taken(ctx: Interpreter, key: Key, frame: Frame) -> Taken | None:
+def taken_from(ctx: Interpreter, key: Key, frame: Frame) -> Taken | None:
     """Return where a variable got its value; None if that is not known."""
     now = ctx.store.get(key) if key in frame.taken else None
     return next((one for one in frame.taken.get(key, ()) if one.value is now), None)
@@ -195,16 +207,51 @@ def _taken(ctx: Interpreter, key: Key, frame: Frame) -> Taken | None:
 
 def _with(ctx: Interpreter, key: Key, now: Value, kept: frozenset[Obj], frame: Frame) -> Value:
     """Return the value of a variable if it is one of some objects, or was taken from one of them."""
-    taken = _taken(ctx, key, frame)
+    taken = taken_from(ctx, key, frame)
     if taken is None:
         return Value(now.deps, kept, now.consts)
-    before = Value(taken.before.deps - _passed_only(ctx, taken.before.pts, kept), kept, taken.before.consts)
-    frame.statement = taken.statement
-    slot = ("target", taken.slot, "of", tuple(sorted(o.number for o in kept)))
+    before = _only(ctx, taken.before, kept, taken.frame or frame)
     part = before if taken.field is None else _field(ctx, before, taken.field)
-    value = ctx.carry(part, ctx.node(frame, slot, "assign"))
-    _keep(frame, key, replace(taken, value=value, before=before))
+    value = ctx.carry(part, _node(ctx, taken, kept, frame))
+    keep(frame, key, replace(taken, value=value, before=before))
     return value
+
+
+def _only(ctx: Interpreter, value: Value, kept: frozenset[Obj], frame: Frame) -> Value:
+    """Return a value that may be one of several objects with only some of them, also where a variable got it from.
+
+    The variable is one of the function, or of a caller that passed a part of the object.
+    """
+    if (found := whole_of(value, frame)) is None:
+        return Value(value.deps - _passed_only(ctx, value.pts, kept), kept, value.consts)
+    place, key, whole = found
+    before = _only(ctx, whole.before, kept, whole.frame or place)
+    narrowed = ctx.carry(before, _node(ctx, whole, kept, place))
+    keep(place, key, replace(whole, value=narrowed, before=before))
+    return narrowed
+
+
+def whole_of(value: Value, frame: Frame) -> tuple[Frame, Key, Taken] | None:
+    """Return the variable of a function or its callers that has a value, and where it got it; None if there is none."""
+    place: Frame | None = frame
+    while place is not None:
+        for key, known in place.taken.items():
+            for whole in known:
+                if whole.value is value and whole.field is None and whole.before is not value:
+                    return place, key, whole
+        place = place.caller
+    return None
+
+
+def _node(ctx: Interpreter, taken: Taken, kept: frozenset[Obj], frame: Frame) -> int:
+    """Return the node of the statement that gave a variable its value, for some of the objects."""
+    slot = ("target", taken.slot, "of", tuple(sorted(o.number for o in kept)))
+    if taken.frame is not None:
+        return ctx.node(taken.frame, slot, "call")  # the statement of the caller is still the call
+    frame.statement, statement = taken.statement, frame.statement
+    node = ctx.node(frame, slot, "assign")
+    frame.statement = statement
+    return node
 
 
 def _field(ctx: Interpreter, value: Value, field: str | Value) -> Value:

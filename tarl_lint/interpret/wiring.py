@@ -6,6 +6,8 @@ from tarl_lint.interpret.calls import call, call_object, call_value
 from tarl_lint.interpret.exceptions import escaped, may_fail, may_wait
 from tarl_lint.interpret.expressions import evaluate, holder, read_item
 from tarl_lint.interpret.imports import default, imported
+from tarl_lint.interpret.passed_tags import note as note_origins
+from tarl_lint.interpret.passed_tags import origins
 from tarl_lint.interpret.statements import assign, assign_fallback, bind_target, block, run
 from tarl_lint.interpret.tags import narrow_part, widen
 from tarl_lint.interpret.worklist import add_root, root_frame, wait
@@ -51,6 +53,8 @@ __all__ = [
     "missing",
     "named_by_settings",
     "narrow_part",
+    "note_origins",
+    "origins",
     "read_item",
     "receiver",
     "register_filter",

@@ -78,6 +78,11 @@ class Taken:
     slot: str
     field: str | Value | None = None
     of: Key | None = None
+    frame: Frame | None = None  # the caller that passed the value, if the variable is a parameter
+
+
+# argument that is one of several objects, or a part of one: position or keyword, the objects, the attribute or index
+Origin = tuple[int | str, Value, str | Value | None]
 
 
 def inside(statement: ir.Stmt | None, turns: Turns) -> Turns:
@@ -124,6 +129,7 @@ class Frame(Obj):
         "rows",
         "shared",
         "slot",
+        "spread",
         "statement",
         "steps",
         "taken",
@@ -176,6 +182,8 @@ class Frame(Obj):
         self.told_apart: set[tuple[int, str]] = set()  # branches that have conditions of their own
         # variable → those of its values that are one of several objects, or were parts of one
         self.taken: dict[Key, list[Taken]] = {}
+        # slot of a call → the sequences of which its argument `*sequence` is one
+        self.spread: dict[int, Value] = {}
         self.returns: list[tuple[dict[Key, Value], Value]] = []
         self.jumps: list[tuple[int, dict[str, list[dict[Key, Value]]]]] = []
         self.handling: list[dict[str, Value]] = []  # exceptions of the handlers that are running, by name
@@ -203,6 +211,7 @@ class Frame(Obj):
         self.recorded = self.passed = self.thrown = None
         self.heads.clear()
         self.taken.clear()
+        self.spread.clear()
 
     def owner_class(self) -> Obj | None:
         """Return the class whose body this is; None for functions."""

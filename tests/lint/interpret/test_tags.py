@@ -159,6 +159,62 @@ if kind == input():
 kind, value = pairs.get()
 if kind == "stop":
     out.publish(value)  # clean
+### arguments that are elements
+def handle(kind, value):
+    if kind == "load":
+        out.publish(value)  # load:data
+    elif kind == "heat":
+        out.publish(value)  # heat:data
+        out.publish(1.0)  # heat:control
+kind, value = pairs.get()
+handle(kind, value)
+### an unpacked argument
+def handle(kind, value):
+    if kind == "load":
+        out.publish(value)  # load:data
+        out.publish(1.0)  # clean
+    else:
+        out.publish(value)  # heat:data
+handle(*pairs.get())
+### an unpacked argument behind another one, of a method that passes it on
+class Worker:
+    def handle(self, unit, kind, value):
+        self.work(value, kind=kind)
+    def work(self, value, kind):
+        if kind == "load":
+            out.publish(value)  # load:data
+        else:
+            out.publish(value)  # heat:data
+pair = pairs.get()
+Worker().handle("mm", *pair)
+### an unpacked mapping
+def handle(value, type="load"):
+    if type == "heat":
+        out.publish(value)  # heat:data
+handle(**dicts.get())
+### arguments that are attributes and entries
+def handle(kind, value):
+    if kind == Kind.LOAD:
+        out.publish(value)  # load:data
+def treat(entry, value, kind):
+    if kind == "heat":
+        out.publish(value)  # heat:data
+        out.publish(entry["value"])  # heat:data
+event, entry = events.get(), dicts.get()
+handle(event.kind, event.value)
+treat(entry, entry["value"], entry.get("type"))
+### arguments of two objects
+def handle(kind, value):
+    if kind == "heat":
+        out.publish(value)  # load:data heat:data
+handle(dicts.get()["type"], dicts.get()["value"])
+first, second = pairs.get(), pairs.get()
+handle(first[0], second[1])
+### an attribute that is read before the test
+event = events.get()
+value = event.value
+if event.kind == Kind.HEAT:
+    out.publish(value)  # heat:data
 """
 
 

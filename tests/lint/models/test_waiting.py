@@ -61,6 +61,45 @@ out.publish(2.0)  # control
 with changed:
     changed.wait()
     out.publish(2.0)  # control
+### a queue, in a called function
+def fetch():
+    item = waiting.get()
+    return 3.0
+def outer():
+    return fetch()
+while True:
+    out.publish(1.0)  # clean
+    outer()
+    out.publish(2.0)  # control
+### an event, in a constructor
+class Client:
+    def __init__(self):
+        event.wait()
+out.publish(1.0)  # clean
+client = Client()
+out.publish(2.0)  # control
+### in a called function, if it waits at all
+def fetch(wait):
+    if wait:
+        waiting.get()
+fetch(False)
+out.publish(2.0)  # clean
+### in a called function, for an element that each message puts there
+def fetch():
+    return always.get() is not None
+fetch()
+out.publish(2.0)  # clean
+### in the condition of a loop
+def fetch():
+    return waiting.get() is not None
+while fetch():
+    out.publish(2.0)  # control
+### in a generator
+def items():
+    while True:
+        yield waiting.get()
+for item in items():
+    out.publish(2.0)  # control
 """
 
 
