@@ -350,6 +350,8 @@ DEVICE_READERS: Final = frozenset(
 MEASURES: Final = frozenset(
     ["shape", "size", "ndim", "dtype", "nbytes"]
 )  # attributes of an array that stay the same when elements of the array are replaced
+# attributes of a table or array through which its own elements are read and stored, as in `table.loc[3] = x`
+INDEXERS: Final = frozenset(["loc", "iloc", "at", "iat", "flat"])
 KEEPERS: Final = frozenset(
     [
         "functools.wraps",

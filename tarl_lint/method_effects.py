@@ -34,6 +34,8 @@ FAILS: Final = re.compile(
 )  # functions that raise for some arguments
 # functions that read from a stream among their arguments
 READS: Final = re.compile(r"_?(load|read|parse|open|deserialize|decode|from)", re.IGNORECASE)
+# functions that write into a stream among their arguments, even if the result is used
+WRITES: Final = re.compile(r"_?(?:write|dump|save|serialize|export|encode_?into|to_)", re.IGNORECASE)
 
 
 def changes(method: str, *, dropped: bool) -> bool:
@@ -52,6 +54,11 @@ def only_tells(name: str) -> bool:
 def reads(name: str) -> bool:
     """Return whether a function or method reads from a stream that it gets, and writes nothing into it."""
     return READS.match(name) is not None
+
+
+def writes(name: str) -> bool:
+    """Return whether a function or method writes into a stream that it gets, whatever it returns."""
+    return WRITES.match(name) is not None
 
 
 def keeps_callables(name: str) -> bool:

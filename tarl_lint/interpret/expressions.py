@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import builtins
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import Any
 
 from tarl_lint.catalog import fact
@@ -12,11 +12,13 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, generations, heap, properties, recency
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.heap import ANY, GIVEN_KEYS
+from tarl_lint.memory.heap import ANY, GIVEN_KEYS, KEYS
 from tarl_lint.memory.values import (
+    ABSENT,
     BOTTOM,
     NONE,
     UNKNOWN,
+    Nodes,
     Obj,
     Value,
     const,
@@ -131,11 +133,34 @@ def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:
     index = evaluate(ctx, expr.index, frame)
     if (text := environment.text_of(base)) is not None:
         return Value(text.deps | ctx.use(index), consts=text.consts)
-    if (frame.tries or len(ctx.stack) > 1) and (decides := ctx.use(index)):
+    keys = by_key(ctx, base, index, frame, expr.pos)
+    if (frame.tries or len(ctx.stack) > 1) and (decides := ctx.use(index) | keys):
         for raises in LOOKUP_ERRORS:
             ctx.ops.may_fail(ctx, decides, raises, frame, named=True)
     said = dunder_methods.special(ctx, base, "__getitem__", [index], frame, expr.pos)
-    return said if said is not None else read_item(ctx, base, index)
+    if said is not None:
+        return said
+    found = read_item(ctx, base, index)
+    return Value(found.deps | keys, found.pts) if keys else found
+
+
+def by_key(ctx: Interpreter, base: Value, index: Value, frame: Frame, slot: Hashable) -> Nodes:
+    """Return the node that decides what a look-up in a mapping finds; empty if no data decides the mapping's keys.
+
+    An entry with a constant key is there, whatever the other keys are.
+    """
+    decides = NONE
+    for obj in base.pts:
+        if obj.kind == "mapping" and (stored := ctx.store.get((obj, KEYS))) is not None:
+            fields = [heap.attribute_of_item(obj, key) for key in index.item_keys() or ()]
+            held = [ctx.store.get((obj, field)) for field in fields]
+            if not held or any(one is None or one == ABSENT for one in held):
+                decides |= stored.deps
+    if not decides:
+        return NONE
+    node = ctx.node(frame, ("key", slot), "condition")
+    ctx.graph.depend(node, decides)
+    return ctx.kept(node)
 
 
 def _part_of_text(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from tarl_lint import catalog
 from tarl_lint.interpret import (
     attempts,
     branches,
@@ -138,10 +139,20 @@ def _assign_item(ctx: Interpreter, target: ir.Item, value: Value, frame: Frame) 
     if where := ctx.use(index):
         chosen = Value(value.deps | where, value.pts)
         value = ctx.carry(chosen, ctx.node(frame, ("at", target.pos), "assign"))
-    if base.pts:
+    if (whole := _indexed(ctx, target.base, frame)) is not None:
+        updates.add_element(ctx, whole, Value(ctx.use(value)))  # the table gets a copy
+    elif base.pts:
         updates.write_item(ctx, base, index, value)
     else:
         assign_fallback(ctx, target.base, value, frame)
+
+
+def _indexed(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Value | None:
+    """Return the table or array of a library that an indexer such as `table.loc` accesses; None for other objects."""
+    if not isinstance(expr, ir.Attribute) or expr.name not in catalog.INDEXERS:
+        return None
+    owner = expressions.evaluate(ctx, expr.base, frame)
+    return owner if owner.pts and all(o.kind == "lib" for o in owner.pts) else None
 
 
 def assign_fallback(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame) -> None:

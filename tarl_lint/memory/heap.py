@@ -36,6 +36,8 @@ LENGTH = "<length>"  # field of a container: dependencies of its length
 HELD = "<callables>"  # field of a library object: callables that were passed to it
 RESULT = "<result>"  # field of a future that holds its result
 SENT = "<sent>"  # field of a port, file or socket: data written to it
+STREAM = "<stream>"  # field of a library object: the streams in memory into which it writes
+SHAPE = "<shape>"  # field of an array that the program made without data: the data that decides its shape
 # name of a sequence that holds the known attribute names of an object, or (name, value) pairs
 MEMBERS = "members"
 GENERATOR = "generator"  # name of a sequence that represents a generator
@@ -166,10 +168,15 @@ def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:
     if name.startswith("[") and (held := content(ctx, obj)).pts:
         return held
     if obj.kind == "lib" and obj.info is not BY_CLASS and name in MEASURES:
-        return Value(ctx.ops.deep(ctx, frozenset([obj])))
+        return shape(ctx, obj) or Value(ctx.ops.deep(ctx, frozenset([obj])))
     ctx.store.reads.look(obj)
     any_of_them = obj.subs.get("[]") if name.startswith("[") else None
     return Value(pts=frozenset([obj.sub(name)] if any_of_them is None else [obj.sub(name), any_of_them]))
+
+
+def shape(ctx: Interpreter, obj: Obj) -> Value | None:
+    """Return the data that decides the shape of an array, if its elements do not; None for other objects."""
+    return ctx.store.get((obj, SHAPE)) if obj.kind == "lib" else None
 
 
 def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:

@@ -139,7 +139,10 @@ def _equals(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> None:
+    keys = ctx.use(index)
     for obj in base.objects:
+        if obj.kind == "mapping" and keys:
+            updates.weaken(ctx, obj, heap.KEYS, Value(keys))
         for key in index.item_keys() or (None,):
             field = ANY if key is None else heap.attribute_of_item(obj, key)
             held, field = heap.renamed(ctx, obj, field) if obj.kind in heap.RENAMING else (obj, field)
@@ -266,6 +269,8 @@ def _read_get(ctx: Interpreter, it: Invocation) -> Value:
     if not plain:
         return elements_of_any(ctx, it.base)
     result = expressions.read_item(ctx, it.base, plain[0])
+    if keys := expressions.by_key(ctx, it.base, plain[0], it.frame, it.call.pos):
+        result = Value(result.deps | keys, result.pts)
     if ctx.launched is not None and (told := launched.entry(ctx, it.base, plain[0])) is not None:
         return told
     return join(result, plain[1]) if len(plain) > 1 else result

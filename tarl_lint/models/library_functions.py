@@ -32,6 +32,7 @@ from tarl_lint.models import (
     command_line,
     containers,
     drawings,
+    element_trees,
     environment,
     filling,
     fixed_numbers,
@@ -131,8 +132,9 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
         if keyword in catalog.WRITTEN_KEYWORDS and keyword in arguments[1]:
             news = containers.through_statement(ctx, Value(deps), frame, call, keyword)
             containers.change(ctx, arguments[1][keyword], news, [expr], frame)
-    if written is None and dropped(frame, call):
-        filling.fill(ctx, name, BOTTOM, arguments, frame, call)
+    if written is None:
+        written_by = Invocation(name, BOTTOM, arguments, frame, call)
+        filling.fill(ctx, written_by, dropped=dropped(frame, call))
     it = Invocation(qualified, BOTTOM, arguments, frame, call)
     drawings.pass_to_function(ctx, it, unused=dropped(frame, call))
     if catalog.scalar(qualified):
@@ -140,6 +142,12 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
         return Value(deps, arguments[0][0].pts if same else frozenset())
     made = new_object(ctx, arguments, deps, frame, call, fields=_has_fields(qualified))
     callables.hold(ctx, made.pts, held)
+    filling.note_streams(ctx, made, arguments)
+    if qualified in catalog.RESERVING and qualified.startswith("numpy."):
+        decides = ctx.use(arguments[0][0]) if arguments[0] and not shaped else NONE
+        ctx.store.put(
+            (next(iter(made.pts)), heap.SHAPE), Value(decides | ctx.use(arguments[1].get("shape", BOTTOM)))
+        )
     if name[:1].isupper():
         callables.make_instances(ctx, arguments, made, frame, call)
         senders.note(ctx, qualified, made, arguments, frame, call)
@@ -212,6 +220,8 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(QUEUES, containers.new_queue),
     "eval": reflection.evaluated,
     **dict.fromkeys(("csv.writer", "csv.DictWriter"), filling.stream_itself),
+    **dict.fromkeys(element_trees.TREES, element_trees.tree),
+    **dict.fromkeys(element_trees.SUBELEMENTS, element_trees.subelement),
     "ChainMap": records.several_mappings,
     **dict.fromkeys(containers.PIPES, containers.new_pipe),
     "dict": records.new_mapping,

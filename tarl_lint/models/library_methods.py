@@ -49,7 +49,11 @@ from tarl_lint.models.strings import TEXT_METHODS
 
 # methods of events and conditions, without arguments
 SIGNALS: Final = {"wait": waiting.wait_for_flag, "notify": containers.flag, "notify_all": containers.flag}
-OF_BASE = frozenset(["__new__", "__init__", "__setattr__"])  # methods of base classes that are not analysed
+# method of base classes that are not analysed → kinds of objects of which it is called
+OF_BASE: Final = {
+    **dict.fromkeys(("__new__", "__init__"), ("super", "class")),
+    "__setattr__": ("super", "class", "instance"),
+}
 SIGNALLING = frozenset(["connect", "emit"])
 
 
@@ -106,7 +110,7 @@ def _call_method(
     kind = target.kind if target is not None else ""
     if target is not None and kind == "lib" and f"{target.name}.{name}" in ctx.config.named:
         return ctx.ops.call_library(ctx, f"{target.name}.{name}", arguments, frame, call)
-    if target is not None and kind in ("super", "class") and name in OF_BASE:
+    if target is not None and kind in OF_BASE.get(name, ()):
         return _built_by_base(ctx, target, Invocation(name, base, arguments, frame, call))
     if target is not None and name == "publish" and (sender := senders.sender(ctx, target)) is not None:
         return ctx.ops.send(ctx, Invocation(name, base, arguments, frame, call), sender)
@@ -150,6 +154,11 @@ def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
     if it.name == "send" and target is not None and target.name == heap.GENERATOR:
         containers.sent(ctx, target, it)
         return heap.arrive(ctx, heap.read_any(ctx, target), it.base.deps)
+    if filling.writes_itself(ctx, it):
+        filling.fill(ctx, it, dropped=True)
+        return UNKNOWN
+    if kind == "lib":
+        filling.pass_on(ctx, it)
     containers.mutate(ctx, it.base, it.name, it.arguments, it.frame, it.call)
     given_back = it.name == "setdefault" or (it.name == "send" and kind == "sequence")
     if given_back and target is not None:
@@ -183,8 +192,10 @@ def _unknown_method(
     if learnt and base.pts and all(map(changeable, base.pts)) and changes(name, dropped=dropped(frame, call)):
         containers.insert_elements(ctx, base, [Value(learnt)], frame, call)
     written = catalog.METHODS_WRITING.get(name)
-    if written is None and dropped(frame, call):
-        filling.fill(ctx, name, base, arguments, frame, call)
+    it = Invocation(name, base, arguments, frame, call)
+    if written is None:
+        filling.fill(ctx, it, dropped=dropped(frame, call))
+    filling.pass_on(ctx, it)
     if written is not None and written < len(arguments[0]):
         news = containers.through_statement(
             ctx, Value(ctx.use(base) | call_contexts.all_used(ctx, arguments)), frame, call
@@ -197,7 +208,7 @@ def _unknown_method(
     if not deps and not base.pts:
         return UNKNOWN
     made = new_object(ctx, arguments, deps, frame, call, fields=False)
-    return _loaded(ctx, made, Invocation(name, base, arguments, frame, call))
+    return _loaded(ctx, made, it)
 
 
 def _of_text(
@@ -265,9 +276,10 @@ def _built_by_base(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
     """Call `__new__`, `__init__` or `__setattr__` of a base class that is not analysed."""
     if it.name == "__new__":
         return objects.blank_object(ctx, it)
-    if it.name == "__setattr__" and isinstance(target.info, tuple):
+    if it.name == "__setattr__" and (isinstance(target.info, tuple) or target.kind == "instance"):
         plain, named = it.arguments
-        given = [Value(it.base.deps, frozenset([target.info[1]])), *plain]
+        of = target.info[1] if isinstance(target.info, tuple) else target
+        given = [Value(it.base.deps, frozenset([of])), *plain]
         return reflection.set_attribute(ctx, replace(it, arguments=(given, named)))
     if isinstance(target.info, tuple):
         logging_handlers.note_level(ctx, target.info[1], it.arguments)

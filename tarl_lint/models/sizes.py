@@ -219,6 +219,8 @@ def length(ctx: Interpreter, value: Value) -> Nodes:
             if obj.parent is not None:
                 made |= heap.content(ctx, obj.parent).deps
             deps |= ctx.graph.through(made, value.deps)
+        elif (shape := heap.shape(ctx, obj)) is not None:
+            deps |= shape.deps
         elif SENT in obj.fields:
             deps |= heap.content(ctx, obj).deps
         elif heap.attribute_names(ctx, obj) is None:

@@ -371,7 +371,7 @@ out.publish(np.zeros(3)[0])  # clean
 b = np.zeros(3)
 b[0] = msg.data
 out.publish(b[0])  # data
-out.publish(b.shape)  # data
+out.publish(b.shape)  # clean
 out.publish(np.zeros(msg.count))  # data
 c = np.zeros(3)
 np.copyto(c, a)
