@@ -11,6 +11,7 @@ _FIELD: Final = re.compile(rf"{_TYPE}\s+[A-Za-z]\w*(?:\s+\S.*)?")
 _CONSTANT: Final = re.compile(rf"({_TYPE})\s+[A-Za-z]\w*\s*=(.*)")
 _WHOLE: Final = re.compile(r"u?int(?:8|16|32|64)|byte|char")
 _REAL: Final = frozenset({"float32", "float64"})
+_TEXT: Final = frozenset({"string", "wstring"})
 # ending → the number of sections, which lines of dashes separate
 SECTIONS: Final = {".msg": 1, ".srv": 2, ".action": 3}
 
@@ -22,8 +23,8 @@ def mistakes(text: str, ending: str) -> Iterator[tuple[int, str]]:
         code = line.strip()
         if code.startswith("---"):
             sections += 1
-        elif constant := _CONSTANT.fullmatch(code):
-            if not _has_value(*constant.groups()):
+        elif found := _CONSTANT.fullmatch(code):
+            if not _has_value(*found.groups()):
                 yield number, f"`{code[:60]}` is a constant without a value of its type"
         else:
             code = code.partition("#")[0].strip()
@@ -35,19 +36,29 @@ def mistakes(text: str, ending: str) -> Iterator[tuple[int, str]]:
 
 
 def _has_value(kind: str, text: str) -> bool:
-    """Return whether the text is a value of the type; the text of a string may be empty and contain #."""
-    if kind.partition("<=")[0] in ("string", "wstring"):
-        return True
-    value = text.partition("#")[0].strip()
-    if kind == "bool":
-        return bool(value)
+    """Return whether the text is a value of the type; only that of a string may contain #."""
     try:
-        if _WHOLE.fullmatch(kind):
-            int(value, 0 if value[:2].lower() in ("0x", "0b", "0o") else 10)
-        elif kind in _REAL:
-            float(value)
-        else:
-            return False  # only primitive types have constants
+        constant(kind, text.partition("#")[0].strip())
     except ValueError:
         return False
     return True
+
+
+def constant(kind: str, text: str) -> str | bool | float:
+    """Return the value of a constant or default, such as 31 for `uint8` and `0x1F`.
+
+    Raises:
+        ValueError: The text is not a value of the type, or the type is not primitive.
+    """
+    if kind.partition("<=")[0] in _TEXT:
+        return text.strip("'\"")
+    if kind in _REAL:
+        return float(text)
+    if kind == "bool" and text:
+        return text.lower() in ("true", "1")
+    if not _WHOLE.fullmatch(kind):
+        raise ValueError(f"no constant of type {kind}")
+    try:
+        return int(text)  # ROS allows leading zeros, which base 0 refuses
+    except ValueError:
+        return int(text, 0)

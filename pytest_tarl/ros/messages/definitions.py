@@ -11,6 +11,7 @@ from pytest_tarl.errors import UnsupportedApiError
 from pytest_tarl.extras import install_command
 from pytest_tarl.ros.messages.known import Part, known_types
 from pytest_tarl.ros.messages.workspace import by_order, workspace_types
+from tarl_lint.workspace.interface_syntax import constant
 
 Kind = Literal["ros1", "ros2"]
 Shape = Literal["one", "array", "sequence"]
@@ -243,12 +244,11 @@ def parse(kind: Kind, package: str, name: str, text: str) -> Definition:
         if assigned:
             text = f"{kind_of_value} {left.strip()}={value.strip()}"
             try:
-                constant = _constant(kind_of_value, value.strip())
+                constants.append(Constant(left.strip(), constant(kind_of_value, value.strip()), text))
             except ValueError:
                 raise UnsupportedApiError(
                     f"{package}/{name}: the constant `{text}` has no value of its type: correct the definition."
                 ) from None
-            constants.append(Constant(left.strip(), constant, text))
         elif rest.strip() != _FILLER:
             fields.append(_field(kind, kind_of_value, rest, package))
     return Definition(kind, package, name, tuple(fields), tuple(constants))
@@ -283,21 +283,8 @@ def _field(kind: Kind, type_text: str, rest: str, package: str) -> Field:
 
 def _default_value(base: str, text: str, *, many: bool) -> Any:
     if many:
-        return [_constant(base, item.strip()) for item in text.strip("[]").split(",") if item.strip()]
-    return _constant(base, text)
-
-
-def _constant(type_text: str, value: str) -> Any:
-    if type_text.startswith("float"):
-        return float(value)
-    if type_text.startswith(("string", "wstring")):
-        return value.strip("'\"")
-    if type_text == "bool":
-        return value.lower() in ("true", "1")
-    try:
-        return int(value)  # ROS allows leading zeros, which base 0 refuses
-    except ValueError:
-        return int(value, 0)
+        return [constant(base, item.strip()) for item in text.strip("[]").split(",") if item.strip()]
+    return constant(base, text)
 
 
 @cache

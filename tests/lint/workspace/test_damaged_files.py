@@ -241,6 +241,7 @@ BROKEN = {
         ("bool B =", False),
         ("int32 A = 0x1F  # mask", True),
         ("int8 N=-1", True),
+        ("int8 N=-0x1F", True),
         ("float32 G = 1e-3", True),
         ("bool B = True", True),
         ("string S = # kept", True),

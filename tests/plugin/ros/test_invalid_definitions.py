@@ -13,6 +13,8 @@ from pytest_tarl.ros.messages.definitions import parse
     [
         ("int32 A = x", r"arm/State: the constant `int32 A=x` has no value of its type"),
         ("float64 G =", r"arm/State: the constant `float64 G=` has no value of its type"),
+        ("bool B =", r"arm/State: the constant `bool B=` has no value of its type"),
+        ("Pose P = 1", r"arm/State: the constant `Pose P=1` has no value of its type"),
         ("float64", r"arm/State: `float64` is neither a field nor a constant"),
     ],
 )
@@ -21,7 +23,7 @@ def test_an_invalid_line_is_named_with_its_message(line: str, reason: str) -> No
         parse("ros1", "arm", "State", f"bool ok\n{line}\n")
 
 
-@pytest.mark.parametrize(("text", "value"), [("010", 10), ("0x10", 16), ("-08", -8)])
+@pytest.mark.parametrize(("text", "value"), [("010", 10), ("0x10", 16), ("-08", -8), ("-0x1F", -31)])
 def test_whole_numbers_may_have_leading_zeros(text: str, value: int) -> None:
     (constant,) = parse("ros1", "arm", "State", f"int32 A = {text}\n").constants
     assert constant.value == value
