@@ -227,7 +227,7 @@ def parse(kind: Kind, package: str, name: str, text: str) -> Definition:
     """Parse a message definition: a `.msg` file, or one section of a `.srv` or `.action` file.
 
     Raises:
-        UnsupportedApiError: A line has no name, or a constant has no value of its type.
+        UnsupportedApiError: A line has no name, or a constant or a default has no value of its type.
     """
     fields, constants = [], []
     for line in text.splitlines():
@@ -250,7 +250,12 @@ def parse(kind: Kind, package: str, name: str, text: str) -> Definition:
                     f"{package}/{name}: the constant `{text}` has no value of its type: correct the definition."
                 ) from None
         elif rest.strip() != _FILLER:
-            fields.append(_field(kind, kind_of_value, rest, package))
+            try:
+                fields.append(_field(kind, kind_of_value, rest, package))
+            except ValueError:
+                raise UnsupportedApiError(
+                    f"{package}/{name}: the default in `{line}` is no value of its type: correct the definition."
+                ) from None
     return Definition(kind, package, name, tuple(fields), tuple(constants))
 
 

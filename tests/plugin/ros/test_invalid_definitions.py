@@ -23,6 +23,13 @@ def test_an_invalid_line_is_named_with_its_message(line: str, reason: str) -> No
         parse("ros1", "arm", "State", f"bool ok\n{line}\n")
 
 
+@pytest.mark.parametrize("line", ["int32 speed fast", "float64[2] gains [1.0, x]", "Pose home 1"])
+def test_a_default_without_a_value_of_its_type_is_named_with_its_message(line: str) -> None:
+    with pytest.raises(UnsupportedApiError) as raised:
+        parse("ros2", "arm", "State", f"bool ok true\n{line}\n")
+    assert f"arm/State: the default in `{line}` is no value of its type" in str(raised.value)
+
+
 @pytest.mark.parametrize(("text", "value"), [("010", 10), ("0x10", 16), ("-08", -8), ("-0x1F", -31)])
 def test_whole_numbers_may_have_leading_zeros(text: str, value: int) -> None:
     (constant,) = parse("ros1", "arm", "State", f"int32 A = {text}\n").constants
