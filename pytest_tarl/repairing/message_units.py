@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import Final
 
-from pytest_tarl.name_words import words
+from tarl_lint.name_words import words
 
 TENS: Final = (10.0, 100.0, 1e3, 1e6)  # parts of any unit
 

@@ -7,12 +7,12 @@ from enum import IntEnum
 from math import inf, isclose, isfinite, pi
 
 from pytest_tarl.model import Guard
-from pytest_tarl.name_words import words
 from pytest_tarl.patching.charts import step_to
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
+from tarl_lint.name_words import words
 
 INSTEAD = 3  # maximum number of other constants that may take over an offset
 UNTRIED = 2  # maximum number of untried named constants to try in place of a changed literal

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from typing import Final
+
+from tarl_lint.name_words import words
 
 # types that are used for commands only
 COMMANDS: Final = frozenset(
@@ -25,7 +26,6 @@ _MEASURED: Final = frozenset(
      "encoder", "reading", "level", "debug", "monitor", "plot", "distance", "bearing", "count", "percent", "limit",
      "echo", "observed", "score", "confidence", "id"]
 )  # fmt: skip
-_WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 
 
 def is_command(kind: str, topics: tuple[str, ...]) -> bool:
@@ -37,5 +37,5 @@ def is_command(kind: str, topics: tuple[str, ...]) -> bool:
 
 
 def _commanded(topic: str) -> bool:
-    words = {word.lower() for part in topic.split("/")[-2:] for word in _WORD.findall(part)}
-    return not words.isdisjoint(_COMMANDED) and words.isdisjoint(_MEASURED)
+    named = words("/".join(topic.split("/")[-2:]))
+    return not named.isdisjoint(_COMMANDED) and named.isdisjoint(_MEASURED)

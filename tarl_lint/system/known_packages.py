@@ -12,8 +12,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from tarl_lint.model import Span
+from tarl_lint.name_words import words
 from tarl_lint.system.model import Endpoint, Instance, Role, Seen, place_of
-from tarl_lint.system.sensor_drivers import driver_types, driver_words, unused_types, words
+from tarl_lint.system.sensor_drivers import driver_types, driver_words, unused_types
 from tarl_lint.workspace.launch_model import LaunchedNode
 from tarl_lint.workspace.ros_arguments import plain
 

@@ -8,10 +8,11 @@ words are those of common drivers of the same sensor. A driver of a laser scanne
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
+from tarl_lint.name_words import words
 from tarl_lint.system.command_topics import COMMANDS
 
 
@@ -121,7 +122,6 @@ _SIGN: Final = re.compile(
 )
 # what drivers of sensors do not use
 _NEVER: Final = COMMANDS | {"Joy", "Path", "OccupancyGrid", "JointState", "PoseArray"}
-_WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 # words in the names of packages and programs that say nothing about their topics
 _EMPTY: Final = frozenset(
     ["ros", "node", "nodelet", "driver", "drivers", "component", "generic", "caller", "py", "exe"]
@@ -151,7 +151,7 @@ def driver_types(package: str, program: str) -> frozenset[str] | None:
 def driver_words(package: str, program: str) -> frozenset[str] | None:
     """Return the words of the names that a driver gives topics and services; None if its sensor is unknown."""
     found = sensors(package, program)
-    own = frozenset(words(package)) | frozenset(words(program))
+    own = words(package) | words(program)
     return _WORDS.union(own - _EMPTY, *(one.words for one in found)) if found else None
 
 
@@ -160,11 +160,6 @@ def unused_types(package: str, program: str) -> frozenset[str]:
     return frozenset(_NEVER) if _signs(package, program) else frozenset()
 
 
-def words(name: str) -> Iterator[str]:
-    """Yield the words of a name in lower case, without digits."""
-    return (one.lower() for one in _WORD.findall(name))
-
-
 def offered(name: str, vocabulary: Iterable[str]) -> bool:
     """Return whether the last part of a topic's name has only words of a vocabulary."""
-    return frozenset(words(name.rpartition("/")[2])) <= frozenset(vocabulary)
+    return words(name.rpartition("/")[2]) <= frozenset(vocabulary)

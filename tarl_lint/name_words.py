@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from typing import Final
 
-_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
+_WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 
 
 def words(text: str) -> set[str]:
-    """Return the words of a text and of the names in it, in lower case."""
+    """Return the words of a text and of the names in it, in lower case and without digits."""
     return {word.lower() for word in _WORD.findall(text)}
