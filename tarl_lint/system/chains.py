@@ -37,10 +37,9 @@ def chains(
     return tuple(sorted(found, key=lambda c: [(h.source, h.node, h.sink) for h in c.hops])), False
 
 
-def visible(hops: Sequence[Hop], origin: str, target: str, most: int) -> tuple[Sequence[Chain], str]:
-    """Return at most `most` chains between two topics, 0 for all, and a remark on the others; "" if there are none."""
-    found, more = chains(hops, origin, target, every=most == 0 or most > MOST)
-    return limited(found, most, more=more)
+def shown_chains(hops: Sequence[Hop], origin: str, target: str, most: int) -> tuple[tuple[Chain, ...], bool]:
+    """Return the chains between two topics of which a format shows `most`, 0 for all; and whether there may be more."""
+    return chains(hops, origin, target, every=most == 0 or most > MOST)
 
 
 def limited(found: Sequence[Chain], most: int, *, more: bool) -> tuple[Sequence[Chain], str]:

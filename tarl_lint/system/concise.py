@@ -11,8 +11,8 @@ from tarl_lint.report.line import Line, View, one_line
 from tarl_lint.report.text import errors, heading
 from tarl_lint.run.runner import Result
 from tarl_lint.system.chain_lines import in_line
-from tarl_lint.system.chains import visible
-from tarl_lint.system.model import System
+from tarl_lint.system.chains import limited, shown_chains
+from tarl_lint.system.model import Chain, System
 from tarl_lint.system.statistics import statistics
 
 
@@ -22,10 +22,11 @@ def concise(
     """Yield one line per hazard and one per flow across nodes, then the closing lines."""
     yield from errors(result)
     yield from map(heading, result.new)
-    yield from flows(systems, view, origin, target)
+    found = [shown_chains(system.hops, origin, target, view.most_flows) for system in systems]
+    yield from flows(systems, found, view)
     yield from (line for line in summary.vanished(result, view) if line)
     if view.statistics:
-        yield from statistics(systems, result)
+        yield from statistics(systems, [one for one, _ in found], result)
     yield from summary.closing(result)
 
 
@@ -34,13 +35,19 @@ def github(
 ) -> Iterator[Line]:
     """Yield the annotations of the hazards; flows across nodes, which have no line, are in the log only."""
     yield from pull_request.report(result, view)
-    yield from flows(systems, view, origin, target)
+    found = [shown_chains(system.hops, origin, target, view.most_flows) for system in systems]
+    yield from flows(systems, found, view)
 
 
-def flows(systems: Sequence[System], view: View, origin: str, target: str) -> Iterator[Line]:
-    """Yield a line for each flow across nodes: the launch file, then topics and nodes."""
-    for system in systems:
-        found, rest = visible(system.hops, origin, target, view.most_flows)
+def flows(
+    systems: Sequence[System], chains: Sequence[tuple[Sequence[Chain], bool]], view: View
+) -> Iterator[Line]:
+    """Yield a line for each flow across nodes: the launch file, then topics and nodes.
+
+    `chains` has the chains of each system, and whether there may be more.
+    """
+    for system, (all_found, more) in zip(systems, chains, strict=True):
+        found, rest = limited(all_found, view.most_flows, more=more)
         place = one_line(shown(system.file))
         for chain in found:
             yield ((f"{place}: ", "place"), *in_line(chain, view.glyphs))

@@ -57,8 +57,13 @@ def drawing(system: System, origin: str = "", target: str = "") -> Drawing:
 
     With `origin` or `target`, the picture has only the nodes and topics of the chains between these topics.
     """
+    return drawing_of(system, chains(system.hops, origin, target)[0] if origin or target else None)
+
+
+def drawing_of(system: System, only: Iterable[Chain] | None) -> Drawing:
+    """Return the picture of a system; with `only`, of the nodes and topics of these chains."""
     drawn = _everything(system)
-    return _between(drawn, chains(system.hops, origin, target)[0]) if origin or target else drawn
+    return drawn if only is None else _between(drawn, only)
 
 
 def _between(drawn: Drawing, found: Iterable[Chain]) -> Drawing:

@@ -11,8 +11,8 @@ from tarl_lint.report.line import Line
 from tarl_lint.report.sarif import location, written
 from tarl_lint.run.runner import Result
 from tarl_lint.system.chains import chains
-from tarl_lint.system.drawing import drawing
-from tarl_lint.system.model import System, place_of
+from tarl_lint.system.drawing import drawing_of
+from tarl_lint.system.model import Chain, System, place_of
 
 CATEGORY: Final = "tarl-lint/launch"  # keeps these results apart from those of a run without launch files
 
@@ -24,7 +24,8 @@ def report(systems: Sequence[System], result: Result, origin: str = "", target: 
 
 def _graph(system: System, origin: str, target: str) -> dict[str, Any]:
     """Return a system as a graph. Identifiers begin with `n ` for nodes and with `t ` for topics."""
-    drawn = drawing(system, origin, target)
+    found, _ = chains(system.hops, origin, target)
+    drawn = drawing_of(system, found if origin or target else None)
     places = {one.name: place_of(one) for one in reversed(system.instances)}
     pairs = [(f"t {topic}", f"n {node}", kind) for topic, node, kind in drawn.inputs]
     pairs += [(f"n {node}", f"t {topic}", "") for node, topic in drawn.outputs]
@@ -43,7 +44,7 @@ def _graph(system: System, origin: str, target: str) -> dict[str, Any]:
             }
             for number, (one, other, kind) in enumerate(pairs)
         ],
-        "properties": {"flows": _flows(system, origin, target)},
+        "properties": {"flows": _flows(found)},
     }  # fmt: skip
 
 
@@ -57,9 +58,8 @@ def _node(name: str, places: Mapping[str, Span], *, read: bool) -> dict[str, Any
     }
 
 
-def _flows(system: System, origin: str, target: str) -> list[dict[str, Any]]:
+def _flows(found: Sequence[Chain]) -> list[dict[str, Any]]:
     """Return the flows across nodes, each as the names on its way: topic, node, topic and so on."""
-    found, _ = chains(system.hops, origin, target)
     return [
         {
             "kind": one.kind,

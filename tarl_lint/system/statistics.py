@@ -8,15 +8,19 @@ from collections.abc import Iterator, Sequence
 from tarl_lint.report.line import Line
 from tarl_lint.report.summary import counted, counts_of_findings
 from tarl_lint.run.runner import Result
-from tarl_lint.system.chains import chains
-from tarl_lint.system.model import System
+from tarl_lint.system.model import Chain, System
 from tarl_lint.system.one_sided import one_sided
 
 
-def statistics(systems: Sequence[System], result: Result) -> Iterator[Line]:
-    """Yield the counts of a run, one per line. Nodes and flows count once for each launch file that has them."""
+def statistics(
+    systems: Sequence[System], chains: Sequence[Sequence[Chain]], result: Result
+) -> Iterator[Line]:
+    """Yield the counts of a run, one per line. Nodes and flows count once for each launch file that has them.
+
+    `chains` has the flows of each system across its nodes: with `--from` and `--to`, those between these topics.
+    """
     nodes = [one for system in systems for one in system.instances if one.node.kind != "test"]
-    kinds = Counter(chain.kind for system in systems for chain in chains(system.hops)[0])
+    kinds = Counter(chain.kind for found in chains for chain in found)
     lonely = Counter(one.missing for system in systems for one in one_sided(system))
     yield from counted(
         [

@@ -12,9 +12,9 @@ from tarl_lint.report.summary import many
 from tarl_lint.report.text import errors, heading
 from tarl_lint.run.runner import Result
 from tarl_lint.system.chain_lines import in_line, statements
-from tarl_lint.system.chains import slashed, visible
+from tarl_lint.system.chains import limited, shown_chains, slashed
 from tarl_lint.system.details import details
-from tarl_lint.system.model import Instance, Role, System
+from tarl_lint.system.model import Chain, Instance, Role, System
 from tarl_lint.system.one_sided import one_sided
 from tarl_lint.system.statistics import statistics
 
@@ -39,19 +39,23 @@ def report(
     The lines at the end concern all systems: unreadable files, silenced findings, entries of the baseline that
     are gone.
     """
-    for number, system in enumerate(systems):
+    chains = [shown_chains(system.hops, origin, target, view.most_flows) for system in systems]
+    for number, (system, found) in enumerate(zip(systems, chains, strict=True)):
         if number:
             yield ()
-        yield from _system(system, view, origin, target)
-    closing = list(_closing(systems, result, view, brief=bool(origin or target)))
+        yield from _system(system, found, view, origin, target)
+    found_by_system = [found for found, _ in chains]
+    closing = list(_closing(systems, found_by_system, result, view, brief=bool(origin or target)))
     if closing:
         yield ()
         yield from closing
 
 
-def _closing(systems: Sequence[System], result: Result, view: View, *, brief: bool) -> Iterator[Line]:
+def _closing(
+    systems: Sequence[System], chains: Sequence[Sequence[Chain]], result: Result, view: View, *, brief: bool
+) -> Iterator[Line]:
     if view.statistics:
-        yield from statistics(systems, result)
+        yield from statistics(systems, chains, result)
     if not brief:
         yield from errors(result)
     elif result.errors:
@@ -62,7 +66,9 @@ def _closing(systems: Sequence[System], result: Result, view: View, *, brief: bo
     yield from summary.vanished(result, view)
 
 
-def _system(system: System, view: View, origin: str, target: str) -> Iterator[Line]:
+def _system(
+    system: System, chains: tuple[Sequence[Chain], bool], view: View, origin: str, target: str
+) -> Iterator[Line]:
     tests = sum(one.node.kind == "test" for one in system.instances)
     unread = sum(one.interface is None for one in system.instances) - tests
     count = many(len(system.instances) - tests, "node") + (f", {many(tests, 'test')}" if tests else "")
@@ -70,7 +76,8 @@ def _system(system: System, view: View, origin: str, target: str) -> Iterator[Li
     yield ((name, "strong"), (f": {count}{f', {unread} not read' if unread else ''}", ""))
     if not (origin or target):
         yield from _table(system, view.glyphs)
-    found, rest = visible(system.hops, origin, target, view.most_flows)
+    all_found, more = chains
+    found, rest = limited(all_found, view.most_flows, more=more)
     yield ()
     if found or rest:
         yield (("Flows across nodes:", "strong"),)

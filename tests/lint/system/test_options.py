@@ -215,13 +215,15 @@ def test_a_query_counts_unreadable_programs_in_one_line(arm, capsys):
     assert out.endswith("\n\nNot analysed: 1 file that is not readable as Python 3 (TARL001).\n")
 
 
-def test_statistics_count_nodes_flows_and_hazards(arm, capsys):
-    for form in ("text", "concise"):
-        lines = run(capsys, "--launch", "a.launch", "--format", form, "--statistics")[1].splitlines()
-        counts = {line.strip().partition("  ")[2]: line.split()[0] for line in lines if line}
-        assert counts[HAZARD] == counts["launch files"] == "1"
-        assert counts["nodes"] == counts["flows across nodes, explicit"] == "2"
-        assert counts["nodes that were not read"] == "0"
+@pytest.mark.parametrize(("chosen", "flows"), [((), "2"), (("--from", "nowhere"), "0")])
+@pytest.mark.parametrize("form", ["text", "concise"])
+def test_statistics_count_nodes_flows_and_hazards(arm, capsys, form, chosen, flows):
+    lines = run(capsys, "--launch", "a.launch", "--format", form, "--statistics", *chosen)[1].splitlines()
+    counts = {line.strip().partition("  ")[2]: line.split()[0] for line in lines if line}
+    assert counts[HAZARD] == counts["launch files"] == "1"
+    assert counts["nodes"] == "2"
+    assert counts["flows across nodes, explicit"] == flows
+    assert counts["nodes that were not read"] == "0"
 
 
 def test_the_option_show_settings_prints_the_settings(arm, capsys):
