@@ -27,6 +27,7 @@ from tarl_lint.memory.values import (
     NO_CONSTANTS,
     NONE,
     UNKNOWN,
+    Branches,
     Nodes,
     Obj,
     Value,
@@ -89,7 +90,8 @@ def _invoke(
     if frame.shared:
         passed = shared_contexts.enter(ctx, frame, caller, passed)
     _note_arguments(ctx, frame, arguments, caller, call)
-    frame.guards |= frozenset(ctx.guards)
+    if not frame.guards.issuperset(ctx.guards):
+        _decide_call(frame, frozenset(ctx.guards))
     frame.root_waits = caller.root_waits
     parts: tuple[Origin, ...] = ()
     if (
@@ -126,6 +128,19 @@ def _invoke(
         ctx.store.put((collected, heap.RESULT), result)
         return pointer(collected)
     return result
+
+
+def _decide_call(frame: Frame, guards: Branches) -> None:
+    """Let decisions inside the calling expression decide about a call, also if an earlier one was not decided.
+
+    For example, `handlers[self.state]()` may call several functions once a later state is known.
+    """
+    frame.guards |= guards
+    frame.recorded = frame.entered = None
+    frame.waypoints = set()
+    if not frame.shared and not guards <= frame.base:
+        frame.base |= guards
+        frame.closures = {}
 
 
 def _execute(

@@ -40,7 +40,8 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
             function_attributes.with_default(ctx, plain[0], name, one, default)
             for name, one in zip(names, found, strict=True)
         ]
-    return join_all(found)
+    both = join_all(found)
+    return Value(both.deps | ctx.use(plain[1]), both.pts, both.consts) if len(names) > 1 else both
 
 
 def _written(it: Invocation, name: str, number: int = 0) -> ir.Attribute:
