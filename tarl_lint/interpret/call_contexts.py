@@ -116,18 +116,25 @@ def _invoke(
         for key, value in run.delta.items():
             ctx.store.put(key, value)
         run.noted = True
-    if run.blocked and not frame.function.generator:
-        ctx.ops.may_wait(ctx, frozenset(run.blocked), caller)
     if frame.function.generator:
-        collected = recency.allocate(ctx, "sequence", caller, ("generator", call.slot))
-        collected.name = heap.GENERATOR
-        collected.describe(generators.mailbox(ctx, frame))
-        updates.add_element(ctx, pointer(collected), frame.yielded)
-        if run.blocked:
-            sizes.decide_length(ctx, collected, frozenset(run.blocked))
-        ctx.store.put((collected, heap.RESULT), result)
-        return pointer(collected)
+        return _generator(ctx, frame, run, caller, call, result)
+    if run.blocked:
+        ctx.ops.may_wait(ctx, frozenset(run.blocked), caller)
     return result
+
+
+def _generator(
+    ctx: Interpreter, frame: Frame, run: replay.Run, caller: Frame, call: ir.Call, result: Value
+) -> Value:
+    """Return the generator that a call makes, a sequence of what it yields; its length depends on what it waits for."""
+    collected = recency.allocate(ctx, "sequence", caller, ("generator", call.slot))
+    collected.name = heap.GENERATOR
+    collected.describe(generators.mailbox(ctx, frame))
+    updates.add_element(ctx, pointer(collected), frame.yielded)
+    if run.blocked:
+        sizes.decide_length(ctx, collected, frozenset(run.blocked))
+    ctx.store.put((collected, heap.RESULT), result)
+    return pointer(collected)
 
 
 def _decide_call(frame: Frame, guards: Branches) -> None:
