@@ -7,6 +7,7 @@ import pytest
 from tarl_lint.catalog import IN_THREADS
 from tarl_lint.models.behaviour_trees import CHECKS, COMPARISON, COMPOSITES, CONSTANTS, DECORATORS
 from tarl_lint.models.blackboards import CLIENTS, GETTERS, SETTERS
+from tarl_lint.models.element_trees import SUBELEMENTS, TREES
 from tarl_lint.models.library_functions import BUILTIN
 from tarl_lint.models.smach import MACHINES
 from tests.lint.models.marked import differing, in_callback
@@ -105,6 +106,23 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(stream.getvalue())  # data
         out.publish(other.getvalue())  # clean
     """,
+    TREES: """
+        import io
+        import xml.etree.ElementTree as trees
+        root, stream, other = trees.Element("a", value=str(msg.data)), io.StringIO(), io.StringIO()
+        NAME(root).write(stream)
+        NAME(trees.Element("b")).write(other)
+        out.publish(stream.getvalue())  # data
+        out.publish(other.getvalue())  # clean
+    """,
+    SUBELEMENTS: """
+        import xml.etree.ElementTree as trees
+        root, other = trees.Element("a"), trees.Element("b")
+        NAME(root, "c").text = msg.data
+        NAME(other, "c").text = "x"
+        out.publish(trees.tostring(root))  # data
+        out.publish(trees.tostring(other))  # clean
+    """,
     ("ChainMap",): """
         first, second = {}, {"a": 0.0, "b": 0.0}
         both = NAME(first, second)
@@ -173,7 +191,7 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME(["a"], msg.data)["a"])  # data
         out.publish(NAME(["a"], 0.0)["a"])  # clean
         out.publish(max(NAME(msg.names, 0.0)))  # data
-        out.publish(NAME(msg.names, 0.0)["a"])  # clean
+        out.publish(NAME(msg.names, 0.0)["a"])  # control
     """,
     ("namedtuple",): """
         Pair = NAME("Pair", "near far")
