@@ -29,7 +29,7 @@ from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.interpret.replay import Mode, Run
-from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.frames import Frame, Origin
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import Key, Obj, Value
 
@@ -120,12 +120,18 @@ class Meter:
     seen: set[Hashable] = field(default_factory=set)
 
     def executed(
-        self, ctx: Interpreter, frame: Frame, passed: Arguments, mode: Mode, execute: Callable[[], Delta]
+        self,
+        ctx: Interpreter,
+        frame: Frame,
+        passed: Arguments,
+        parts: tuple[Origin, ...],
+        mode: Mode,
+        execute: Callable[[], Delta],
     ) -> Run:
         """Execute a call in place of `replay._executed`, and count it."""
         start, overhead = time.process_time(), self.overhead
         self.nested.append(0.0)
-        run = EXECUTED(ctx, frame, passed, mode, execute)
+        run = EXECUTED(ctx, frame, passed, parts, mode, execute)
         took = time.process_time() - start - (self.overhead - overhead)
         own = took - self.nested.pop()
         if self.nested:
