@@ -35,6 +35,12 @@ if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
 
+def conditional_definition(mutations: Sequence[Mutation], guard: Guard) -> bool:
+    """Return whether a guard would apply to a number that is changed at its definition, which cannot be written."""
+    placed = any(located(mutation).place is not None for mutation in mutations)
+    return placed and not all(map(always, guard.conjuncts))
+
+
 def rewrite(
     analysis: Analysis,
     mutations: Sequence[Mutation],
@@ -48,7 +54,7 @@ def rewrite(
     holds further files that define constants. Raise RepairError if a change cannot be written.
     """
     mutations = [located(mutation) for mutation in mutations]
-    if any(one.place is not None for one in mutations) and not all(map(always, guard.conjuncts)):
+    if conditional_definition(mutations, guard):
         raise RepairError("A number at its definition cannot have a condition.")
     conditions = Conditions(analysis, guard, topics)
     edits: dict[str, list[Edit]] = {}

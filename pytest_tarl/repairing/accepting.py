@@ -9,6 +9,7 @@ from statistics import fmean
 from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
+from pytest_tarl.patching.rewriting import conditional_definition
 from pytest_tarl.repairing.between import STRONG, WEAK, further
 from pytest_tarl.repairing.centring import THIN, centred
 from pytest_tarl.repairing.good_range import GoodRange
@@ -27,6 +28,7 @@ from pytest_tarl.searching.confirming import CONFIRMATIONS
 from pytest_tarl.searching.plainness import oddness
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
+UNWRITABLE: Reason = "cannot be written"
 WORLDS = 3  # number of worlds in which a test runs: drifted, designed, and designed without the candidate
 OLD_WORLD = 8  # number of episodes in the old world, to display the reward there if the drift is permanent
 MOST = 5  # maximum number of candidates to test per search
@@ -196,6 +198,8 @@ class Examiner:
 
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
         """Examine a candidate on known seeds, then on fresh seeds, unless a similar candidate was examined before."""
+        if conditional_definition(candidate.mutations, candidate.guard):
+            return self._refused(candidate, UNWRITABLE)
         chosen = candidate in self.others.chosen
         if self._harms_again(candidate, trials):
             return self._refused(candidate, WORSE)
@@ -211,7 +215,7 @@ class Examiner:
         try:
             problem = known_to_fail(self.mutants, candidate, trials, self._missed)
         except RepairError:
-            problem = "cannot be written"
+            problem = UNWRITABLE
         if problem:
             return self._refused(candidate, problem)
         for nicer in smoothed(self.order, candidate):

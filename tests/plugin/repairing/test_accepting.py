@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.definitions import ParameterInFile, Place
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import SHIPPED, template
@@ -257,6 +259,26 @@ def test_a_guard_is_tried_if_the_change_harms_the_designed_world_without_it(
     always, wet, dark, _ = GUARDS
     kinds = {always: "bad as designed", wet: "bad as designed", dark: "good"}
     assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
+
+
+def test_a_parameter_that_is_changed_in_its_file_gets_no_condition(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    always, *conditions = GUARDS
+    field: Any = Guarded({always: "bad as designed"})  # a mission under a condition would raise KeyError
+    place = Place("config.yaml", 0, 3, 1, "dwell", 3.0)
+    written = operand(1, "1.5", 1.5)
+    fields = {one.name: getattr(written, one.name) for one in dataclasses.fields(written)}
+    dwell = ParameterInFile(**{**fields, "place": place})
+    candidate = Candidate((Mutation(dwell, 0.5),), always)
+    examiner = Examiner(field, GUARDS)
+    trials = Trials(lambda one, seed: field.run(one, seed, "mud"), 300)
+    assert examiner.first(iter([candidate]), trials) is None
+    assert {one.candidate.guard: one.reason for one in examiner.tried} == {
+        always: "nominal gets worse",
+        **dict.fromkeys(conditions, "cannot be written"),
+    }
 
 
 @pytest.mark.parametrize("kind", ["bad at once", "lucky on known seeds", "worse later than the original"])
