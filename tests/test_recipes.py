@@ -82,7 +82,7 @@ def test_the_files_that_a_recipe_names_exist(page: Path) -> None:
     assert [name for name in written if not any(path.endswith(f"/{name}") for path in tracked)] == []
 
 
-def test_the_recipe_of_a_rule_reports_what_it_declares() -> None:
+def test_the_rule_of_the_recipe_reports_the_nodes_that_it_declares_invalid() -> None:
     (code,) = snippets("rule.md", "python")
     rule = made(code)
     for text, expected in [*((t, True) for t in rule.INVALID), *((t, False) for t in rule.VALID)]:

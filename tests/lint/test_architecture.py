@@ -43,7 +43,9 @@ def reported(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[dict[s
 
 
 @pytest.mark.parametrize(("code", "name", "text"), SNIPPETS)
-def test_rules_report_their_invalid_snippets_and_nothing_in_valid_ones(code, name, text, tmp_path, capsys):
+def test_rules_report_their_invalid_snippets_and_nothing_in_valid_snippets(
+    code, name, text, tmp_path, capsys
+):
     found = reported(capsys, str(workspace(tmp_path, text)))
     assert (code in {one["code"] for one in found}) == (name == "INVALID"), found
 

@@ -54,7 +54,7 @@ def test_a_package_named_like_a_colcon_directory_is_analysed(in_directory):
     assert "robot/log/writer.py" in paths()
 
 
-def test_ignored_and_excluded_files_are_skipped_unless_the_command_line_names_them(in_directory):
+def test_ignored_and_excluded_files_are_skipped_unless_named_on_the_command_line(in_directory):
     root = in_directory(
         {".gitignore": "made/\n*_pb2.py\n", "made/a.py": "", "b_pb2.py": "", "c.py": "", "vendor/d.py": "",
          "sub/.gitignore": "!b_pb2.py\n", "sub/b_pb2.py": ""}

@@ -196,7 +196,7 @@ def test_an_unused_publisher_is_a_hazard(more, found):
     assert lines("TARL204", SENDER.format(more=more)) == found
 
 
-def test_a_used_publisher_of_another_class_does_not_hide_an_unused_one():
+def test_a_used_publisher_of_another_class_does_not_hide_an_unused_publisher():
     more = """
     class Twin:
         def __init__(self):

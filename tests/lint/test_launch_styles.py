@@ -436,7 +436,7 @@ def test_the_items_of_a_dict_can_be_remappings(tmp_path: Path) -> None:
     assert node.remaps == (("in", "/scan"), ("out", "/cmd"))
 
 
-def test_a_launch_file_that_changes_data_read_from_a_file_does_not_affect_the_next_one(
+def test_a_launch_file_that_changes_data_read_from_a_file_does_not_affect_later_launch_files(
     tmp_path: Path,
 ) -> None:
     text = """

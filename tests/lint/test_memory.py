@@ -172,9 +172,7 @@ def carrying(graph, frame, key):
     return graph.node(key, Place(frame, None, "assign", (0, 0, 0, 0)), frozenset())
 
 
-def test_content_depends_on_a_carrier_only_if_it_was_in_the_carrier_when_the_carrier_was_passed_on(
-    ctx, frame
-):
+def test_content_depends_on_a_carrier_only_if_the_carrier_contained_it_when_passed_on(ctx, frame):
     graph = ctx.graph
     item, carrier = carrying(graph, frame, "item"), carrying(graph, frame, "carrier")
     content, carriers = frozenset([item]), frozenset([carrier])

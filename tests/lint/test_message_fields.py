@@ -60,7 +60,7 @@ def elements() -> dict[str, dict[str, str]]:
     return found
 
 
-def test_the_types_of_elements_are_those_in_the_definitions() -> None:
+def test_the_types_of_elements_are_the_types_in_the_definitions() -> None:
     assert elements() == ELEMENTS
 
 

@@ -38,7 +38,7 @@ def test_a_section_applies_to_the_nodes_that_match_its_pattern(pattern, node, ho
     assert matches(pattern, node) is holds
 
 
-def test_sections_may_be_nested_in_namespaces_and_later_ones_take_precedence():
+def test_sections_may_be_nested_in_namespaces_and_later_sections_take_precedence():
     text = """
         /**: {ros__parameters: {fastest: 1.0, limits: {top: 3}}}
         robot: {gate: {ros__parameters: {fastest: 2.0}}, other: {ros__parameters: {fastest: 9.0}}}

@@ -104,7 +104,7 @@ def test_names_in_the_overview_are_wrapped_and_long_lists_are_abbreviated():
     assert _few(()) == "?"
 
 
-def test_a_finding_that_fails_the_run_is_an_error_whatever_its_own_level():
+def test_a_finding_that_fails_the_run_is_an_error_regardless_of_its_own_level():
     result = SimpleNamespace(failing={"TARL101"})
     assert [own_level(code) for code in ("TARL101", "TARL201", "TARL001")] == ["note", "warning", "warning"]
     assert [level(code, result) for code in ("TARL101", "TARL102", "TARL201")] == ["error", "note", "warning"]

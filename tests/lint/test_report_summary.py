@@ -60,7 +60,7 @@ def test_flows_are_counted_by_kind_and_file(example):
         ({"kinds": (), "baseline": BASE}, "No new hazard in 3 files."),
     ],
 )
-def test_a_run_without_findings_says_what_it_looked_for(given, sentence):
+def test_a_run_without_findings_states_what_it_searched_for(given, sentence):
     assert closing(of(**given))[0] == sentence
 
 

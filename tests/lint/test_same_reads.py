@@ -139,7 +139,7 @@ def test_a_call_is_not_replayed_if_an_object_that_it_creates_is_already_referenc
     assert not same(store, reads)  # creating the object would first merge the held one into the older ones
 
 
-def test_a_pointer_to_an_object_counts_only_if_the_call_can_see_the_object_that_holds_the_pointer(store, obj):
+def test_a_pointer_to_an_object_counts_only_if_the_call_can_see_the_holder_of_the_pointer(store, obj):
     one, other = Obj("instance", "one"), Obj("instance", "other")
     store.put((one, "x"), pointer(obj))
     reads = Reads(holders={obj: len(obj.holders)})

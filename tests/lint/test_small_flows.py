@@ -114,7 +114,7 @@ def test_constants_chosen_by_conditions_are_found_with_their_nodes():
     assert Choices(of).made_there({6, 9}) == set()
 
 
-def test_a_copy_without_conditions_is_traced_back_to_the_node_that_has_them():
+def test_a_graph_node_copied_without_conditions_is_traced_back_to_the_original_node():
     under = frozenset({(9, 1)})
     of = graph(10, data={7: [8]}, branches={5: under, 7: ()}, stands_for={8: 5})
     assert made_alongside(of) == {7: [5]}

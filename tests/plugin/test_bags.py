@@ -63,7 +63,7 @@ def test_missions_in_a_drifted_world_are_degraded_in_every_bag_format(
     told.stdout.no_fnmatch_line("*--tarl-repair*")
 
 
-def test_nominal_missions_pass_even_if_there_is_only_one(deployed: pytest.Pytester) -> None:
+def test_nominal_missions_pass_even_if_there_is_only_one_mission(deployed: pytest.Pytester) -> None:
     online(deployed, *some(deployed, ".mcap", 1.0)).assert_outcomes(passed=1, deselected=1)
     assert result(deployed)["verdict"]["result"] == "no difference"
     online(deployed, deployed.path / "mission0.mcap").assert_outcomes(passed=1, deselected=1)

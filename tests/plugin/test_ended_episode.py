@@ -107,7 +107,9 @@ def test_a_silent_sensor_or_node_is_reported_but_the_episode_is_usable(
         {"faults": ACTIVE},
     ],
 )
-def test_missing_output_is_no_error_under_a_drift_or_in_a_test_without_nodes(changed: dict[str, Any]) -> None:
+def test_missing_output_is_not_an_error_under_a_drift_or_in_a_test_without_nodes(
+    changed: dict[str, Any],
+) -> None:
     assert problem(**changed) == ended(**changed).silence() == ""
 
 

@@ -58,7 +58,7 @@ def test_a_name_leads_to_the_file_that_it_is_imported_from(
     assert list(uses(found, tmp_path)) == expected
 
 
-def test_of_several_statements_of_a_file_the_first_one_counts(tmp_path: Path) -> None:
+def test_if_a_flow_has_several_statements_in_a_file_the_first_statement_counts(tmp_path: Path) -> None:
     files = {"node.py": "import gains\n", "other.py": "import math\n", "gains.py": ""}
     sites = (
         step("other.py", 2, "x = gains.KP"),

@@ -34,7 +34,7 @@ def test_missing_recordings_are_reported_without_an_option(tank: pytest.Pytester
     )
 
 
-def test_compared_tests_are_counted_separately_from_unrecorded_ones(tank: pytest.Pytester) -> None:
+def test_tests_with_and_without_a_recording_are_counted_separately(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE).stdout.no_fnmatch_line("*NOT*COMPARED*")
     source = (tank.path / "test_tank.py").read_text()
@@ -67,7 +67,7 @@ def test_a_missing_marker_is_reported_in_one_sentence_without_a_traceback(tank: 
 
 
 @pytest.mark.parametrize("flag", ["--tarl-rekord", "--tarl-onlin=1"])
-def test_a_misspelt_flag_gives_the_closest_one(tank: pytest.Pytester, flag: str) -> None:
+def test_the_error_about_a_misspelt_flag_suggests_the_closest_flag(tank: pytest.Pytester, flag: str) -> None:
     told = tank.runpytest(flag)
     assert told.ret == pytest.ExitCode.USAGE_ERROR
     meant = "--tarl-record" if "rek" in flag else "--tarl-online"
@@ -122,7 +122,7 @@ def test_the_error_about_a_file_of_another_kind_does_not_advise_trusting_the_fil
     told.stdout.no_fnmatch_line("*pickle*")
 
 
-def test_a_failure_message_that_ends_in_a_full_stop_gets_no_second_one(tank: pytest.Pytester) -> None:
+def test_no_second_full_stop_is_added_to_a_failure_message(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "flow = GAIN * missing", "flow = GAIN / 0 * missing")
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*ZeroDivisionError*keeper.py, line*[!.]. Fix the node*"])
 

@@ -56,7 +56,7 @@ def tarl(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("command", ["show", "apply", "revert", "diff"])
-def test_commands_name_what_is_not_a_regular_file(command: str, special: Path, tmp_path: Path) -> None:
+def test_commands_name_a_path_that_is_not_a_regular_file(command: str, special: Path, tmp_path: Path) -> None:
     words = ["diff", "special", "special"] if command == "diff" else [command, "special"]
     done = tarl(tmp_path, "pytest_tarl", *words)
     assert (done.returncode, done.stdout) == (2, "")

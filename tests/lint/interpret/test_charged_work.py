@@ -79,7 +79,7 @@ def reads_of_objects(monkeypatch, files: dict[str, str]) -> int:
     return count
 
 
-def test_cyclic_objects_are_read_again_only_after_a_store_into_one_of_them(monkeypatch):
+def test_cyclic_objects_are_read_again_only_after_a_store_into_one_of_these_objects(monkeypatch):
     """A read of each object after each store would double with the size of the ring."""
     small, large = (reads_of_objects(monkeypatch, ring(size, 120)) for size in (8, 16))
     assert 0 < large < 1.5 * small

@@ -111,7 +111,7 @@ def test_an_exception_whose_name_has_two_definitions_may_be_of_either_class():
     assert flows(AROUND.format(raised="Fault", caught="ValueError"), classes=twice) == ["implicit"]
 
 
-def test_an_exception_that_no_inner_handler_catches_reaches_the_outer_one():
+def test_an_exception_that_no_inner_handler_catches_reaches_the_outer_handler():
     outer = """\
     try:
         try:
@@ -251,7 +251,7 @@ def test_a_handler_gets_no_data_of_exceptions_that_it_cannot_catch():
     assert flows(body) == []
 
 
-def test_a_handler_of_a_class_of_a_library_catches_what_a_failing_call_raises():
+def test_a_handler_for_an_exception_class_of_a_library_catches_the_exception_of_a_failing_call():
     body = """\
     for _ in range(2):
         try:

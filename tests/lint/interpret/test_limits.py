@@ -34,7 +34,7 @@ out.publish([one.value() for one in clean][0])  # clean
 
 
 @pytest.mark.parametrize("most", [0, 1, 5, 100])
-def test_a_method_of_many_library_objects_is_called_for_all_of_them(monkeypatch, most):
+def test_a_call_of_a_method_on_one_of_many_library_objects_covers_all_of_them(monkeypatch, most):
     monkeypatch.setattr(calls, "MAX_ALIKE", most)
     assert differing(in_callback(LIBRARY)) == {}
 

@@ -81,7 +81,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_parts_depend_on_outcomes_that_do_not_all_lead_to_them(title):
+def test_a_state_depends_on_outcomes_of_which_only_some_lead_to_the_state(title):
     groups, outcomes, wanted = CASES[title]
     found = dependences(groups, lambda part: frozenset(outcomes.get(part, ())))
     text = {None: "{0} {1}?", frozenset(): "{0} in {1}"}

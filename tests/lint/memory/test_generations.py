@@ -203,7 +203,7 @@ def test_a_closure_that_replaces_itself_when_called_takes_little_work(title):
     assert work(text).total < MOST_WORK
 
 
-def test_the_last_object_of_a_long_chain_represents_all_further_ones(ctx, frame):
+def test_the_last_object_of_a_long_chain_represents_all_further_objects(ctx, frame):
     cls = recency.intern(ctx, "class", "A", "A")
     cls.info = ClassInfo("A", "A")
     site = generations.site_of(cls, frame, ROOT_CALL)

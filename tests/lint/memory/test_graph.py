@@ -35,7 +35,7 @@ def test_repeated_data_edges_are_stored_once(graph, node):
     assert graph.control[b] == set()
 
 
-def test_a_value_that_depends_on_itself_depends_on_its_own_conditions(graph, node):
+def test_a_value_that_depends_on_itself_also_depends_on_its_own_conditions(graph, node):
     decision = node("loop")
     a = node("a", (decision, "body"))
     graph.flow([a], a)

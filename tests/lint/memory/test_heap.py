@@ -389,9 +389,7 @@ def test_joining_a_single_continuation_leaves_it_unchanged(ctx):
     assert ctx.store.get((obj, "x")) is ONE
 
 
-def test_a_field_that_is_set_on_one_path_only_may_have_its_default_but_a_variable_has_only_the_set_value(
-    ctx, frame
-):
+def test_a_field_set_on_only_one_path_may_have_its_default_but_a_variable_has_only_the_set_value(ctx, frame):
     obj = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((cls, "x"), ONE)
     both = joins.joined(ctx, [{(frame, "v"): TWO, (obj, "x"): TWO}, {}])
@@ -445,7 +443,7 @@ def test_each_loop_iteration_and_each_call_allocates_its_own_object(ctx, frame):
     assert recency.allocate(ctx, "sequence", frame, "slot") is not obj
 
 
-def test_an_older_library_object_is_kept_only_while_something_else_points_to_it(ctx, frame):
+def test_an_older_library_object_is_kept_only_while_another_object_points_to_it(ctx, frame):
     obj, holder = recency.allocate(ctx, "lib", frame, "slot"), made(ctx, "instance", "holder")
     ctx.store.put((obj, "x"), ONE)
     ctx.store.put((obj, "next"), pointer(obj))
@@ -689,7 +687,7 @@ def test_entry_points_that_relied_on_a_single_object_run_again_when_it_represent
     assert ctx.store.reads.single == ctx.shared.several == {box}
 
 
-def test_a_try_catches_what_one_of_its_handlers_catches():
+def test_a_try_statement_catches_an_exception_if_one_of_its_handlers_catches_the_exception():
     attempt = Attempt(0, [], (frozenset(["KeyError"]), frozenset(["OSError"])))
     assert attempt.catches("OSError", NO_CLASSES) is True
     assert attempt.catches("ValueError", NO_CLASSES) is False

@@ -218,7 +218,7 @@ def test_the_first_wait_records_the_keys_stored_so_far_and_later_waits_keep_this
     assert reads.own == {(obj, "x"), (obj, "y")}
 
 
-def test_finished_reads_keep_what_a_replay_needs_and_drop_values_that_the_call_stored(obj):
+def test_finished_reads_keep_the_values_that_a_replay_needs_and_drop_values_stored_by_the_call(obj):
     here, mine = (obj, "here"), (obj, "mine")
     outer, inner = Reads(written={mine}), Reads(keys={here, mine}, stored={here})
     outer.add(inner)
@@ -348,7 +348,7 @@ def test_a_run_begins_with_the_stores_of_all_entry_points(shared, obj):
     assert shared.entry(key, mine) == Value(frozenset([1, 2, 3]))
 
 
-def test_the_stores_during_a_wait_are_those_that_other_entry_points_make(shared, obj):
+def test_the_stores_during_a_wait_are_the_stores_of_other_entry_points(shared, obj):
     mine, other = Root("mine", "callback"), Root("other", "callback")
     key = (obj, "x")
     shared.leave(shared.ends, mine, key, ONE)

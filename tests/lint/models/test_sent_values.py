@@ -148,6 +148,6 @@ def scan(msg):
 
 
 @pytest.mark.parametrize("body", sections(BODIES).values(), ids=sections(BODIES))
-def test_a_yield_returns_what_is_sent(body):
+def test_a_yield_returns_the_sent_value(body):
     text = f"{HEAD}{body}"
     assert differing_topics(text + 'rospy.Subscriber("scan", Float64, scan)\nrospy.spin()\n') == {}

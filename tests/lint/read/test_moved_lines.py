@@ -200,7 +200,7 @@ def test_using_the_body_of_a_function_counts_as_reading_it(read):
     assert watch.reading().unread == frozenset(PLACES.values()) - {PLACES["g"]}
 
 
-def test_recording_anew_forgets_which_bodies_were_read_and_keeps_the_statements():
+def test_a_new_recording_forgets_which_bodies_were_read_and_keeps_the_statements():
     first = watched(module("def f():\n    return 1\n"))
     len(functions(first.tree)["f"].body)
     second = watched(first)

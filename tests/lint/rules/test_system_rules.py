@@ -144,7 +144,7 @@ def test_a_misspelt_name_is_reported_beside_unread_nodes_that_do_not_mention_it(
     assert not misspelt("/cmd_vel", "/left/cmd_vel")
 
 
-def test_a_subscription_of_unknown_type_or_name_or_of_the_publisher_itself_is_not_compared():
+def test_subscriptions_of_unknown_type_or_name_or_in_the_publishing_node_are_not_compared():
     assert messages(301, node("/a", end("subscribes", "cmd_vel", "")), node("/b", SAYS)) == []
     several = end("subscribes", "", names=("cmd_vel", "cmd_vex"))
     assert messages(301, node("/a", several), node("/b", SAYS)) == []

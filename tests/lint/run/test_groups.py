@@ -90,7 +90,7 @@ def test_programs_are_analysed_once_and_their_reports_reused(performed):
     assert performed[2:] == ["b.py"]
 
 
-def test_programs_of_edited_files_come_first_and_then_small_ones(performed):
+def test_programs_of_edited_files_come_first_and_then_small_programs(performed):
     examine(scripts(30, 10, 20, 40), Config(), Memory("d.py"), partly=lambda *_: None)
     assert performed == ["d.py", "b.py", "c.py", "a.py"]
 

@@ -162,7 +162,7 @@ def test_json2_writes_each_statement_once(robot, capsys):
     assert document["systems"][0]["diagnostics"] == first["systems"][0]["diagnostics"]
 
 
-def test_dot_draws_what_mermaid_draws(robot, capsys):
+def test_dot_and_mermaid_draw_the_same_graph(robot, capsys):
     dot, mermaid = report(capsys, "dot"), report(capsys, "mermaid")
     assert len(re.findall(r" -> ", dot)) == len(re.findall(r"-->|-\.->|-\.-", mermaid))
     assert dot.count("label=") - 1 == mermaid.count(":::")

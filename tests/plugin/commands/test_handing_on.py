@@ -209,7 +209,7 @@ def test_the_command_diff_fails_on_a_difference_only_if_requested(
     assert cli.main(["diff", "a.npz", "b.npz", *flags]) == 0
 
 
-def test_a_recording_is_compared_with_a_second_one(capsys: Printed) -> None:
+def test_a_recording_is_compared_with_a_second_recording(capsys: Printed) -> None:
     with pytest.raises(SystemExit):
         cli.main(["diff", "a.npz"])
     assert "a second recording to compare with a.npz" in capsys.readouterr().err

@@ -350,7 +350,7 @@ def test_a_statement_with_figures_has_a_hover_on_each_of_its_lines(answering: Se
     assert found.range == types.Range(types.Position(1, 0), types.Position(2, 2))
 
 
-def test_there_is_no_hover_if_figures_file_or_result_are_missing(answering: Session) -> None:
+def test_there_is_no_hover_without_figures_without_a_file_or_without_a_result(answering: Session) -> None:
     assert hover(answering, 1, "../outside.py") is None
     assert hover(answering, 1, "map.py") is None
     answering.server.kept = recorded.Recorded({SPEED: ()})

@@ -74,7 +74,7 @@ def test_the_page_shows_the_period_of_the_missions_if_it_is_known() -> None:
         ),
     ],
 )
-def test_the_headline_counts_groups_that_always_differed_and_groups_that_changed_later(
+def test_the_headline_counts_groups_that_always_differed_and_groups_that_changed_later_on(
     groups: tuple[str | None, ...], found: tuple[str, ...], expected: str
 ) -> None:
     watched = [robot(f"g{n}") for n in range(len(groups))]
@@ -295,7 +295,7 @@ def test_the_page_data_of_a_group_has_its_figures_and_onset() -> None:
     assert named["result"] is None
 
 
-def test_if_there_are_too_many_groups_the_page_shows_those_that_differ_and_those_with_the_lowest_reward(
+def test_if_there_are_too_many_groups_the_page_shows_differing_groups_and_groups_with_the_lowest_reward(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(html, "MOST_GROUPS", 3)

@@ -120,7 +120,7 @@ def test_running_robustness_equals_robustness_of_each_prefix(tree: oracle.Tree, 
 
 @settings(max_examples=300, deadline=None)
 @given(trees, worlds(), worlds())
-def test_a_formula_that_can_no_longer_be_satisfied_is_violated_whatever_happens_later(
+def test_a_formula_that_can_no_longer_be_satisfied_counts_as_violated_at_once(
     tree: oracle.Tree, world: oracle.World, following: oracle.World
 ) -> None:
     read_formula = read(tree)

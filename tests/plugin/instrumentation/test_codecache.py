@@ -56,7 +56,7 @@ def test_an_unwritable_cache_only_causes_a_recompilation(tmp_path):
     assert cache.load(NAME) is CODE
 
 
-def test_nothing_is_written_if_python_is_told_not_to_write_bytecode(tmp_path, monkeypatch):
+def test_nothing_is_written_if_python_is_set_to_write_no_bytecode(tmp_path, monkeypatch):
     monkeypatch.setattr("sys.dont_write_bytecode", True)
     CodeCache(tmp_path / "cache").store(NAME, CODE)
     assert not (tmp_path / "cache").exists()

@@ -85,7 +85,7 @@ def test_a_verdict_follows_from_its_p_values_losses_and_tolerances(
     assert judged(replace(VERDICT, **change), 0.05).result == expected  # type: ignore[arg-type]
 
 
-def test_a_verdict_states_what_decreased() -> None:
+def test_a_verdict_states_whether_reward_or_successes_decreased() -> None:
     lost = {"p_loss": 0.01, "loss": 0.2}
     failed = {"p_failures": 0.01, "success": (1.0, 0.5)}
     found = [judged(replace(VERDICT, **one), 0.05) for one in (lost, failed, lost | failed, {})]  # type: ignore[arg-type]
@@ -265,7 +265,7 @@ def test_a_check_ends_the_comparison_only_if_the_loss_and_its_region_are_found(
     assert certain(Difference(replace(VERDICT, result=result), region, {})) is expected
 
 
-def test_episodes_count_as_varying_if_one_of_them_differs_in_any_column() -> None:
+def test_episodes_count_as_varying_if_one_episode_differs_in_any_column() -> None:
     same = episodes([(0,), (1,)], [(0,), (1,)])
     assert not varies(same)
     assert not varies(episodes([(0,), (1,)]))

@@ -44,7 +44,7 @@ def test_each_shuffle_sums_as_many_rows_as_the_group_has(kind: str) -> None:
             assert sums[:, 1].tolist() == expected
 
 
-def test_the_p_values_equal_those_computed_from_a_full_table_of_shuffled_labels() -> None:
+def test_the_p_values_equal_the_p_values_from_a_full_table_of_shuffled_labels() -> None:
     for seed in range(4):
         rng = generator(seed, "table")
         one, other = rng.normal(0.0, 1.0, 30), rng.normal(-0.4, 1.0, 20)

@@ -32,7 +32,7 @@ def one_by_one(pool: np.ndarray, bins: np.ndarray, draws: np.ndarray) -> np.ndar
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 20), st.integers(1, 4), st.integers(0, 30))
-def test_ranks_computed_together_equal_ranks_computed_one_by_one(
+def test_ranks_computed_together_equal_ranks_computed_one_after_the_other(
     seed: int, count: int, scores: int, offline: int
 ) -> None:
     rng = np.random.default_rng(seed)

@@ -99,7 +99,9 @@ def test_types_of_topics_may_be_given_with_the_topic() -> None:
     assert found == Topics(FIXTURE.topics, "", "/m", {"/m": "own/msg/Word:x"})
 
 
-def test_the_statements_are_those_of_the_recording(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_observed_statements_are_the_statements_of_the_recording(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     asked: list[Any] = []
     analysis = SimpleNamespace(flows=["one"])

@@ -368,7 +368,7 @@ def place(text: str, value: Any, old: str) -> Place:
         ("ki: false", "false", False, True, "ki: true"),
     ],
 )
-def test_a_new_value_is_written_in_the_style_of_the_old_one(
+def test_a_new_value_is_written_in_the_style_of_the_old_value(
     text: str, old: str, value: Any, new: Any, expected: str
 ) -> None:
     assert apply_plain_edits("a.yaml", text, edits({place(text, value, old): new}, text)) == expected

@@ -179,7 +179,7 @@ def test_rounding_keeps_significant_digits() -> None:
         (enclosed("await a", 14), "(await a)"),
     ],
 )
-def test_expressions_are_built_as_a_maintainer_writes_them(written: str, expected: str) -> None:
+def test_expressions_are_written_in_the_style_of_a_maintainer(written: str, expected: str) -> None:
     assert written == expected
     parse_expression(written)
 

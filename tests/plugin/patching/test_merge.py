@@ -39,7 +39,7 @@ BEFORE_C, BEFORE_C_TOO = change(2, "", "x\n"), change(2, "", "y\n")
         ([change(0, "", "top\n"), change(4, "", "end\n")], "top\na\nb\nc\nd\nend\n"),
     ],
 )
-def test_merging_makes_all_changes_and_separating_undoes_them(
+def test_merging_patches_makes_all_changes_and_separating_them_undoes_the_changes(
     wanted: list[Replacement], expected: str
 ) -> None:
     merged = combined(TEXT, wanted)

@@ -103,7 +103,7 @@ def test_a_result_is_located_at_the_last_change_that_removes_lines(tmp_path: Pat
     assert only["physicalLocation"]["artifactLocation"] == {"uri": "node.py", "uriBaseId": "%SRCROOT%"}
 
 
-def test_a_fix_replaces_whole_lines_and_says_what_was_found(tmp_path: Path) -> None:
+def test_a_sarif_fix_replaces_whole_lines_and_states_the_evidence(tmp_path: Path) -> None:
     one = result(patch(tmp_path, NODE, NODE.replace("y = 2", "y = 4")))
     ((change,),) = (fix["artifactChanges"] for fix in one["fixes"])
     assert change["replacements"] == [

@@ -289,7 +289,7 @@ def test_no_guard_is_tried_if_the_change_gains_too_little_everywhere(
     assert examined({always: kind, wet: "good"}, monkeypatch) == ([always], None)
 
 
-def test_no_other_guard_is_tried_if_one_holds_exactly_in_the_drifted_missions_and_does_not_suffice(
+def test_no_other_guard_is_tried_if_one_guard_holds_exactly_under_the_drift_and_does_not_suffice(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, _ = GUARDS
@@ -300,7 +300,7 @@ def test_no_other_guard_is_tried_if_one_holds_exactly_in_the_drifted_missions_an
     assert examined(kinds, monkeypatch, never=wet) == ([always, wet, dark], dark)
 
 
-def test_a_narrower_guard_is_skipped_if_the_reward_is_too_low_under_the_wider_one(
+def test_a_narrower_guard_is_skipped_if_the_reward_is_too_low_under_the_wider_guard(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, both = GUARDS
@@ -543,7 +543,7 @@ class Narrow(Window):
 
 @settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.5, 3.5), st.floats(0.9, 0.97))
-def test_a_value_that_loses_few_missions_is_replaced_by_a_value_that_loses_none(
+def test_a_value_that_loses_few_missions_is_replaced_by_a_value_that_loses_no_mission(
     low: float, share: float
 ) -> None:
     field: Any = Narrow(low, 1.25 * low)

@@ -58,7 +58,7 @@ def test_a_value_moves_towards_the_middle_of_its_good_values_until_the_reward_is
         assert trials.spent <= SEEDS
 
 
-def test_smaller_steps_are_left_out_where_larger_ones_have_no_effect() -> None:
+def test_smaller_steps_are_skipped_where_larger_steps_have_no_effect() -> None:
     trials = Trials(lambda _, __: Outcome(9.0, True), 100)
     found = Candidate((Mutation(LITERAL, 4.4),), ALWAYS)
     assert centred(found, trials, mutations, GOAL, REFERENCE) == found

@@ -75,7 +75,7 @@ def never(candidate: Candidate, seed: int) -> Outcome:
 
 
 @pytest.mark.parametrize("share", [0.08, 0.12, 0.3])
-def test_recorded_missions_that_visit_the_bins_of_failed_ones_are_found(share: float) -> None:
+def test_recorded_missions_that_visit_the_bins_of_failed_missions_are_found(share: float) -> None:
     road: Any = Road(share)
     trials = Trials(never, 300)
     goal = enriched(road, trials)
@@ -100,7 +100,7 @@ def test_a_failing_mission_is_compared_with_its_own_designed_reward() -> None:
 
 
 @pytest.mark.parametrize("share", [0.05, 0.12, 0.3])
-def test_if_few_missions_lose_a_repair_may_earn_less_on_them(share: float) -> None:
+def test_if_few_missions_lose_reward_a_repair_may_earn_less_on_these_missions(share: float) -> None:
     road: Any = Road(share)
     goal, margin = enriched(road, Trials(never, 300)), road.order.reference.margin
     losing = len(road.order.goal.pairs) / 40

@@ -105,7 +105,7 @@ def test_a_mission_is_lost_if_it_earns_less_than_recorded_by_more_than_the_margi
     assert bool(found.held) is not lost
 
 
-def test_a_mission_that_now_fails_is_a_loss_whatever_it_earns() -> None:
+def test_a_mission_that_now_fails_is_a_loss_regardless_of_its_reward() -> None:
     found = beside(Mutants([neighbour()], 5.0, fails=4), guard(7.0, 8.0))  # type: ignore[arg-type]
     assert "1 of them now fail" in found.lost[0]
 

@@ -124,7 +124,7 @@ def test_the_first_accepted_candidate_is_the_repair_and_later_searches_give_curv
     assert [one.method for one in found.curves] == ["halving", "bayes"]
 
 
-def test_the_effects_are_those_of_the_first_search_that_found_any_effects(
+def test_the_effects_come_from_the_first_search_that_found_any_effects(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     found = _Findings()

@@ -263,7 +263,7 @@ def test_the_patch_of_a_law_of_a_constant_runs(name: str, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("name", ["limit", "low_pass", "rate_limit", "integral"])
 @pytest.mark.parametrize("body", BODIES)
-def test_a_template_is_found_whatever_expression_computes_the_value(
+def test_a_template_is_found_for_every_form_of_expression_that_computes_the_value(
     name: str, body: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     world = World(name, tmp_path, BODIES[body])

@@ -17,7 +17,7 @@ COMPARISON: Any = SimpleNamespace(
 )
 
 
-def test_each_size_belongs_to_one_interval_and_the_last_one_includes_its_end() -> None:
+def test_each_size_belongs_to_one_interval_and_the_last_interval_includes_its_end() -> None:
     found = list(sizes.rows(COMPARISON))
     assert [(row.band.low, row.band.high, row.before, row.after, row.episodes) for row in found] == [
         (0.0, 1.0, 7.0, None, (2, 0)),

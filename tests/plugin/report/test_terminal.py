@@ -90,7 +90,7 @@ def test_a_topic_that_is_unknown_is_named_by_the_place_of_its_call(shuttle):
     assert named.taint_list.name == "unknown topic at relay.py:148 → /velocity"
 
 
-def test_without_a_repair_the_next_step_is_to_search_for_one(unrepaired):
+def test_without_a_repair_the_suggested_next_command_searches_for_a_repair(unrepaired):
     command = "pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud --tarl-seed 1 --tarl-repair"
     assert told(unrepaired).splitlines()[-1] == f"  next     {command}"
 

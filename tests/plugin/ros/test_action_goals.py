@@ -115,7 +115,7 @@ def test_an_ended_goal_has_an_empty_result_unless_one_is_given(scene: Scene, giv
     assert scene.ended() == [("a", SUCCEEDED)]
 
 
-def test_a_newer_goal_requests_the_end_of_the_active_one(scene: Scene) -> None:
+def test_a_newer_goal_requests_the_end_of_the_active_goal(scene: Scene) -> None:
     scene.goal("a", 1)
     scene.do("accepting = False")
     scene.goal("b", 2)
@@ -127,7 +127,7 @@ def test_a_newer_goal_requests_the_end_of_the_active_one(scene: Scene) -> None:
     assert scene.shown()[-3:] == [("a", PREEMPTING), ("a", PREEMPTED), ("b", ACTIVE)]
 
 
-def test_a_waiting_goal_is_recalled_by_a_newer_one(scene: Scene) -> None:
+def test_a_waiting_goal_is_recalled_by_a_newer_goal(scene: Scene) -> None:
     scene.do("accepting = False")
     for name in "abc":
         scene.goal(name)

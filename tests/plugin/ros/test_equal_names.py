@@ -144,7 +144,7 @@ def test_messages_are_unpickled_by_the_workspace_in_use(two: tuple[Path, Path]) 
     assert fields(again[0]) == fields(again[2]) == fields(again[-1]) == ["oil"]
 
 
-def test_an_unknown_part_of_a_service_or_action_is_no_class(two: tuple[Path, Path]) -> None:
+def test_an_unknown_part_of_a_service_or_action_has_no_class(two: tuple[Path, Path]) -> None:
     workspace.search(two[0])
     for module, name in (
         ("robot.srv", "Fill_Goal"),
@@ -171,7 +171,7 @@ def test_names_folders_and_settings_come_from_the_workspace_in_use(
         assert f"float64 {field}" in "".join(workspace.workspace_types(part).values())
 
 
-def test_a_workspace_is_read_again_only_when_a_new_one_is_searched(
+def test_workspaces_are_read_again_only_when_a_new_workspace_is_searched(
     two: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read: list[Path] = []

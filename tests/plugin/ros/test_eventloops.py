@@ -81,7 +81,9 @@ asyncio.run(main())
     assert texts(out) == ["one at 0.75", "two at 0.75"]
 
 
-def test_loops_that_end_in_turn_leave_no_hooks_for_asynchronous_generators(start: Start) -> None:
+def test_event_loops_that_end_one_after_the_other_leave_no_hooks_for_asynchronous_generators(
+    start: Start,
+) -> None:
     ros = start("")
     out = heard(ros, "/out")
     body = """

@@ -179,7 +179,7 @@ def test_a_timer_without_a_period_is_always_ready() -> None:
     assert timer.is_ready()
 
 
-def test_a_callback_gets_the_planned_and_the_actual_time_if_it_asks_for_them() -> None:
+def test_a_callback_gets_the_planned_and_the_actual_time_if_it_has_a_parameter_for_them() -> None:
     owner, seen = node(), list[TimerInfo]()
 
     def called(info: TimerInfo) -> None:

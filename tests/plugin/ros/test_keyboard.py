@@ -49,7 +49,7 @@ KEYS = {
 
 
 @pytest.mark.parametrize("way", WAITING)
-def test_a_node_that_reads_lines_waits_for_what_the_test_types(way: str, start: Start) -> None:
+def test_a_node_that_reads_lines_waits_for_the_text_that_the_test_types(way: str, start: Start) -> None:
     ros = start(NODE.format(body=WAITING[way]))
     keys = heard(ros, "/keys")
     ros.step(1.0)
@@ -113,7 +113,7 @@ def test_a_node_is_called_by_its_script_or_its_names(start: Start, called: str) 
     assert len(keys) == 1
 
 
-def test_a_node_that_waits_for_a_key_that_never_comes_is_named(start: Start) -> None:
+def test_the_error_names_a_node_that_waits_for_a_key_in_vain(start: Start) -> None:
     ros = start(NODE.format(body=WAITING["input"]))
     ros.step(0.1)
     assert ros.notes == (

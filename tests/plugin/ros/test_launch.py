@@ -274,7 +274,7 @@ def test_ros2_launch_files_in_yaml_and_python_start_nodes(
     assert sent(tarl, topic, 2.0) == pytest.approx(end)
 
 
-def test_edited_parameter_files_are_read_anew(tarl: Tarl, tmp_path: Path) -> None:
+def test_edited_parameter_files_are_read_again(tarl: Tarl, tmp_path: Path) -> None:
     tarl.launch("robot.launch", only=["first"])
     write(tmp_path, {"one/config/gains.yaml": "gain: 5.0\n"})
     with texts_replaced():

@@ -208,7 +208,7 @@ def test_a_node_may_continue_without_a_module_that_is_not_implemented(start: Sta
 @pytest.mark.parametrize(
     "inner", ["srv", "__init__.py"], ids=["folder of definitions", "package with Python modules"]
 )
-def test_advice_tells_where_definitions_are_missing_if_a_folder_has_the_name_of_the_package(
+def test_advice_names_the_place_of_missing_definitions_if_a_folder_has_the_name_of_the_package(
     inner: str, start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workspace, "_SEARCHED", [])

@@ -95,7 +95,7 @@ def test_a_loop_that_polls_keys_lets_time_pass(start: Start) -> None:
     assert [one.data for one in keys] == [1]
 
 
-def test_trackbars_and_properties_keep_what_the_node_sets(start: Start) -> None:
+def test_trackbars_and_properties_keep_the_values_that_the_node_sets(start: Start) -> None:
     body = """
 moved = []
 cv2.createTrackbar("gain", "view", 3, 10, moved.append)

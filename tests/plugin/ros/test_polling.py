@@ -92,7 +92,7 @@ def test_a_callback_that_stamps_many_messages_does_not_wait(start: Start) -> Non
     assert len(ros.namespace["times"]) == 1  # type: ignore[attr-defined]
 
 
-def test_a_polling_loop_runs_at_a_steady_rate_until_it_waits_by_itself(start: Start) -> None:
+def test_a_polling_loop_runs_at_a_steady_rate_until_it_calls_a_wait_function(start: Start) -> None:
     ros = start(f"""{ROSPY}
 times = [rospy.get_time() for _ in range({PATIENCE + 5 * AGAIN})]
 rospy.sleep(1.0)

@@ -126,7 +126,7 @@ def test_services_are_created_once_per_process_or_once_per_episode(network: Netw
     assert network.remappings == {"old": "new"}
 
 
-def test_outside_of_nodes_there_is_no_process() -> None:
+def test_code_outside_of_nodes_has_no_process() -> None:
     with pytest.raises(UnsupportedApiError, match=r"^rospy\.get_time was called outside a node"):
         current_process("rospy.get_time")
 

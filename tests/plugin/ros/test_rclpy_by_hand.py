@@ -427,7 +427,7 @@ def test_a_spin_ends_with_the_shutdown_of_its_context_or_executor(network: Netwo
     assert spinning(network, program)[0] == [5, 9]
 
 
-def test_callbacks_of_a_multi_threaded_executor_overlap_as_far_as_their_groups_allow(
+def test_callbacks_of_a_multi_threaded_executor_overlap_if_their_groups_allow_it(
     network: Network,
 ) -> None:
     clock = network.scheduler

@@ -53,7 +53,7 @@ def test_messages_serialise_and_deserialise() -> None:
     assert "MSG: geometry_msgs/Vector3\nfloat64 x\n" in full_text(kind)
 
 
-def test_a_node_writes_a_bag_and_another_one_reads_it(start: Start, tmp_path: Path) -> None:
+def test_a_bag_written_by_one_node_is_read_by_another_node(start: Start, tmp_path: Path) -> None:
     path = str(tmp_path / "a.bag")
     start(f"""
         import rosbag

@@ -144,7 +144,7 @@ def test_an_alarm_that_is_set_by_an_alarm_is_also_in_order(clock: Scheduler) -> 
     assert trail == [3, 4]
 
 
-def test_an_alarm_set_by_a_task_is_not_overtaken_by_a_later_one(clock: Scheduler, program: Program) -> None:
+def test_an_alarm_set_by_a_task_is_not_overtaken_by_a_later_alarm(clock: Scheduler, program: Program) -> None:
     trail: list[str] = []
 
     def task() -> None:
@@ -157,7 +157,7 @@ def test_an_alarm_set_by_a_task_is_not_overtaken_by_a_later_one(clock: Scheduler
     assert trail == ["of the task", "late"]
 
 
-def test_an_alarm_set_by_a_task_rings_at_its_instant_even_if_it_is_the_only_one(
+def test_an_alarm_set_by_a_task_rings_at_its_instant_even_without_other_alarms(
     clock: Scheduler, program: Program
 ) -> None:
     trail: list[tuple[str, int]] = []
@@ -395,7 +395,7 @@ def test_a_lock_is_awaited_for_a_limited_time(clock: Scheduler, program: Program
     assert trail[-1] == (True, 8)
 
 
-def test_a_task_that_gave_up_waiting_is_not_woken_in_place_of_another(
+def test_a_task_that_gave_up_waiting_is_not_woken_instead_of_another_task(
     clock: Scheduler, program: Program
 ) -> None:
     lock, trail = Lock(clock), list[Any]()

@@ -117,7 +117,7 @@ def test_a_rotation_about_a_point_keeps_the_point_and_turns_the_others() -> None
     assert moved(matrix, point[:3]) == pytest.approx(point[:3])
 
 
-def test_rotations_are_read_back_whatever_their_axis_and_angle() -> None:
+def test_rotations_of_every_axis_and_angle_are_read_back() -> None:
     for turn in TURNS:
         matrix = np.identity(4)
         matrix[:3, :3] = turn.as_matrix()

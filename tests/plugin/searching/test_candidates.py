@@ -68,7 +68,7 @@ def evidence(
     return Evidence(sensors, *worlds, region, changes or {})
 
 
-def test_guards_on_one_sensor_come_before_pairs_and_narrow_guards_before_wide_ones() -> None:
+def test_guards_on_one_sensor_come_before_guards_on_two_and_narrow_guards_before_wide_guards() -> None:
     guards = candidate_guards(evidence(REGION))
     assert guards[0] == ALWAYS
     assert guards[1] == Guard((Conjunct(WET, 1.0, 1.0),))

@@ -129,7 +129,7 @@ def test_the_leaders_of_the_statements_are_combined_with_units_without_an_effect
 
 
 @pytest.mark.parametrize(("gain", "united"), [(1.0, False), (1.1, True), (8.9, True), (9.0, False)])
-def test_leaders_are_combined_if_their_gain_is_more_than_noise_but_less_than_almost_all_that_is_wanted(
+def test_leaders_are_combined_if_their_gain_is_above_the_noise_and_clearly_below_the_wanted_gain(
     gain: float, united: bool
 ) -> None:
     search = searching([A, B], (A, 2.2, gain))

@@ -41,7 +41,7 @@ def gains_of(*entries: tuple[Unit, float, float]) -> Gains:
         ([], False),
     ],
 )
-def test_the_best_change_counts_as_far_if_no_smaller_change_gains_about_as_much(
+def test_the_best_change_counts_as_large_if_no_smaller_change_gains_about_as_much(
     entries: list[tuple[int, float, float]], far: bool
 ) -> None:
     table = gains_of(*((UNITS[at], factor, gain) for at, factor, gain in entries))
@@ -128,7 +128,7 @@ def test_an_offset_counts_as_far_if_it_changes_the_constant_by_a_large_factor(
     assert best_is_far(gains_of((unit, factor, 4.0)), ALWAYS) is far
 
 
-def test_inward_steps_are_for_named_constants_if_any_of_them_matters() -> None:
+def test_inward_steps_are_tried_on_named_constants_if_any_named_constant_matters() -> None:
     literal = UNITS[0]
     named = Unit((replace(GAINS[1], code="GAIN", definition=GAINS[7].span),))
     both = (literal, named)

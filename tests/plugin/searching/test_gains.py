@@ -170,7 +170,7 @@ def test_each_kind_of_operand_has_its_rank_in_the_search_order(one: Operand, tri
     assert writing(one) is tried
 
 
-def test_a_zero_is_an_offset_whatever_its_name() -> None:
+def test_a_zero_is_an_offset_regardless_of_its_name() -> None:
     assert kind(Unit((constant(7, "START", 0.0),))) is Oddness.OFFSET
     assert kind(Unit((replace(operand(7, "False", 0.0), value=False),))) is Oddness.INNER
     assert named([A, Unit((LITERAL,)), Unit((GRAVITY,)), B]) == [A, B]

@@ -88,7 +88,7 @@ def test_another_constant_of_the_function_is_corrected_before_gravity() -> None:
     assert order(search, 2) == [PADS, GRAVITY]
 
 
-def test_a_repair_that_makes_missions_longer_comes_after_one_that_does_not() -> None:
+def test_a_repair_that_makes_missions_longer_comes_after_a_repair_that_does_not() -> None:
     windows = {CRUISE: (0.3, 0.5), PADS: (0.6, 0.7)}
     slow = searched((REACTION, PADS, CRUISE), windows, {CRUISE: 3 * STEPS})
     assert order(slow, 2) == [PADS, CRUISE]

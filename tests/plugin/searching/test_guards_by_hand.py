@@ -211,7 +211,7 @@ def test_a_guard_that_never_holds_in_the_designed_world_gets_a_bonus() -> None:
     assert telling([guard_on(5.0, 6.0)], visited, 2)[0] == ALWAYS
 
 
-def test_of_two_guards_with_the_same_merit_the_one_with_fewer_conditions_wins() -> None:
+def test_if_two_guards_have_the_same_merit_the_guard_with_fewer_conditions_wins() -> None:
     cells: list[Cell] = [(x, int(x in (4, 5))) for x in range(10)]
     dry: list[Cell] = [(x, 0) for x in range(10)]
     changes = {(4, 1): 1.0, (5, 1): 1.0}

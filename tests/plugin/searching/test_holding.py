@@ -41,7 +41,7 @@ def factors(joint: Joint) -> dict[str, float]:
     return {unit.operands[0].code: factor for unit, factor in joint.parts}
 
 
-def test_a_constant_that_loses_alone_is_found_under_the_change_on_a_mission_that_still_fails() -> None:
+def test_a_constant_that_loses_reward_alone_is_found_while_another_change_is_applied() -> None:
     trials = Trials(swings, 300)
     found = [(factors(joint), one.total) for joint, one in held(BASE, OTHERS, selection(trials))]
     assert found == [({"GAIN": 2.2, "DAMPING": 2.2}, 10.0)]

@@ -115,7 +115,7 @@ def test_a_search_without_an_improvement_ends_after_twenty_five_trials() -> None
     assert trials.spent <= jointly.PATIENCE + 1
 
 
-def test_an_improvement_starts_the_count_anew() -> None:
+def test_an_improvement_resets_the_count_of_trials_without_improvement() -> None:
     found, _ = search({frozenset("B"): 1.0, frozenset("C"): 2.0})
     starts = [Joint(((unit, e),), ALWAYS) for unit in (A, B, A, C)]
     assert list(found.candidates(starts, ALWAYS)) == []

@@ -78,7 +78,7 @@ def test_a_proposal_without_effect_is_made_stronger_before_others_are_moved() ->
     assert tried[: len(proposals) + 1] == [*((one, 1.0) for one in proposals), (RIGHT, 0.4)]
 
 
-def test_constants_get_ever_larger_steps_until_one_of_them_gains() -> None:
+def test_constants_get_ever_larger_steps_until_one_constant_gains() -> None:
     found, _ = searched(8.0, 12.0, STEPS)
     assert found is not None
     assert {one.operand for one in found.mutations} == {RIGHT}

@@ -34,7 +34,7 @@ def test_polishing_moves_factors_to_the_best_values_nearby(begin: Factors) -> No
     assert all(one == pytest.approx(best, rel=0.08) for one, best in zip(found, BEST, strict=True))
 
 
-def test_polishing_keeps_the_best_factors_and_those_that_always_fail() -> None:
+def test_polishing_leaves_the_best_factors_and_factors_that_always_fail_unchanged() -> None:
     assert polished(BEST, earned, range(8), 17.0) == BEST
     assert polished((6.0, 1.5), earned, range(8), 17.0) == (6.0, 1.5)
 
@@ -122,7 +122,7 @@ def narrow(width: float) -> ForwardSelection:
     return ForwardSelection((GRIP,), mutations, Trials(run, 300), goal, {}, 0.1)
 
 
-def test_a_single_constant_that_fails_on_hard_seeds_is_adjusted_on_them() -> None:
+def test_a_single_constant_that_fails_on_hard_seeds_is_adjusted_on_these_seeds() -> None:
     search = narrow(0.05)
     near = Joint(((GRIP, 0.628),), ALWAYS).candidate(mutations)
     totals = [search.trials(near, seed).total for seed in range(3)]

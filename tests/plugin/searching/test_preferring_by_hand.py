@@ -128,9 +128,7 @@ def before(
 # plainer changes
 
 
-def test_before_a_literal_two_named_constants_are_tried_in_two_steps_each_and_then_in_two_larger_steps() -> (
-    None
-):
+def test_two_named_constants_are_tried_before_a_literal_first_in_small_and_then_in_larger_steps() -> None:
     search = Scripted([LITERAL, A, B, C], proposed=True)
     before(search, LITERAL, 2.2, pair=3)
     assert search.tries == [

@@ -55,7 +55,7 @@ def test_a_failed_mission_and_a_world_without_design_are_not_compared() -> None:
     assert failed.beside == bare.beside == 0
 
 
-def test_an_examination_gets_episodes_of_later_phases_and_returns_what_it_does_not_use() -> None:
+def test_an_examination_may_use_episodes_of_later_phases_and_returns_the_unused_episodes() -> None:
     ran = trials(9.0, None)
     ran.budget, ran.limit = 2, 5
     ran(CANDIDATE, 0)

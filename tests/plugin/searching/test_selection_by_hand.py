@@ -462,7 +462,7 @@ def test_the_best_arm_of_an_operand_is_its_effect() -> None:
     assert two.effect == -1.0
 
 
-def test_halving_keeps_the_better_half_of_the_arms_that_gain_and_new_ones_around_the_best() -> None:
+def test_halving_keeps_the_better_half_of_the_gaining_arms_and_adds_arms_around_the_best_arm() -> None:
     seen: list[tuple[str, float, int]] = []
 
     def run(candidate: Candidate, seed: int) -> Outcome:

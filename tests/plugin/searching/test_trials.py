@@ -266,7 +266,7 @@ def test_the_reference_tolerates_five_points_more_failures_and_clips_losses() ->
     [((5, 6), False, True), ((5, 12), False, False), ((5, 6), True, False), ((5, None), False, False)],
     ids=["sooner", "one later", "passed", "unknown"],
 )
-def test_missions_fail_sooner_only_if_each_of_them_does(
+def test_a_candidate_makes_missions_fail_sooner_only_if_each_mission_fails_sooner(
     steps: tuple[int, int | None], passed: bool, sooner: bool
 ) -> None:
     goal = Goal((Pair(0, 0.0, 10), Pair(1, 0.0, 11)), near=8.0, enough=9.0, online=0.0, passing=True)

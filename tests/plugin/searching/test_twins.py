@@ -64,7 +64,7 @@ def test_equal_numbers_assigned_to_one_name_are_twins() -> None:
     ],
     ids=["another value", "another file", "a product", "another name"],
 )
-def test_other_numbers_are_no_twins(other: Operand) -> None:
+def test_numbers_without_a_common_name_or_value_are_not_twins(other: Operand) -> None:
     assert twins(units([FIRST, other])) == ()
 
 
@@ -74,7 +74,7 @@ def test_the_uses_of_a_parameter_are_twins_within_its_function() -> None:
     assert twin.operands == tuple(mine)
 
 
-def test_twins_are_tried_as_soon_as_one_of_them_gains() -> None:
+def test_twins_are_tried_as_soon_as_one_of_the_twins_gains() -> None:
     """Each turn needs twice the speed: one alone earns a part, both together the designed reward."""
     seen: list[int] = []
 

@@ -73,7 +73,7 @@ def test_no_more_than_a_set_number_of_units_is_tried() -> None:
     assert trials.spent == 1 + 2 * MOST
 
 
-def test_a_good_value_between_a_too_small_and_a_too_large_one_is_found() -> None:
+def test_a_good_value_between_a_too_small_and_a_too_large_value_is_found() -> None:
     def narrow(candidate: Candidate, seed: int) -> Outcome:
         factors = {one.operand.code: float(one.value) for one in candidate.mutations}
         turns = factors.get("TURNS", 1.0)

@@ -40,7 +40,7 @@ def searched(needed: set[Operand], other: set[Operand]) -> tuple[Sweep, Candidat
     return sweep, next(sweep.candidates(), None), trials
 
 
-def test_all_uses_are_changed_before_a_single_one() -> None:
+def test_all_uses_are_changed_together_before_a_single_use_is_changed() -> None:
     _, found, trials = searched({FIRST, SECOND}, set())
     assert found is not None
     assert {one.operand for one in found.mutations} == {FIRST, SECOND}

@@ -362,7 +362,7 @@ def test_an_episode_without_a_nominal_counterpart_failed_only_if_it_did_not_pass
     assert [one for _, one in made.recalled(RAYS, UP)] == [False, False]
 
 
-def test_a_test_that_raises_is_reported_with_its_values_and_one_that_hangs_fails() -> None:
+def test_a_test_that_raises_is_reported_with_its_values_and_a_test_that_hangs_fails() -> None:
     def run(**given: Any) -> Any:
         plan = SimpleNamespace(point={"a": 0.5, "b": -1.0}, seed=7)
         trace = SimpleNamespace(reward=np.array([1.5, 2.0]))

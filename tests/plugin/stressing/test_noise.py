@@ -62,7 +62,7 @@ def test_the_variance_at_the_boundary_is_computed_from_drifts_with_similar_losse
     assert variance_near(1.0, [cut_off([1.0])], 0.5) == 0.5  # one episode shows no variance
 
 
-def test_the_error_of_a_mean_shrinks_towards_the_typical_one() -> None:
+def test_the_error_of_a_mean_shrinks_towards_the_typical_error() -> None:
     assert standard_error(cut_off([0.5, 0.5]), 0.0) == 0.0
     assert standard_error(cut_off([0.5, 0.5]), 0.25) == pytest.approx(np.sqrt(4 * 0.25 / 5 / 2))
     assert standard_error(cut_off([HIGHEST, 60.0]), 0.0) == 0.0  # both are at the limit

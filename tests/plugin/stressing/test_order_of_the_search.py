@@ -277,7 +277,7 @@ def test_the_tests_of_a_chain_stop_at_the_first_drift_that_is_not_confirmed() ->
     assert together.chains == 1
 
 
-def test_drifts_that_contain_a_confirmed_failure_and_the_nominal_one_are_not_tested() -> None:
+def test_the_nominal_drift_and_drifts_that_contain_a_confirmed_failure_are_not_tested() -> None:
     together, evaluator = Together(0.1, []), Confirming(0.0)
     together.every = [failure(CUBE, drift(a=0.5, b=0.5))]
     assert not together.confirm([drift(a=0.6, b=0.5), dict(CUBE.nominal)], evaluator)  # type: ignore[arg-type]

@@ -59,7 +59,7 @@ from tests.plugin.stressing.test_words_by_hand import (
 )
 
 
-def test_rays_lead_to_each_end_and_option_except_the_nominal_one() -> None:
+def test_rays_lead_to_each_end_of_a_range_and_to_each_option_except_the_nominal_option() -> None:
     found = [(ray.names[0], ray.farthest[ray.names[0]]) for ray in rays(SPACE, {})]
     assert found == [("mud", 0.0), ("slope", -1.0), ("slope", 1.0), ("camera", 1.0), ("camera", 2.0)]
     mud, flat, steep, down, _ = rays(SPACE, {"mud": (3.0, 4.0), "slope": (-1.0, 0.25), "camera": ("down",)})

@@ -96,7 +96,7 @@ def test_all_reports_state_the_variance_shares_unless_the_budget_is_too_small() 
     assert json_result.document(small)["sobol"] is None
 
 
-def test_without_salib_the_search_is_the_same_and_the_message_says_what_to_install(
+def test_without_salib_the_search_is_the_same_and_a_message_names_the_missing_package(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     whole = stressed(added, SPACE, budget=600, variance=True, combined=False)

@@ -185,7 +185,7 @@ def test_failures_violate_must_hold_with_one_end_or_with_options() -> None:
     ]
 
 
-def test_the_end_of_a_must_hold_range_is_itself_tested() -> None:
+def test_the_ends_of_a_must_hold_range_are_also_tested() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(draws.random() < 1.0 - 1.5 * point["slope"]), 1.0  # 30 % fail at 0.2, 5 % at 0.033
 

@@ -28,9 +28,7 @@ def sloping(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
     return True, 10.0 - 0.8 * point["a"] - 0.6 * point["b"] + float(draws.normal(0.0, 0.05))
 
 
-def test_drifts_start_at_different_seeds_in_turn_and_are_paired_with_nominal_episodes_of_the_same_seeds() -> (
-    None
-):
+def test_drifts_start_at_different_seeds_and_are_paired_with_nominal_episodes_of_the_same_seeds() -> None:
     evaluator = evaluator_of(lambda _, draws: (True, float(draws.normal(0.0, 5.0))), SQUARE)
     seeds = list(episode_seeds(evaluator.seed, "stress world search", 2 * TURNS))
     for turn in (0, 3, TURNS // GLANCE - 1, TURNS // GLANCE):

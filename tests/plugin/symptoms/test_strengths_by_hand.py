@@ -440,6 +440,6 @@ def test_running_away_needs_six_values_some_of_them_not_zero() -> None:
     assert strength("runaway", pair(np.zeros(9), np.zeros(9))) == 0.0
 
 
-def test_missions_are_compared_up_to_the_end_of_the_shorter_one() -> None:
+def test_missions_are_compared_up_to_the_end_of_the_shorter_mission() -> None:
     longer = array(thirds(1.0, 1.2, 1.2), [99.0] * 9)
     assert strength("runaway", pair(FLAT, longer)) == pytest.approx(0.2 / 2.2 / 0.2)

@@ -61,7 +61,7 @@ def test_a_symptom_is_strong_where_its_cause_is(name: str) -> None:
 
 @pytest.mark.parametrize("name", SYMPTOMS)
 @pytest.mark.parametrize("case", CASES)
-def test_behaviour_that_also_occurs_in_the_designed_world_is_no_symptom(name: str, case: str) -> None:
+def test_behaviour_that_also_occurs_in_the_designed_world_is_not_a_symptom(name: str, case: str) -> None:
     both = series(CASES[case][1])
     assert SYMPTOMS[name]([Pair(both, both)]) == 0.0
 
@@ -116,7 +116,7 @@ def test_a_value_that_jumps_all_the_time_by_design_causes_no_loss() -> None:
     assert SYMPTOMS["jumps"]([pair]) < 0.1
 
 
-def test_an_error_that_vanishes_early_is_no_offset() -> None:
+def test_an_error_that_vanishes_early_is_not_an_offset() -> None:
     assert SYMPTOMS["offset"]([Pair(series(NEARING), series(NEARING[:20], failing(20, 19)))]) < 0.1
 
 

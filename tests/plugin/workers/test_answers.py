@@ -87,7 +87,7 @@ def test_a_worker_that_collects_no_test_gives_the_reason_once() -> None:
 
 
 @pytest.mark.parametrize("marked", [True, False])
-def test_a_worker_that_has_run_an_episode_never_reports_that_its_preparation_failed(
+def test_after_its_first_episode_a_worker_never_reports_that_its_preparation_failed(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, marked: bool
 ) -> None:
     marker = "@pytest.mark.tarl(nodes=['n.py'], sensors=[Sensor('x')])\n" if marked else ""

@@ -109,7 +109,7 @@ def test_an_error_of_a_worker_keeps_its_class_and_text(error: TarlError) -> None
         assert (type(raised.value), str(raised.value)) == (type(error), str(error))
 
 
-def test_an_unknown_class_of_error_becomes_a_general_one() -> None:
+def test_an_error_of_unknown_class_becomes_a_general_error() -> None:
     class OtherError(TarlError):
         pass
 
