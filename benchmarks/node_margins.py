@@ -3,7 +3,9 @@
     python benchmarks/real_nodes/bring.py TARGET --source PLACE
     python benchmarks/node_margins.py TARGET [NODE ...]
 
-Each world has a single direction, from its nominal value to its drift. The run may use 600 episodes, seed 1.
+Each drift of a world is a direction of its own, from the nominal value to the drift; that of a drift with several
+numbers is the share of the way. Each run may use 600 episodes, seed 1. Drifts of a world that only differ in being
+permanent are the same direction.
 """
 
 from __future__ import annotations
@@ -15,24 +17,35 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE / "drift")]
 
+from drift_sizes import SIZE, Sized, sized  # noqa: E402
 from stage import Stage, visit  # noqa: E402
-from stress import RISK, SIZE, recorded, sized, span_of  # noqa: E402
+from stress import RISK, recorded, span_of  # noqa: E402
 
+from pytest_tarl.spaces import Space  # noqa: E402
 from pytest_tarl.stressing import words  # noqa: E402
 from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator  # noqa: E402
 from pytest_tarl.stressing.findings import Curve, Stress  # noqa: E402
+from pytest_tarl.stressing.guarantee import Guarantee  # noqa: E402
 from pytest_tarl.stressing.rays import rays  # noqa: E402
 from pytest_tarl.stressing.search import along_rays, near_ends  # noqa: E402
 
 BUDGET, SEED = 600, 1
 
 
-def margins(stage: Stage) -> Stress:
-    """Return the stress run of a node from its nominal world to its drift."""
-    name = next(iter(stage.marked.drifts))
-    rollout, nominal, far = sized(stage, name)
-    space = span_of(nominal, far)
-    given = recorded(rollout, nominal)
+def margins(stage: Stage) -> list[Stress]:
+    """Return a stress run for each drift of a node, from its nominal world to the drift."""
+    distinct = {repr(drift.value): name for name, drift in reversed(stage.marked.drifts.items())}
+    given: Guarantee | None = None
+    found = []
+    for name in reversed(distinct.values()):
+        rollout, nominal, far = sized(stage, name)
+        given = given or recorded(rollout, nominal)
+        found.append(margin(rollout, name, span_of(nominal, far), given))
+    return found
+
+
+def margin(rollout: Sized, name: str, space: Space, given: Guarantee) -> Stress:
+    """Return a stress run in one direction."""
     evaluator = Evaluator(rollout, space, name, given, SEED, BUDGET, lambda *_: None)
     curves = [Curve(ray) for ray in rays(space, {})]
     ended = ""
@@ -41,7 +54,13 @@ def margins(stage: Stage) -> Stress:
         near_ends(curves, evaluator)
     except BudgetSpentError:
         ended = "budget"
-    return Stress(stage.task, name, SEED, space, given, BUDGET, evaluator.spent, tuple(curves), ended=ended)
+    task = rollout.stage.task
+    return Stress(task, name, SEED, space, given, BUDGET, evaluator.spent, tuple(curves), ended=ended)
+
+
+def direction(found: Stress) -> str:
+    """Return the name of a run's direction."""
+    return found.drift.replace(" ", "_")
 
 
 def main() -> None:
@@ -52,9 +71,10 @@ def main() -> None:
     arguments = parser.parse_args()
     every = sorted(path.name for path in arguments.target.iterdir() if path.is_dir())
     for node in arguments.nodes or every:
-        found: Stress = visit(node, margins, (arguments.target / node).resolve())
-        name = found.drift.replace(" ", "_")
-        print("\n".join(line.replace(SIZE, name) for line in words.lines(found)), flush=True)
+        runs: list[Stress] = visit(node, margins, (arguments.target / node).resolve())
+        for found in runs:
+            lines = [line.replace(SIZE, direction(found)) for line in words.lines(found)]
+            print("\n".join(lines), flush=True)
 
 
 if __name__ == "__main__":

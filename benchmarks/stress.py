@@ -2,34 +2,33 @@
 
     python benchmarks/stress.py [TASK ...] [--harmless 25] [--grids FILE]
 
-The tasks are those of benchmarks/drift, and the examples whose drift is a single number. Each has one direction, from
-its nominal value to its drift. The grid has 41 values, each with 40 episodes on its own seeds. The boundary
-of the grid is where the interpolated margin first crosses zero. A line for each task gives both boundaries as
-shares of the range, the distance between them, and the numbers of episodes. With `--harmless N`, each task
-also gets N runs on the part of the range up to half of the grid's boundary. With `--grids`, the grid's
-boundary of each task is added to a JSON Lines file; boundaries that the file contains are not measured again.
+The tasks are those of benchmarks/drift and stress_examples.py. Each has one direction, from its nominal value to its
+drift. The grid has 41 values, each with 40 episodes on its own seeds. The boundary of the grid is where the
+interpolated margin first crosses zero. A line for each task gives both boundaries as shares of the range, the distance
+between them, and the numbers of episodes. With `--harmless N`, each task also gets N runs on the part of the range up
+to half of the grid's boundary. With `--grids`, the grid's boundary of each task is added to a JSON Lines file;
+boundaries that the file contains are not measured again.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import re
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
-from typing import Any
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE / "drift"))
+sys.path[:0] = [str(HERE / "drift"), str(HERE)]
 
+from drift_sizes import SIZE, Sized, sized  # noqa: E402
 from stage import TASKS, Stage, visit  # noqa: E402
+from stress_examples import EXAMPLES  # noqa: E402
 
-from pytest_tarl.drifts import Drift  # noqa: E402
-from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending  # noqa: E402
+from pytest_tarl.rollout import EpisodePlan  # noqa: E402
 from pytest_tarl.seeds import episode_seeds  # noqa: E402
 from pytest_tarl.spaces import Space, Span  # noqa: E402
 from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator  # noqa: E402
@@ -43,47 +42,6 @@ RECORDED = 100
 SHARE = 0.15  # share of the grid's episodes that a stress run may use
 NEAR = 0.05  # two boundaries agree if their distance is at most this share of the range
 RISK = 0.05 / 3  # alpha of a run with one ray, divided among the ray, the combinations and the nominal drift
-SIZE = "size"  # name of the only direction
-EXAMPLES = {"line_follower": HERE.parent / "examples" / "line_follower"}
-
-
-@dataclass(frozen=True)
-class Sized:
-    """Runs episodes of a task whose drift is a single number: the coordinate of the point to evaluate."""
-
-    stage: Stage
-    name: str  # name of the drift
-    whole: bool  # whether the task's drift must be a whole number
-    workers = 1
-
-    def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Run one episode."""
-        if plan.point is None:
-            return self.stage.rollout(plan)
-        size = plan.point[SIZE]
-        value: Any = round(size) if self.whole else size
-        marked = replace(self.stage.marked, drifts={self.name: Drift(value)})
-        rollout = replace(self.stage.rollout, designation=marked)
-        return rollout(replace(plan, drift=self.name, point=None))
-
-    def begin(self, plan: EpisodePlan) -> Pending:
-        """Return an episode that runs when its result is requested."""
-        return Deferred(self, plan)
-
-
-def nominal_of(stage: Stage) -> str:
-    """Return the nominal value as the task's test states it."""
-    (path,) = [path for path in stage.folder.glob("test_*.py") if "tarl_drift or" in path.read_text()]
-    found = re.search(r"tarl_drift or ([-\d.]+)", path.read_text())
-    if found is None:
-        raise SystemExit(f"{stage.task}: no nominal value in {path.name}")
-    return found[1].rstrip(".")
-
-
-def sized(stage: Stage, name: str) -> tuple[Sized, float, float]:
-    """Return a rollout that takes the size of a drift, the nominal size, and the size that the test declares."""
-    text, value = nominal_of(stage), stage.marked.drifts[name].value
-    return Sized(stage, name, isinstance(value, int) and "." not in text), float(text), float(value)
 
 
 def span_of(low: float, high: float) -> Space:
@@ -183,7 +141,8 @@ class Grids:
 
 def compare(stage: Stage, harmless: int, grids: Grids) -> Compared:
     """Compare a stress run of one task with the grid."""
-    rollout, nominal, far = sized(stage, stage.drift)
+    example = EXAMPLES.get(stage.task)
+    rollout, nominal, far = sized(stage, example.drift if example else stage.drift)
     given = recorded(rollout, nominal)
     budget = round(SHARE * GRID * EPISODES)
     curve, episodes = stressed(rollout, given, span_of(nominal, far), 1, budget)
@@ -226,8 +185,13 @@ def main() -> None:
     print("|---|---|---|---|---|---|---|---|")
     every, grids = [], Grids(arguments.grids)
     for task in arguments.tasks or (*TASKS, *EXAMPLES):
+        example = EXAMPLES.get(task)
         one: Compared = visit(
-            task, lambda stage: compare(stage, arguments.harmless, grids), EXAMPLES.get(task), HERE / "drift"
+            task,
+            lambda stage: compare(stage, arguments.harmless, grids),
+            example.place if example else None,
+            HERE / "drift",
+            example.test if example else "",
         )
         every.append(one)
         print(f"| {task} | {one.line} |", flush=True)

@@ -40,9 +40,9 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE / "drift"), str(HERE)]
 
+from drift_sizes import nominal_of  # noqa: E402
 from peers import Cma  # noqa: E402
 from stage import TASKS, Stage, visit  # noqa: E402
-from stress import nominal_of  # noqa: E402
 from stress_machines import Machine  # noqa: E402
 from stress_worlds import TOLERANCE, WORLDS, Formula, World, harmless  # noqa: E402
 from stress_worlds import space as world_space  # noqa: E402

@@ -20,8 +20,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE / "drift")]
 
+from drift_sizes import sized  # noqa: E402
 from stage import TASKS, Stage, visit  # noqa: E402
-from stress import EPISODES, GRID, SHARE, sized, span_of  # noqa: E402
+from stress import EPISODES, GRID, SHARE, span_of  # noqa: E402
 
 from pytest_tarl.boundary_repairs import Job, repair_boundary  # noqa: E402
 from pytest_tarl.drifts import Drift  # noqa: E402

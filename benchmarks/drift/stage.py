@@ -92,8 +92,14 @@ class _Visit:
         return True
 
 
-def visit(task: str, visitor: Callable[[Stage], Any], folder: Path | None = None, home: Path = HERE) -> Any:
-    """Return the visitor's result for a task in `home`; `folder` is a copy of the task's directory to work in."""
+def visit(
+    task: str, visitor: Callable[[Stage], Any], folder: Path | None = None, home: Path = HERE, test: str = ""
+) -> Any:
+    """Return the visitor's result for a task in `home`.
+
+    `folder` is a copy of the task's directory to work in. `test` is pytest's id of the test below the folder; without
+    it, the folder must contain a single test.
+    """
     where = folder or home / task
     guest = _Visit(task, visitor, home)
     arguments = [
@@ -108,7 +114,7 @@ def visit(task: str, visitor: Callable[[Stage], Any], folder: Path | None = None
         REWRITTEN,
         "--rootdir",
         str(where),
-        str(where),
+        str(where / test),
     ]
     before = Path.cwd()
     os.chdir(where)  # paths in the analysis are relative to this folder

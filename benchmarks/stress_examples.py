@@ -1,0 +1,39 @@
+"""The examples that stress.py measures: a test of each, one of its drifts, and the nominal value.
+
+`tank_external` is missing, because its simulator needs an installed ROS, and stress runs need the in-process ROS.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+EXAMPLES_FOLDER = Path(__file__).resolve().parent.parent / "examples"
+
+
+@dataclass(frozen=True)
+class Example:
+    """One direction of an example, from the nominal value to the drift that its test declares."""
+
+    folder: str
+    test: str  # pytest's id below the folder
+    drift: str  # name of the drift
+    nominal: float  # the nominal value of the drift, or of its only entry
+
+    @property
+    def place(self) -> Path:
+        """Return the folder that contains the test."""
+        return EXAMPLES_FOLDER / self.folder
+
+
+EXAMPLES = {
+    "line_follower": Example("line_follower", "test_line_follower.py", "dusk", 1.0),
+    "shuttle": Example("shuttle", "test_shuttle.py::test_delivers", "mud", 1.0),
+    "shuttle_twice": Example("shuttle", "test_shuttle.py::test_shuttles", "mud", 1.0),
+    "workspace": Example("workspace", "test_aisle.py", "worn tyres", 1.0),
+    "quadrotor_payload": Example("quadrotor", "test_quadrotor.py", "payload", 0.0),
+    "quadrotor_gust": Example("quadrotor", "test_quadrotor.py", "gust", 0.0),
+    "pole_gymnasium": Example("pole_gymnasium", "test_balance.py", "long", 0.5),
+    "cart_mujoco_loaded": Example("cart_mujoco", "test_docking.py", "loaded", 1.0),
+    "cart_mujoco_wet": Example("cart_mujoco", "test_docking.py", "wet", 0.8),
+}
