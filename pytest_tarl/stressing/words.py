@@ -100,13 +100,19 @@ def together(stress: Stress) -> Iterator[str]:
         where = of_point(stress.space, one.point)
         yield f"Fails with {where} (distance {one.distance:.2g}){_alone(stress, one)}."
     if len(found) > len(shown):
-        yield f"{len(found) - len(shown)} more failing combinations are in the JSON result."
+        yield _left_out(len(found) - len(shown), "failing combination")
     if stress.nearer is not None:
         where = of_point(stress.space, stress.nearer.point)
         distance = f"{stress.nearer.distance:.2g}"
         yield f"The guarantee probably already fails with {where} (distance {distance}); this is not confirmed."
     elif not found and stress.tried:
         yield f"No combination was found that fails although each of its changes alone passes ({stress.tried} tried)."
+
+
+def _left_out(count: int, noun: str, which: str = "") -> str:
+    """Return a sentence about results that only the JSON result lists."""
+    told = f"{noun}{which} is" if count == 1 else f"{noun}s{which} are"
+    return f"{count} more {told} in the JSON result."
 
 
 def _innermost(stress: Stress) -> list[Failure]:
@@ -119,7 +125,7 @@ def _innermost(stress: Stress) -> list[Failure]:
 
 
 def _alone(stress: Stress, one: Failure) -> str:
-    """Return the remark that each direction alone holds, if the search found no failure along any of them."""
+    """Return the remark that each change alone seems to hold, if the search found no failure along any of them."""
     for curve in stress.curves:
         (name,) = curve.ray.names
         extent = stress.space.extents[name]
@@ -128,7 +134,7 @@ def _alone(stress: Stress, one: Failure) -> str:
         reached = moved / way if isinstance(extent, Span) else float(moved == way)
         if reached > 0.0 and (not curve.swept or any(t <= reached + ROUNDING for t in curve.failing)):
             return ""
-    return ", although the guarantee holds with each change alone"
+    return ", although no failure was found with each change alone"
 
 
 def sobol_words(stress: Stress) -> Iterator[str]:
@@ -168,7 +174,7 @@ def statement_words(stress: Stress) -> Iterator[str]:
             f"{found.others} others: {one.text}"
         )
     if len(found.only) > MOST_SHOWN:
-        yield f"{len(found.only) - MOST_SHOWN} more statements that ran only in failures are in the JSON result."
+        yield _left_out(len(found.only) - MOST_SHOWN, "statement", " that ran only in failures")
 
 
 def repair_lines(stress: Stress) -> Iterator[str]:

@@ -440,7 +440,7 @@ def executed(count: int) -> Statements:
 
 
 @pytest.mark.parametrize(
-    ("count", "more"), [(5, []), (6, ["1 more statements that ran only in failures are in the JSON result."])]
+    ("count", "more"), [(5, []), (6, ["1 more statement that ran only in failures is in the JSON result."])]
 )
 def test_at_most_five_statements_are_printed(count: int, more: list[str]) -> None:
     found = list(statement_words(stress(statements=executed(count))))

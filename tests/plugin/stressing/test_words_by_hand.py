@@ -151,8 +151,8 @@ def test_combinations_are_printed_with_the_nearest_first() -> None:
     far, near = combined(mud=1.0, slope=0.5), combined(mud=3.0, camera=1.0)
     whole = [curve(ray, {1.0: 1.0}) for ray in (MUD, FLAT, STEEP, DOWN, LEFT)]
     assert [*words.together(stress(*whole, combinations=(near, far), tried=3))] == [
-        "Fails with mud=1 and slope=0.5 (distance 0.79), although the guarantee holds with each change alone.",
-        "Fails with mud=3 and camera='down' (distance 1), although the guarantee holds with each change alone.",
+        "Fails with mud=1 and slope=0.5 (distance 0.79), although no failure was found with each change alone.",
+        "Fails with mud=3 and camera='down' (distance 1), although no failure was found with each change alone.",
     ]
     assert [*words.together(stress(*whole, tried=3))] == [
         "No combination was found that fails although each of its changes alone passes (3 tried)."
@@ -160,7 +160,7 @@ def test_combinations_are_printed_with_the_nearest_first() -> None:
     assert [*words.together(stress(*whole))] == []
     many = tuple(combined(mud=3.4 + n / 10, slope=0.1 + n / 50) for n in range(6))  # none contains another
     assert [*words.together(stress(*whole, combinations=many))][5:] == [
-        "1 more failing combinations are in the JSON result."
+        "1 more failing combination is in the JSON result."
     ]
 
 
@@ -201,9 +201,7 @@ def test_the_json_result_also_lists_farther_failures_along_a_direction() -> None
 def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_confirmed_failures() -> None:
     near, nearer = combined(mud=3.0, slope=0.5), combined(mud=3.6, slope=0.25)  # distances 0.35 and 0.16
     told = "The guarantee probably already fails with mud=3.6 and slope=0.25 (distance 0.16); this is not confirmed."
-    confirmed_one = (
-        "Fails with mud=3 and slope=0.5 (distance 0.35), although the guarantee holds with each change alone."
-    )
+    confirmed_one = "Fails with mud=3 and slope=0.5 (distance 0.35), although no failure was found with each change alone."
     assert [*words.together(stress(expected=(nearer, near), tried=3))] == [told]
     assert [*words.together(stress(combinations=(near,), expected=(nearer, near)))] == [confirmed_one, told]
     assert [*words.together(stress(combinations=(near,), expected=(near,)))] == [confirmed_one]
@@ -230,7 +228,7 @@ def test_each_direction_is_said_to_hold_alone_only_if_no_smaller_failure_was_fou
     one = combined(mud=1.0, slope=0.5)
     others = [curve(ray, {1.0: 1.0}) for ray in (MUD, FLAT, STEEP, DOWN, LEFT) if ray is not changed.ray]
     (told,) = words.together(stress(*others, changed, combinations=(one,)))
-    assert told.endswith("although the guarantee holds with each change alone.") is alone
+    assert told.endswith("although no failure was found with each change alone.") is alone
 
 
 def test_shares_of_the_variance_are_printed_with_the_largest_first() -> None:
@@ -251,7 +249,7 @@ def test_statements_that_ran_only_in_failures_are_listed() -> None:
     only = tuple(Executed("n.py", n, f"x = {n}", 9 - n) for n in range(6))
     told = [*words.statement_words(stress(statements=Statements(9, 30, only)))]
     assert told[0] == "n.py:0 ran in 9 of 9 failing episodes and in none of 30 others: x = 0"
-    assert told[5:] == ["1 more statements that ran only in failures are in the JSON result."]
+    assert told[5:] == ["1 more statement that ran only in failures is in the JSON result."]
     assert len([*words.statement_words(stress(statements=Statements(9, 30, only[:5])))]) == 5
     assert [*words.statement_words(stress(statements=Statements(9, 30, ())))] == [
         "No statement ran only in failures (9 failing episodes, 30 others)."
