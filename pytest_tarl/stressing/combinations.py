@@ -253,12 +253,20 @@ class Combined:
             nearer = [
                 one
                 for one in self.options
-                if one.coordinates.options < limit**2
-                and self.evaluator.known(one.coordinates.base).result != "fails"
+                if one.coordinates.options < limit**2 and not self._option_fails(one)
             ]
             for one in (self.nearest, *nearer):
                 one.ceiling = limit
                 one.explore(1)
+
+    def _option_fails(self, option: Nearest) -> bool:
+        """Return whether a few episodes show that an option alone fails. Raise BudgetSpentError.
+
+        The budget of the first search may have ended before the option's own ray had any episode.
+        """
+        evaluator, base = self.evaluator, option.coordinates.base
+        found = evaluator.known(base) if evaluator.searched(base) else evaluator.glance(base)
+        return found.result == "fails"
 
     @property
     def _leading(self) -> Nearest:

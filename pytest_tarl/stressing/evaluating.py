@@ -111,7 +111,7 @@ class Evaluator:
         If many drifts use different seeds in turn, a few unusual seeds do not shift the results of all drifts. Raise
         BudgetSpentError.
         """
-        if point != self.space.nominal and not self._known.get((SEARCH, *point.values())):
+        if point != self.space.nominal and not self.searched(point):
             self._first[tuple(point.values())] = turn * GLANCE % TURNS
         return self._evidence(point, GLANCE)
 
@@ -126,6 +126,10 @@ class Evaluator:
                 break
             found = self._evidence(point, size)
         return found
+
+    def searched(self, point: Point) -> bool:
+        """Return whether the search has run an episode at a point."""
+        return bool(self._known.get((SEARCH, *point.values())))
 
     def known(self, point: Point) -> Evidence:
         """Return the evidence at a point from the episodes of the search that already ran there."""

@@ -279,3 +279,14 @@ def test_a_margin_exists_even_if_the_budget_ends_before_the_nominal_episodes_of_
         with suppress(BudgetSpentError):
             evaluator._evidence(point, count)
     assert np.isfinite(evaluator.measured(point)).all()
+
+
+@pytest.mark.parametrize(
+    "budget", [16, 40, 90]
+)  # 90 ends between the nominal and the first drifted episode of "down"
+def test_a_budget_that_ends_before_the_first_look_at_an_option_does_not_end_the_search(budget: int) -> None:
+    space = space_of(mud=MUD, slope=SLOPE, camera=Drift.choice("up", "down"))
+    found = stressed(lambda *_: (True, 10.0), space, budget=budget)
+    assert found.ended == "budget"
+    assert found.episodes <= budget
+    assert found.combinations == ()

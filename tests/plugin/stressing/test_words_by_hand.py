@@ -201,7 +201,8 @@ def test_the_json_result_also_lists_farther_failures_along_a_direction() -> None
 def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_confirmed_failures() -> None:
     near, nearer = combined(mud=3.0, slope=0.5), combined(mud=3.6, slope=0.25)  # distances 0.35 and 0.16
     told = "The guarantee probably already fails with mud=3.6 and slope=0.25 (distance 0.16); this is not confirmed."
-    confirmed_one = "Fails with mud=3 and slope=0.5 (distance 0.35), although no failure was found with each change alone."
+    alone = "although no failure was found with each change alone"
+    confirmed_one = f"Fails with mud=3 and slope=0.5 (distance 0.35), {alone}."
     assert [*words.together(stress(expected=(nearer, near), tried=3))] == [told]
     assert [*words.together(stress(combinations=(near,), expected=(nearer, near)))] == [confirmed_one, told]
     assert [*words.together(stress(combinations=(near,), expected=(near,)))] == [confirmed_one]
