@@ -34,10 +34,12 @@ BUDGET, SEED = 600, 1
 
 def margins(stage: Stage) -> list[Stress]:
     """Return a stress run for each drift of a node, from its nominal world to the drift."""
-    distinct = {repr(drift.value): name for name, drift in reversed(stage.marked.drifts.items())}
+    distinct: dict[str, str] = {}  # names by value, each the first of those with the same value
+    for name, drift in stage.marked.drifts.items():
+        distinct.setdefault(repr(drift.value), name)
     given: Guarantee | None = None
     found = []
-    for name in reversed(distinct.values()):
+    for name in distinct.values():
         rollout, nominal, far = sized(stage, name)
         given = given or recorded(rollout, nominal)
         found.append(margin(rollout, name, span_of(nominal, far), given))
