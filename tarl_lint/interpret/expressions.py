@@ -150,7 +150,7 @@ def by_key(ctx: Interpreter, base: Value, index: Value, frame: Frame, slot: Hash
     An entry with a constant key is there, whatever the other keys are.
     """
     decides = NONE
-    for obj in base.pts:
+    for obj in base.objects:
         if obj.kind == "mapping" and (stored := ctx.store.get((obj, KEYS))) is not None:
             fields = [heap.attribute_of_item(obj, key) for key in index.item_keys() or ()]
             held = [ctx.store.get((obj, field)) for field in fields]

@@ -640,6 +640,13 @@ def test_the_default_of_a_parameter_is_a_name_that_a_launch_file_may_replace():
     assert symbolic_names.with_default(pointer(Obj("lib", 1))) is None
 
 
+def test_only_an_array_that_was_made_without_data_has_a_known_shape(ctx):
+    array, other, table = made(ctx, "lib", "array"), made(ctx, "lib", "other"), made(ctx, "sequence", "table")
+    for obj in (array, table):
+        ctx.store.put((obj, heap.SHAPE), ONE)
+    assert [heap.shape(ctx, obj) for obj in (array, other, table)] == [ONE, None, None]
+
+
 def test_the_newest_object_of_an_allocation_site_becomes_an_older_object_when_another_is_created(ctx, frame):
     holder = made(ctx, "instance", "holder")
     box = recency.intern(ctx, "instance", "box")
