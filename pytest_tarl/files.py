@@ -12,6 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))  # Windows does not define EDQUOT
+BLOCK = 4096  # size in bytes of the file that checks whether a disk is full: the least that most file systems allocate
 DIFFERENT = (errno.EROFS, errno.EACCES, errno.EPERM)
 
 
@@ -51,8 +52,12 @@ def check_writable(path: Path) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        os.close(handle)
-        Path(name).unlink()
+        try:
+            # most file systems can create an empty file although the disk or the quota is full
+            with os.fdopen(handle, "wb") as file:
+                file.write(bytes(BLOCK))
+        finally:
+            Path(name).unlink()
     finally:
         for folder in made:
             with suppress(OSError):  # the folder was not created, or another run uses it

@@ -1,5 +1,6 @@
 """Reports and recordings are written atomically; pipes and devices are not replaced by files."""
 
+import errno
 import os
 import stat
 import threading
@@ -61,3 +62,17 @@ def test_a_write_error_is_raised_and_leaves_no_temporary_file(tmp_path):
     with pytest.raises(OSError, match="a"):
         check_writable(tmp_path / "a" / "b" / "c.npz")
     assert [path.name for path in tmp_path.rglob("*")] == ["a"]
+
+
+def test_a_disk_on_which_only_empty_files_fit_is_not_writable(tmp_path, monkeypatch):
+    opened = os.fdopen
+
+    def full(handle, mode):
+        os.close(handle)
+        return opened(os.open("/dev/full", os.O_WRONLY), mode)
+
+    monkeypatch.setattr("pytest_tarl.files.os.fdopen", full)
+    with pytest.raises(OSError, match="No space left") as problem:
+        check_writable(tmp_path / "a" / "b.npz")
+    assert problem.value.errno == errno.ENOSPC
+    assert list(tmp_path.iterdir()) == []

@@ -101,16 +101,14 @@ def test_a_patch_that_cannot_be_written_is_printed_and_can_be_applied(
     assert "applied to keeper.py" in applied.stdout.str()
 
 
+FIRST = "def test_fills(tarl, tarl_drift):"
+
+
 def test_recording_reports_an_unwritable_path_before_the_first_episode(
     recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     deny(monkeypatch, errno.ENOSPC)
-    changed(
-        recorded,
-        "test_tank",
-        "def test_fills(tarl, tarl_drift):",
-        "def test_fills(tarl, tarl_drift):\n    1 / 0",
-    )
+    changed(recorded, "test_tank", FIRST, f"{FIRST}\n    1 / 0")
     told = recorded.runpytest(*RECORD)
     told.stdout.fnmatch_lines([f"*cannot be written*: {ADVICE[errno.ENOSPC]}"])
     assert "ZeroDivisionError" not in told.stdout.str()
@@ -132,8 +130,9 @@ def test_a_disk_that_fills_up_while_recording_keeps_the_old_recording(
             os.close(self.handle)
 
         def write(self, content: bytes) -> None:
-            os.write(self.handle, content[: len(content) // 2])
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            if content.strip(b"\0"):  # the check before the first episode writes zeros
+                os.write(self.handle, content[: len(content) // 2])
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(files.os, "fdopen", Full)
     told = recorded.runpytest(*RECORD)
@@ -210,3 +209,18 @@ def test_a_full_disk_and_a_read_only_tree_are_reported(
     assert told.stdout.count(ADVICE[number]) == 2
     assert properties(cases(junit)["test_fills[clogged]"])["tarl_verdict"] == "degraded"
     assert properties(cases(junit)["test_fills[same]"])["tarl_verdict"] == "no difference"
+
+
+@pytest.mark.skipif(not mounting(), reason="this user cannot mount a file system: unshare -rm is not allowed")
+def test_recording_on_a_full_disk_that_still_takes_empty_files_is_refused_before_the_first_episode(
+    recorded: pytest.Pytester,
+) -> None:
+    changed(recorded, "test_tank", FIRST, f"{FIRST}\n    1 / 0")
+    command = f"cd {recorded.path}\n{FULL}touch .tarl/empty || exit 99\n"
+    command += f"exec {sys.executable} -m pytest -p no:cacheprovider {' '.join(RECORD)}"
+    told = subprocess.run(
+        ["unshare", "-rm", "sh", "-c", command], capture_output=True, text=True, check=False
+    )
+    assert told.returncode == 1, told.stdout + told.stderr
+    assert ADVICE[errno.ENOSPC] in told.stdout
+    assert "ZeroDivisionError" not in told.stdout
