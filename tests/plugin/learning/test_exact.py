@@ -137,3 +137,19 @@ def test_the_ridge_shrinks_the_weights_of_tiles_towards_zero_by_the_expected_amo
     wanted = reward / (count + ridge)
     assert tiles.tiled_chain(chain, 2, own) == pytest.approx(wanted, rel=1e-7)
     assert ridge > 0
+
+
+def test_cells_that_were_never_visited_do_not_change_the_ridge() -> None:
+    count, reward = np.array([30, 10]), np.array([60.0, -5.0])
+    chain = Chain(
+        episode=np.zeros(2, np.int64),
+        cell=np.array([0, 1]),
+        next_cell=np.full(2, -1),
+        count=count,
+        reward=reward,
+        parts=np.zeros((2, 0)),
+    )
+    of_its_own = tiles.Tiles(np.arange(4)[:, np.newaxis], 4)
+    found = tiles.tiled_chain(chain, 4, of_its_own)
+    assert found[:2] == pytest.approx(reward / (count + tiles.RIDGE * count.mean()), rel=1e-7)
+    assert np.isnan(found[2:]).all()
