@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable
+from functools import partial
 from time import time_ns
 from typing import Any
 
@@ -44,6 +45,10 @@ class Link:
         self._publishers: dict[str, Any] = {}
         self._clients: dict[str, Any] = {}
         self._calls: list[dict[str, Any]] = []  # calls of services that do not exist yet
+        self._receivers: dict[
+            str, list[str]
+        ] = {}  # topic → services for parameters of the nodes that subscribe to it
+        self._sent: set[str] = set()  # topics of commands since the last call
         self._known: dict[str, Any] = {}
         # answers of services that have not been passed on to the test yet
         self._answers: list[dict[str, Any]] = []
@@ -87,13 +92,17 @@ class Link:
         publisher = self._publishers.get(topic)
         if publisher is not None:
             publisher.publish(filled(publisher.msg_type(), data, _message_class))
+            self._sent.add(topic)
 
     def call(self, asked: dict[str, Any]) -> None:
-        """Call a service now, or as soon as it exists.
+        """Call a service as soon as it exists and the simulator handles the commands so far before the call.
 
-        Messages that were sent before the call also arrive before it, because both go by UDP to one port of the
-        simulator's participant. Waiting for acknowledgements would be safer but would cost 0.8 s per call, which is the
-        period of the middleware's heartbeats.
+        Commands arrive before the call, because both go by UDP to one port of the simulator's participant. That is not
+        enough: an executor looks for messages, then for requests, so it can miss a command that arrives in between and
+        handle the request first. Therefore, the nodes that subscribe to the commands are asked for no parameters
+        beforehand. When they have answered, the executor looks for messages again before it finds the call. Nodes
+        without services for parameters are not asked. Waiting for acknowledgements would not be enough either, and
+        would cost 0.8 s per call, which is the period of the middleware's heartbeats.
         """
         self._calls.append(asked)
         self._start_calls()
@@ -110,6 +119,7 @@ class Link:
                 self._listen(topic, kind, offered[0].qos_profile)
             if wanting := _others(self._node.get_subscriptions_info_by_topic(topic)):
                 self._offer(topic, kind, wanting[0].qos_profile)
+                self._receivers[topic] = sorted({_parameters(end) for end in wanting})
                 if topic in self._publishers and self._publishers[topic].get_subscription_count():
                     subscribed.append(topic)
         connected = [topic for topic, end in self._wanted.items() if end and end.get_publisher_count()]
@@ -156,13 +166,22 @@ class Link:
     def _start_calls(self) -> None:
         waiting, self._calls = self._calls, []
         for asked in waiting:
-            client = self._client(asked["service"])
-            if client is None or not client.service_is_ready():
+            client, receivers = self._client(asked["service"]), self._asked_first()
+            if client is None or not all(one.service_is_ready() for one in (client, *receivers)):
                 self._calls.append(asked)
                 continue
-            request = filled(client.srv_type.Request(), asked["request"], _message_class)
-            answered = self._answered(asked["id"], time_ns())
-            client.call_async(request).add_done_callback(answered)
+            self._sent.clear()
+            _in_turn(receivers, partial(self._start, client, asked))
+
+    def _asked_first(self) -> list[Any]:
+        """Return the clients of the services for parameters of the nodes that receive commands since the last call."""
+        names = sorted({name for topic in self._sent for name in self._receivers.get(topic, ())})
+        return [client for name in names if (client := self._client(name)) is not None]
+
+    def _start(self, client: Any, asked: dict[str, Any]) -> None:
+        request = filled(client.srv_type.Request(), asked["request"], _message_class)
+        answered = self._answered(asked["id"], time_ns())
+        client.call_async(request).add_done_callback(answered)
 
     def _answered(self, number: int, asked: int) -> Callable[[Any], None]:
         def answer(future: Any) -> None:
@@ -179,6 +198,20 @@ class Link:
                 return None
             self._clients[service] = self._node.create_client(_class(kinds[service][0]), service)
         return self._clients[service]
+
+
+def _in_turn(clients: list[Any], then: Callable[[], None]) -> None:
+    """Call `then` when all clients have been answered an empty request."""
+    if not clients:
+        then()
+        return
+    first, *others = clients
+    first.call_async(first.srv_type.Request()).add_done_callback(lambda _: _in_turn(others, then))
+
+
+def _parameters(end: Any) -> str:
+    """Return the name of the service of a node that returns its parameters."""
+    return f"{end.node_namespace.rstrip('/')}/{end.node_name}/get_parameters"
 
 
 def _others(ends: list[Any]) -> list[Any]:
