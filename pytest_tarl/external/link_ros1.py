@@ -7,14 +7,15 @@ import socket
 import threading
 import warnings
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from io import BytesIO
-from time import sleep, time_ns
+from time import monotonic, sleep, time_ns
 from typing import Any
 from urllib.parse import urlparse
 
 from pytest_tarl.external.plain import filled, to_plain
+from pytest_tarl.external.unread import unread
 from pytest_tarl.processors import available
 
 NAME = "/tarl_link"
@@ -22,6 +23,8 @@ OWN = ("/rosout", "/rosout_agg")
 DEPTH = 1000
 LOST = "transport error"  # the start of rospy's error message for a broken connection
 PATIENCE = 5.0  # maximum time until a service reports its type (s)
+READING = 10.0  # maximum time until the simulator has read all commands (s)
+LOOK = 0.001  # time between two looks at what it has not read (s)
 # pause (s) between a command and a service call, enough on an idle machine; the call has its own connection and could
 # otherwise arrive first
 PAUSE = 0.005
@@ -30,7 +33,7 @@ Say = Callable[[dict[str, Any]], None]
 
 
 def _pause() -> float:
-    """Return the pause, which is longer on a busy machine, since ROS 1 does not confirm that a message has arrived."""
+    """Return the pause, which is longer on a busy machine, since ROS 1 does not confirm that a message was handled."""
     try:
         waiting = os.getloadavg()[0] / available()
     except OSError:
@@ -91,12 +94,25 @@ class LinkROS1:
             self._sent = True
 
     def call(self, asked: dict[str, Any]) -> None:
-        """Call a service now, or as soon as it exists. First pause, so that earlier commands arrive first."""
+        """Call a service now, or as soon as it exists.
+
+        First wait until the simulator has read the commands so far, and pause, so that it also handles them first.
+        """
         if self._sent:
+            deadline = monotonic() + READING
+            while unread(self._connections()) and monotonic() < deadline:
+                sleep(LOOK)
             sleep(_pause())
             self._sent = False
         self._calls.append(asked)
         self._start_calls()
+
+    def _connections(self) -> Iterator[tuple[int, int]]:
+        """Yield the own port and the simulator's port of each connection for commands."""
+        for publisher in self._publishers.values():
+            for connection in list(publisher.impl.connections):
+                with suppress(OSError, AttributeError):  # closed in the meantime
+                    yield connection.socket.getsockname()[1], connection.socket.getpeername()[1]
 
     def look(self) -> None:
         """Connect to the topics and services of the simulator, and report changes."""

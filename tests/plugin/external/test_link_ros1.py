@@ -43,6 +43,7 @@ class End:
     def __init__(self, name: str, kind: Any, heard: Any = None, **options: Any) -> None:
         self.name, self.kind, self.data_class, self.heard, self.options = name, kind, kind, heard, options
         self.connections, self.sent = 1, list[Any]()
+        self.impl = SimpleNamespace(connections=[])
         self.request_class = message_type("std_msgs/Float64")
 
     def get_num_connections(self) -> int:
