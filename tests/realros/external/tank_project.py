@@ -73,6 +73,8 @@ class Outside:
             ready=("/level", "/valve"),
             step="/step",
             every_step=["/level"],
+            timeout=900.0,  # s; long enough for a busy machine
+            patience=300.0,  # s
             environment={{"START": repr(level), "PUMP": repr(pump)}},
         )
 

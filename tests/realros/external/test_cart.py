@@ -37,7 +37,7 @@ FAULTS = {"FAULTS": "die 20,hang 20,slow 1,late 0.02", "PATIENCE": "8"}
 def run(folder: Path, *options: str, **environment: str) -> str:
     command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", EPISODES, *options]
     done = subprocess.run(
-        command, cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True, timeout=900
+        command, cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True, timeout=3000
     )
     return done.stdout + done.stderr
 

@@ -94,6 +94,6 @@ def test_a_node_can_be_recorded_against_the_simulator(tmp_path: Path) -> None:
     (tmp_path / "test_tank.py").write_text(PROJECT.format(command=COMMAND))
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
     command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--tarl-record", "--tarl-episodes=3"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=900, check=False)
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=3000, check=False)
     assert "1 passed" in done.stdout, done.stdout + done.stderr
     assert "not reproducible" not in done.stdout
