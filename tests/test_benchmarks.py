@@ -33,7 +33,7 @@ SMALLEST = {
     "episodes": ["--episodes", "2"],
     "fleet": ["--robots", "8", "--missions", "6", "--logs", "2"],
     "fleet_cost": [],
-    "fleet_false_discoveries": ["--fleets", "1", "--robots", "10", "--missions", "20"],
+    "fleet_false_discoveries": ["--fleets", "2", "--robots", "10", "--missions", "20"],
     "flows_written": ["benchmarks/flows_written_7/judge"],
     "foreign_listings": ["{tmp}/packages", "{tmp}/listings"],
     "foreign_nodes": ["{tmp}/packages"],
