@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import importlib
+from collections import Counter
 from collections.abc import Callable
 from functools import partial
-from time import time_ns
+from time import monotonic, time_ns
 from typing import Any
 
 from pytest_tarl.external.plain import filled, to_plain
@@ -16,6 +17,10 @@ DEPTH = 1000
 # number of consecutive attempts without a message after which the queue counts as empty; a single attempt may have
 # handled another event
 IDLE = 3
+UNKNOWN = (
+    "_NODE_NAME_UNKNOWN_"  # rclpy's name of a node of which so far only a publisher or subscription is known
+)
+NAMING = 10.0  # maximum time until the name of a node is known; what is not a node of ROS 2 never has one (s)
 
 Say = Callable[[dict[str, Any]], None]
 
@@ -48,7 +53,8 @@ class Link:
         self._receivers: dict[
             str, list[str]
         ] = {}  # topic → services for parameters of the nodes that subscribe to it
-        self._sent: set[str] = set()  # topics of commands since the last call
+        self._seen: dict[str, float] = {}  # topic → when a subscription to it was first seen
+        self._sent: Counter[str] = Counter()  # topic → number of commands since the last call
         self._known: dict[str, Any] = {}
         # answers of services that have not been passed on to the test yet
         self._answers: list[dict[str, Any]] = []
@@ -92,17 +98,18 @@ class Link:
         publisher = self._publishers.get(topic)
         if publisher is not None:
             publisher.publish(filled(publisher.msg_type(), data, _message_class))
-            self._sent.add(topic)
+            self._sent[topic] += 1
 
     def call(self, asked: dict[str, Any]) -> None:
         """Call a service as soon as it exists and the simulator handles the commands so far before the call.
 
         Commands arrive before the call, because both go by UDP to one port of the simulator's participant. That is not
-        enough: an executor looks for messages, then for requests, so it can miss a command that arrives in between and
-        handle the request first. Therefore, the nodes that subscribe to the commands are asked for no parameters
-        beforehand. When they have answered, the executor looks for messages again before it finds the call. Nodes
-        without services for parameters are not asked. Waiting for acknowledgements would not be enough either, and
-        would cost 0.8 s per call, which is the period of the middleware's heartbeats.
+        enough: in each cycle, an executor looks for messages, then for requests, and takes one message from each
+        subscription. So it can miss a command that arrives in between, and handle the request before the second
+        command on a topic. Therefore, the nodes that subscribe to the commands are first asked for no parameters, once
+        for each command. When they have answered, and the executor finds the call, it has just taken the last command.
+        Nodes without services for parameters are not asked. Waiting for acknowledgements would not be enough, and would
+        cost 0.8 s per call, which is the period of the middleware's heartbeats.
         """
         self._calls.append(asked)
         self._start_calls()
@@ -119,8 +126,14 @@ class Link:
                 self._listen(topic, kind, offered[0].qos_profile)
             if wanting := _others(self._node.get_subscriptions_info_by_topic(topic)):
                 self._offer(topic, kind, wanting[0].qos_profile)
-                self._receivers[topic] = sorted({_parameters(end) for end in wanting})
-                if topic in self._publishers and self._publishers[topic].get_subscription_count():
+                self._receivers[topic] = sorted(
+                    {_parameters(end) for end in wanting if end.node_name != UNKNOWN}
+                )
+                known = all(end.node_name != UNKNOWN for end in wanting)
+                seen = self._seen.setdefault(topic, monotonic())
+                if self._publishers[topic].get_subscription_count() and (
+                    known or monotonic() > seen + NAMING
+                ):
                     subscribed.append(topic)
         connected = [topic for topic, end in self._wanted.items() if end and end.get_publisher_count()]
         now = {"published": published, "subscribed": subscribed, "connected": connected}
@@ -174,9 +187,13 @@ class Link:
             _in_turn(receivers, partial(self._start, client, asked))
 
     def _asked_first(self) -> list[Any]:
-        """Return the clients of the services for parameters of the nodes that receive commands since the last call."""
-        names = sorted({name for topic in self._sent for name in self._receivers.get(topic, ())})
-        return [client for name in names if (client := self._client(name)) is not None]
+        """Return the clients of services for parameters to call first, once for each command to their node."""
+        times = Counter[str]()
+        for topic, commands in self._sent.items():
+            for name in self._receivers.get(topic, ()):
+                times[name] = max(times[name], commands)
+        clients = [(self._client(name), commands) for name, commands in sorted(times.items())]
+        return [client for client, commands in clients if client is not None for _ in range(commands)]
 
     def _start(self, client: Any, asked: dict[str, Any]) -> None:
         request = filled(client.srv_type.Request(), asked["request"], _message_class)

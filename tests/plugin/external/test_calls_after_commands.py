@@ -25,8 +25,8 @@ class Simulator:
         self.handled: list[str] = []
 
     def one_pass(self, before_requests: Callable[[], None] = lambda: None) -> None:
-        """Look for commands, then for requests, and handle in this order what was found."""
-        commands, self.commands = self.commands, []
+        """Look for commands, then for requests; handle in this order one command and all requests."""
+        commands, self.commands = self.commands[:1], self.commands[1:]
         before_requests()
         requests, self.requests = self.requests, []
         self.handled += commands
@@ -55,7 +55,10 @@ class Simulator:
 
 
 def linked(
-    monkeypatch: pytest.MonkeyPatch, simulator: Simulator, receivers: Sequence[tuple[str, str]]
+    monkeypatch: pytest.MonkeyPatch,
+    simulator: Simulator,
+    receivers: Sequence[tuple[str, str]],
+    say: Callback = lambda _: None,
 ) -> Link:
     """Return a link to a simulator of which nodes (namespace, name) subscribe to /cmd."""
     ends = [
@@ -87,7 +90,7 @@ def linked(
         vars(made).update(content)
         monkeypatch.setitem(sys.modules, name, made)
     monkeypatch.setattr(module, "_class", lambda kind: kind)
-    link = Link(7, "/clock", lambda _: None)
+    link = Link(7, "/clock", say)
     link.look()
     return link
 
@@ -114,6 +117,22 @@ def test_a_command_that_arrives_between_the_looks_of_an_executor_is_handled_befo
     simulator.one_pass(sent)  # both arrive after this pass has looked for commands
     simulator.one_pass()
     assert [name for name in simulator.handled if not name.endswith("get_parameters")] == ["/cmd", "/step"]
+
+
+def test_all_commands_of_a_topic_are_handled_before_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    simulator = Simulator(["/cart/get_parameters"])
+    link = linked(monkeypatch, simulator, [("/", "cart")])
+
+    def sent() -> None:
+        for _ in range(3):
+            command(link)
+        step(link)
+
+    simulator.one_pass(sent)
+    while simulator.requests:
+        simulator.one_pass()
+    asked = "/cart/get_parameters"
+    assert simulator.handled == [asked, "/cmd", asked, "/cmd", asked, "/cmd", "/step"]
 
 
 def test_without_a_command_since_the_last_step_nothing_else_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -164,3 +183,29 @@ def test_a_step_waits_until_the_services_for_parameters_can_be_called(
     simulator.one_pass()
     simulator.one_pass()
     assert simulator.handled == ["/cmd", "/cart/get_parameters", "/step"]
+
+
+def test_a_topic_counts_as_subscribed_once_the_names_of_its_nodes_are_known_or_after_a_limit(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    said: list[Any] = []
+    nodes = [
+        SimpleNamespace(
+            node_namespace="/", node_name=module.UNKNOWN, qos_profile=SimpleNamespace(durability=1)
+        )
+    ]
+    now = [100.0]
+    monkeypatch.setattr(module, "monotonic", lambda: now[0])
+    link = linked(monkeypatch, Simulator(["/cart/get_parameters"]), [("/", module.UNKNOWN)], said.append)
+    assert said[-1]["subscribed"] == []
+    now[0] += module.NAMING
+    link.look()
+    assert len(said) == 1
+    now[0] += 1.0
+    link.look()
+    assert said[-1]["subscribed"] == ["/cmd"]
+    nodes[0].node_name = "cart"
+    monkeypatch.setattr(link._node, "get_subscriptions_info_by_topic", lambda _: nodes)
+    link._seen.clear()
+    link.look()
+    assert link._receivers == {"/cmd": ["/cart/get_parameters"]}

@@ -70,6 +70,59 @@ def test_an_answer_does_not_overtake_the_messages_sent_before_it(monkeypatch: py
     assert all(one["sent"] >= events[-1]["asked"] for one in events if one["kind"] == "message")
 
 
+def test_a_step_is_handled_after_all_commands_that_were_sent_before_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from diagnostic_msgs.srv import SelfTest
+    from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.node import Node
+    from std_msgs.msg import Float64
+
+    from pytest_tarl.external.domain import Domain
+    from pytest_tarl.external.link import Link
+
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")
+    domain = Domain()
+    context = Context()
+    context.init(args=[], domain_id=domain.number, initialize_logging=False)
+    node = Node("sim", context=context, use_global_arguments=False)
+    handled: list[Any] = []
+
+    def step(_: Any, response: Any) -> Any:
+        handled.append("step")
+        return response
+
+    node.create_subscription(Float64, "/cmd", lambda message: handled.append(message.data), 10)
+    node.create_service(SelfTest, "/step", step)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    events: list[dict[str, Any]] = []
+    link = Link(domain.number, "/clock", events.append)
+    rounds = 3
+    try:
+        _until(
+            lambda: link.look() or any(one.get("subscribed") == ["/cmd"] for one in events), executor, link
+        )
+        for number in range(rounds):
+            for command in range(5):
+                link.send("/cmd", {"data": float(command)})
+            link.call({"id": number, "service": "/step", "request": {}})
+            _until(
+                lambda: link.look() or sum(one["kind"] == "answer" for one in events) > number,  # noqa: B023
+                executor,
+                link,
+            )
+    finally:
+        link.close()
+        executor.shutdown()
+        node.destroy_node()
+        context.try_shutdown()
+        domain.release()
+    assert handled == [0.0, 1.0, 2.0, 3.0, 4.0, "step"] * rounds
+
+
 def _until(done: Any, executor: Any, link: Any) -> None:
     started = monotonic()
     while not done() and monotonic() < started + LIMIT:
