@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import array
+from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -145,6 +146,7 @@ def linked() -> tuple[Link, list[dict[str, Any]], Any]:
     node.get_subscriptions_info_by_topic = lambda topic: node.subscriptions.get(topic, [])
     parts: dict[str, Any] = {
         "_node": node, "_say": said.append, "_clock": "/clock", "_wanted": {"/clock": None}, "_publishers": {},
+        "_receivers": {}, "_seen": {}, "_sent": Counter(),
         "_clients": {}, "_calls": [], "_known": {}, "_answers": [], "_handled": 0,
     }  # fmt: skip
     for name, value in parts.items():
@@ -155,7 +157,7 @@ def linked() -> tuple[Link, list[dict[str, Any]], Any]:
 
 
 def info(name: str) -> Any:
-    return SimpleNamespace(node_name=name, qos_profile=None)
+    return SimpleNamespace(node_name=name, node_namespace="/", qos_profile=None)
 
 
 def test_changes_of_the_graph_are_reported_once(linked: tuple[Link, list[dict[str, Any]], Any]) -> None:
