@@ -22,11 +22,14 @@ _INTERRUPTED = re.compile(
     rf"^(?:{_FRAMES}[\w.]+(?::.*)?\n{_LINK})*{_FRAMES}(?:[\w.]+\.)?(?:{_INTERRUPTS}|{_SHUT_DOWN})(?:\n(?!{_LINK})|\Z)",
     re.MULTILINE,
 )
+# rclpy's handler of SIGINT wakes executors, also those of a context that has just been destroyed
+_HANDLING = re.compile(r"^\[\w+\] \[[\d.]+\] \[rclpy\.signals\]: .*(?:\n|\Z)", re.MULTILINE)
 
 
 def without_interrupts(output: str) -> str:
-    """Remove each Python traceback whose last exception shows that the process, or its ROS, was interrupted.
+    """Remove what rclpy's handler of signals logs, and each Python traceback whose last exception shows an interrupt.
 
-    Other tracebacks remain, even if an interrupt caused their exception or occurred while it was being handled.
+    The interrupt is one of the process or of its ROS. Other tracebacks remain, even if an interrupt caused their
+    exception or occurred while it was being handled.
     """
-    return _INTERRUPTED.sub("", output)
+    return _INTERRUPTED.sub("", _HANDLING.sub("", output))

@@ -87,6 +87,13 @@ def test_errors_of_a_ros_that_was_shut_down_are_left_out_of_the_output(last: str
     assert without_interrupts(own) == own
 
 
+def test_what_the_handler_of_signals_logs_is_left_out_and_other_logged_errors_stay() -> None:
+    failed = "rcl_trigger_guard_condition() failed: guard condition implementation is invalid, at guard_condition.c:170"
+    handler = f"[ERROR] [1795828810.626488426] [rclpy.signals]: {failed}"
+    own = f"[ERROR] [1795828810.626488426] [sim.signals]: {failed}"
+    assert without_interrupts(f"drained\n{handler}\n{own}\n{handler}") == f"drained\n{own}\n"
+
+
 @pytest.mark.parametrize("kind", FAULTY)
 def test_errors_while_the_simulator_ends_stay_in_the_output(kind: str) -> None:
     program, error = FAULTY[kind]
