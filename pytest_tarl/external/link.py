@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from time import monotonic, time_ns
 from typing import Any
@@ -21,8 +22,18 @@ UNKNOWN = (
     "_NODE_NAME_UNKNOWN_"  # rclpy's name of a node of which so far only a publisher or subscription is known
 )
 NAMING = 10.0  # maximum time until the name of a node is known; what is not a node of ROS 2 never has one (s)
+ASKING = 10.0  # maximum time until a node tells its parameters; then it is not asked again (s)
 
 Say = Callable[[dict[str, Any]], None]
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A service for parameters that was called, the time until it must answer, and what follows."""
+
+    service: str
+    deadline: float
+    then: Callable[[], None]
 
 
 class Link:
@@ -54,6 +65,8 @@ class Link:
             str, list[str]
         ] = {}  # topic → services for parameters of the nodes that subscribe to it
         self._seen: dict[str, float] = {}  # topic → when a subscription to it was first seen
+        self._asking: Turn | None = None  # the service for parameters that has not answered yet
+        self._silent: set[str] = set()  # services for parameters that did not answer in time
         self._sent: Counter[str] = Counter()  # topic → number of commands since the last call
         self._known: dict[str, Any] = {}
         # answers of services that have not been passed on to the test yet
@@ -108,8 +121,8 @@ class Link:
         subscription. So it can miss a command that arrives in between, and handle the request before the second
         command on a topic. Therefore, the nodes that subscribe to the commands are first asked for no parameters, once
         for each command. When they have answered, and the executor finds the call, it has just taken the last command.
-        Nodes without services for parameters are not asked. Waiting for acknowledgements would not be enough, and would
-        cost 0.8 s per call, which is the period of the middleware's heartbeats.
+        Nodes without services for parameters, or that do not answer, are not asked. Waiting for acknowledgements would
+        not be enough, and would cost 0.8 s per call, which is the period of the middleware's heartbeats.
         """
         self._calls.append(asked)
         self._start_calls()
@@ -140,6 +153,7 @@ class Link:
         if now != self._known:
             self._known = now
             self._say({"kind": "graph", **now})
+        self._skip_silent()
         self._start_calls()
 
     def _listen(self, topic: str, kind: str, offered: Any) -> None:
@@ -179,21 +193,47 @@ class Link:
     def _start_calls(self) -> None:
         waiting, self._calls = self._calls, []
         for asked in waiting:
-            client, receivers = self._client(asked["service"]), self._asked_first()
+            client, names = self._client(asked["service"]), self._asked_first()
+            receivers = [self._client(name) for name in names]
             if client is None or not all(one.service_is_ready() for one in (client, *receivers)):
                 self._calls.append(asked)
                 continue
             self._sent.clear()
-            _in_turn(receivers, partial(self._start, client, asked))
+            self._ask(names, partial(self._start, client, asked))
 
-    def _asked_first(self) -> list[Any]:
-        """Return the clients of services for parameters to call first, once for each command to their node."""
+    def _asked_first(self) -> list[str]:
+        """Return the services for parameters to call first, once for each command to their node."""
         times = Counter[str]()
         for topic, commands in self._sent.items():
             for name in self._receivers.get(topic, ()):
                 times[name] = max(times[name], commands)
-        clients = [(self._client(name), commands) for name, commands in sorted(times.items())]
-        return [client for client, commands in clients if client is not None for _ in range(commands)]
+        asked = [
+            name for name in sorted(times) if name not in self._silent and self._client(name) is not None
+        ]
+        return [name for name in asked for _ in range(times[name])]
+
+    def _ask(self, names: list[str], then: Callable[[], None]) -> None:
+        """Call the services for parameters one after the other, then call `then`."""
+        self._asking = None
+        names = [name for name in names if name not in self._silent]
+        if not names:
+            then()
+            return
+        first, others = names[0], names[1:]
+        turn = self._asking = Turn(first, monotonic() + ASKING, partial(self._ask, others, then))
+        client = self._client(first)
+        client.call_async(client.srv_type.Request()).add_done_callback(lambda _: self._answered_first(turn))
+
+    def _answered_first(self, turn: Turn) -> None:
+        if self._asking is turn:
+            turn.then()
+
+    def _skip_silent(self) -> None:
+        """Go on without a node that does not answer: its executor may only run within a step."""
+        turn = self._asking
+        if turn is not None and monotonic() > turn.deadline:
+            self._silent.add(turn.service)
+            turn.then()
 
     def _start(self, client: Any, asked: dict[str, Any]) -> None:
         request = filled(client.srv_type.Request(), asked["request"], _message_class)
@@ -215,15 +255,6 @@ class Link:
                 return None
             self._clients[service] = self._node.create_client(_class(kinds[service][0]), service)
         return self._clients[service]
-
-
-def _in_turn(clients: list[Any], then: Callable[[], None]) -> None:
-    """Call `then` when all clients have been answered an empty request."""
-    if not clients:
-        then()
-        return
-    first, *others = clients
-    first.call_async(first.srv_type.Request()).add_done_callback(lambda _: _in_turn(others, then))
 
 
 def _parameters(end: Any) -> str:

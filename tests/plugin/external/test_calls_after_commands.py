@@ -209,3 +209,31 @@ def test_a_topic_counts_as_subscribed_once_the_names_of_its_nodes_are_known_or_a
     link._seen.clear()
     link.look()
     assert link._receivers == {"/cmd": ["/cart/get_parameters"]}
+
+
+def test_a_node_that_runs_only_within_a_step_is_asked_once_and_delays_one_step(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr(module, "monotonic", lambda: now[0])
+    simulator = Simulator(["/cart/get_parameters", "/drive/get_parameters"])
+    link = linked(monkeypatch, simulator, [("/", "cart"), ("/", "drive")])
+    command(link)
+    step(link)
+    (_, late), simulator.requests = simulator.requests[0], []
+    now[0] += module.ASKING
+    link.look()
+    simulator.one_pass()
+    assert simulator.handled == ["/cmd"]
+    now[0] += 0.1
+    link.look()
+    simulator.one_pass()
+    simulator.one_pass()
+    late(None)
+    simulator.one_pass()
+    assert simulator.handled == ["/cmd", "/drive/get_parameters", "/step"]
+    command(link)
+    step(link)
+    simulator.one_pass()
+    simulator.one_pass()
+    assert simulator.handled[3:] == ["/cmd", "/drive/get_parameters", "/step"]

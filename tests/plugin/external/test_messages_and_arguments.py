@@ -146,7 +146,7 @@ def linked() -> tuple[Link, list[dict[str, Any]], Any]:
     node.get_subscriptions_info_by_topic = lambda topic: node.subscriptions.get(topic, [])
     parts: dict[str, Any] = {
         "_node": node, "_say": said.append, "_clock": "/clock", "_wanted": {"/clock": None}, "_publishers": {},
-        "_receivers": {}, "_seen": {}, "_sent": Counter(),
+        "_receivers": {}, "_seen": {}, "_sent": Counter(), "_asking": None, "_silent": set(),
         "_clients": {}, "_calls": [], "_known": {}, "_answers": [], "_handled": 0,
     }  # fmt: skip
     for name, value in parts.items():
