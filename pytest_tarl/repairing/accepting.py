@@ -84,6 +84,7 @@ class Examiner:
     def first(self, confirmed: Iterator[Candidate], trials: Trials) -> Accepted | None:
         """Examine candidates until one is accepted, the tests are used up or the budget is spent."""
         trials.loses = lambda candidate: self._missed.again(candidate, trials, self.order.goal)
+        trials.lost_missions = self._missed.latest
         trials.harms = lambda candidate: operands(candidate) in self._missed.harmed
         try:
             for candidate in confirmed:

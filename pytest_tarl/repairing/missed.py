@@ -64,6 +64,10 @@ class Missed:
             self.poor.add(candidate)
             self.spread[candidate] = _spread(found)
 
+    def latest(self) -> list[int]:
+        """Return the seeds of the missions stored last."""
+        return [seed for seed, _ in self.seeds[-LATEST:]]
+
     def nearly_right(self, candidate: Candidate) -> bool:
         """Return whether a refused candidate's missions succeeded, so that its value may only have to be improved."""
         return candidate in self.costly or candidate in self.spread

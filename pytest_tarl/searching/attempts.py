@@ -5,6 +5,7 @@ Before a confirmed change is yielded, the changes that a maintainer would prefer
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from statistics import fmean
 from types import MappingProxyType
@@ -20,6 +21,7 @@ from pytest_tarl.searching.divided import divided, stronger_and_weaker
 from pytest_tarl.searching.farther import farther
 from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
 from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.lost_missions import MOVES, better_factor
 from pytest_tarl.searching.plainness import Oddness, writing
 from pytest_tarl.searching.polishing import ALMOST, EPISODES, FINE_STEPS, KNOWN
 from pytest_tarl.searching.preferring import Preferences
@@ -112,6 +114,8 @@ class Attempts:
         self._divided: set[Unit] = set()  # units of which no single value suits all missions
         # units that were adjusted because they nearly earned enough
         self._adjusted: set[tuple[Unit, Guard]] = set()
+        # how often the value of a unit was moved on, because it lost the missions of rejected candidates
+        self._moved: Counter[tuple[Unit, Guard]] = Counter()
         self._settled = Settled()
 
     def interlude(self, gain: float) -> Iterator[Candidate]:
@@ -196,6 +200,7 @@ class Attempts:
             yield from self.preferences.after()
             yield from self._later(unit, guard, factor, pair)
         elif near:
+            yield from self._moved_on(unit, candidate, factor, pair)
             yield from self._nearly(unit, candidate, factor, pair)
             yield from self._following(unit, candidate, factor, pair)
             yield from self.uses.alone(unit, guard, factor, pair)
@@ -215,6 +220,17 @@ class Attempts:
                 if candidate is not None:
                     yield candidate
                     return
+
+    def _moved_on(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
+        """Move a value on that loses the missions of rejected candidates (see `lost_missions`), up to `MOVES` times."""
+        key = (unit, candidate.guard)
+        if self.proposed or self._moved[key] >= MOVES or not self.trials.loses(candidate):
+            return
+        self._moved[key] += 1
+        tried = self.gains.of(unit, candidate.guard)
+        better = better_factor(unit, candidate, factor, tried, self.mutate, self.trials)
+        if better is not None:
+            yield from self.attempt(unit, candidate.guard, better, pair)
 
     def _nearly(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
         """Adjust the value of a change that passes its missions and earns nearly enough, before others are tried.

@@ -129,6 +129,11 @@ def lost_nothing(_: Candidate) -> bool:
     return False
 
 
+def no_missions() -> Sequence[int]:
+    """Return no seeds, the default before any candidate was rejected."""
+    return ()
+
+
 def never_late() -> None:
     """Do nothing: the default for searches without a time limit."""
 
@@ -151,6 +156,7 @@ class Trials:
     worth: Goal | None = None  # `reserve` is released after a gain of FAR times the wanted gain of this goal
     # returns whether a candidate loses missions that were lost by rejected candidates
     loses: Callable[[Candidate], bool] = lost_nothing
+    lost_missions: Callable[[], Sequence[int]] = no_missions  # returns the seeds of these missions
     # returns whether the constants of a candidate made the designed world worse
     harms: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world
