@@ -1,6 +1,6 @@
 """Print the lowest versions that pyproject.toml allows, one `name==version` a line, as constraints for pip.
 
-`python .ci/lower_bounds.py [EXTRA ...]` tells the requirements of the distribution and of the extras named.
+`python .ci/lower_bounds.py [EXTRA ...]` covers the requirements of the distribution and of the named extras.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _REQUIREMENT = re.compile(r"([A-Za-z0-9._-]+)(?:\[[^]]*\])?>=([0-9.]+)")
 
 
 def bounds(extras: list[str]) -> list[str]:
-    """Return the constraints; markers of the interpreter are kept."""
+    """Return the constraints, with the environment markers of the requirements."""
     project = tomllib.loads(Path(__file__).parent.parent.joinpath("pyproject.toml").read_text())["project"]
     found = []
     for line in [*project["dependencies"], *requirements(project["optional-dependencies"], extras)]:
@@ -31,7 +31,7 @@ def bounds(extras: list[str]) -> list[str]:
 
 
 def requirements(declared: dict[str, list[str]], extras: list[str]) -> list[str]:
-    """Return what these extras need and the extras that they include, each line once."""
+    """Return the requirements of these extras and of the extras that they include, each once."""
     found: dict[str, None] = {}
     for extra in extras:
         for line in declared[extra]:

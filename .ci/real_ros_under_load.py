@@ -1,9 +1,9 @@
-"""Run the tests on a real ROS beside programs that want every processor: lock-step must hold whatever the load.
+"""Run the tests on a real ROS while other programs keep every processor busy: lock-step must hold under any load.
 
 `.venv-ros2/bin/python .ci/real_ros_under_load.py` runs the probe `profiles` 500 times and each file of tests/realros 50
-times, in rounds, so that a run that is stopped early (`--minutes`, Ctrl-C) has run all files equally often. Nothing is
-tried again: each failure is printed and counted, `--keep` stores its whole output, and the exit status is 1 if there
-is one.
+times. The files run in rounds, so that each has run equally often if the script is stopped early (`--minutes`, Ctrl-C).
+A failed test is not repeated. Each failure is printed and counted, and with `--keep` its whole output is stored. The
+exit status is 1 if there is a failure.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Count:
     runs: int = 0
     failures: int = 0
     seconds: float = 0.0
-    skipped: bool = False  # all its tests, because they are for another ROS
+    skipped: bool = False  # whether all tests of the file were skipped, because they are for another ROS
 
     def row(self, name: str) -> str:
         """Return the row of the table."""
@@ -44,7 +44,7 @@ class Count:
 
 
 def main() -> None:
-    """Run everything and print a row for each."""
+    """Run the probe and the files of tests, and print a row for each of them."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--probe", default="profiles", help="(default profiles)")
     parser.add_argument("--probes", type=int, default=500, help="runs of the probe (default 500)")
@@ -86,7 +86,7 @@ def load(processes: int) -> Iterator[None]:
 
 
 def probe(name: str, times: int) -> tuple[int, int]:
-    """Run a probe so often on the real ROS in one process; return the runs, and those with unexpected answers."""
+    """Run a probe `times` times on the real ROS in one process; return the numbers of runs and of wrong answers."""
     sys.path.insert(0, str(ROOT))
     from tests.realros.probes.running import LIBRARIES, answers, expected, installed, probes
 

@@ -21,7 +21,7 @@ LEFT_OUT = shutil.ignore_patterns(
 
 
 def main() -> None:
-    """Print the digests, and end with 1 where they differ."""
+    """Print the digests; exit with status 1 if they differ."""
     at = subprocess.run(
         ["git", "log", "-1", "--format=%ct"], cwd=ROOT, capture_output=True, text=True, check=True
     )
@@ -33,10 +33,10 @@ def main() -> None:
 
 
 def built(folder: Path, epoch: str) -> dict[str, str]:
-    """Copy the sources there, build, and return the digest of each file."""
+    """Copy the sources into a folder, build there, and return the digest of each built file."""
     shutil.copytree(ROOT, folder, ignore=LEFT_OUT)
     for path in sorted(folder.rglob("*.py"), reverse=folder.name == "one"):
-        path.touch()  # another order and other times
+        path.touch()  # both copies differ in the order and the times of their files
     settings = {**os.environ, "SOURCE_DATE_EPOCH": epoch}
     settings["TZ"], settings["PYTHONHASHSEED"] = ("UTC", "1") if folder.name == "one" else ("Asia/Tokyo", "2")
     command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder / "dist"), str(folder)]

@@ -1,8 +1,8 @@
 """Write the bill of materials of a release beside its wheel, in the form of CycloneDX 1.6.
 
-`python .ci/sbom.py dist/tarl-0.1.0-py3-none-any.whl` names what the wheel needs, with all extras that it has for users,
-at the versions and with the digests of requirements-dev.txt and requirements-simulators.txt. The same wheel and locks
-give the same bytes.
+`python .ci/sbom.py dist/tarl-0.1.0-py3-none-any.whl` lists the packages that the wheel needs, including those of its
+extras for users. Their versions and digests come from requirements-dev.txt and requirements-simulators.txt. The same
+wheel and lock files give the same bytes.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _VIA = re.compile(r"^    #(?: via|  ) +(\S+)")
 
 
 def main() -> None:
-    """Write the file and say where."""
+    """Write the file and print its path."""
     if len(sys.argv) != 2 or not sys.argv[1].endswith(".whl"):
         sys.exit("usage: python .ci/sbom.py dist/NAME.whl")
     wheel = Path(sys.argv[1])
@@ -35,7 +35,7 @@ def main() -> None:
 
 
 def locked() -> str:
-    """Return the text of all locks."""
+    """Return the text of all lock files."""
     return "\n".join(lock.read_text() for lock in LOCKS)
 
 
@@ -71,7 +71,7 @@ def bill(wheel: Path, lock: str) -> dict[str, Any]:
 
 
 def asked(requirements: list[str]) -> Iterator[str]:
-    """Yield the names that a wheel requires, but for those of its extras for developers."""
+    """Yield the names that a wheel requires, except those of its extras for developers."""
     for line in requirements:
         extra = re.search(r"extra == ['\"]([\w-]+)", line)
         if extra is None or extra[1] not in DEVELOPMENT:
@@ -79,7 +79,7 @@ def asked(requirements: list[str]) -> Iterator[str]:
 
 
 def pins(lock: str) -> Iterator[dict[str, Any]]:
-    """Yield what a lock pins: name, version, marker, digests, and by whom it is needed."""
+    """Yield the pins of a lock file: name, version, marker, digests, and which packages need it."""
     current: dict[str, Any] | None = None
     for line in lock.splitlines():
         if match := _PINNED.match(line):
@@ -101,7 +101,7 @@ def pins(lock: str) -> Iterator[dict[str, Any]]:
 
 
 def merged(found: Iterator[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return pins, each once though several locks have it, with all by whom it is needed."""
+    """Merge equal pins of several lock files; a merged pin lists all packages that need it."""
     once: dict[tuple[str, str], dict[str, Any]] = {}
     for one in found:
         known = once.setdefault((normal(one["name"]), one["version"]), one)
@@ -111,7 +111,7 @@ def merged(found: Iterator[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def closure(names: set[str], pinned: list[dict[str, Any]]) -> set[str]:
-    """Return the names with all that they need in turn."""
+    """Return the names, and the names of all direct and indirect requirements."""
     found, before = set(names), set[str]()
     while found != before:
         before = set(found)
@@ -133,12 +133,12 @@ def component(one: dict[str, Any]) -> dict[str, Any]:
 
 
 def ref(one: dict[str, Any]) -> str:
-    """Name a component within the bill."""
+    """Return the identifier of a component within the bill of materials."""
     return f"{normal(one['name'])}@{one['version']}"
 
 
 def normal(name: str) -> str:
-    """Return a name as indexes compare it."""
+    """Return a package name in the normal form in which package indexes compare names."""
     return re.sub(r"[-_.]+", "-", name).lower()
 
 

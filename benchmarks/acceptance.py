@@ -1,11 +1,12 @@
-"""Print how often acceptance accepts a repair, for given true rewards and failure rates.
+"""Print how often the acceptance test accepts a repair, for given true rewards and failure rates.
 
     python benchmarks/acceptance.py [--runs 400]
 
-Missions are drawn, not simulated. The total of a successful mission is normal with mean `ratio` × 10; a failed mission
-earns -10, as little as the worst recorded mission. Designed missions earn 10 on average and never fail. The seed
-determines a share of the variance, which pairing can therefore remove. A repair is right if it loses less than 5 % of
-the designed reward on average, including failures, and fails in less than 5 % of its missions.
+The totals of missions are random numbers; nothing is simulated. The total of a successful mission is normal with mean
+`ratio` × 10; a failed mission earns -10, as little as the worst recorded mission. Designed missions earn 10 on average
+and never fail. A share of the variance depends only on the seed; comparing missions with equal seeds removes this
+share. A repair is right if it loses less than 5 % of the designed reward on average, including failures, and fails in
+less than 5 % of its missions.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ FAILING = (0.0, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)
 
 @dataclass(frozen=True)
 class Drawn:
-    """Random total rewards of missions: without and, with the same seeds, with a repair."""
+    """Random total rewards of missions: without a repair, and with a repair on the same seeds."""
 
     seed: int
     spread: float

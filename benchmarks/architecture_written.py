@@ -1,11 +1,12 @@
-"""Compare the reports of TARL301 to TARL310 with the misconfigurations that were sown in written workspaces.
+"""Compare the reports of TARL301 to TARL310 with the faults that were put into written workspaces.
 
     python benchmarks/architecture_written.py [benchmarks/architecture_written/round1]... [--show]
 
-Each workspace is one file: its files follow each other, each after a line `--- path`. The truth beside it was written
-before the linter was run. It lists the sown misconfigurations under `sown`: the rule, and texts that the message
-contains. Under `also_true`, it lists other true reports. All other reports are false, except those under `judged_true`,
-which were found to be true after the run.
+Each workspace is one file: its files follow each other, each after a line `--- path`. A JSON file beside it, written
+before the linter was run, lists the correct reports. Its key `sown` lists the faults that were put in on purpose: for
+each, the rule that must report it and texts that the message must contain. The key `also_true` lists other correct
+reports. The key `judged_true` lists reports that were found to be correct after the run. All other reports count as
+false.
 """
 
 from __future__ import annotations
@@ -54,13 +55,13 @@ def main() -> int:
 
 
 def _wrong(truth: Mapping[str, Any], reports: Sequence[Report]) -> Iterator[Report]:
-    """Yield the reports that the truth does not have."""
+    """Yield the reports that the JSON file does not list as correct."""
     right = [one for name in ("sown", "also_true", "judged_true") for one in truth.get(name, [])]
     yield from (report for report in reports if not any(_fits(one, report) for one in right))
 
 
 def _fits(fault: Mapping[str, Any], report: Report) -> bool:
-    """Return whether a report is about a fault; names in it end where the message's names end."""
+    """Return whether a report has the fault's rule and contains each of the fault's texts as a complete name."""
     code, message = report
     return fault["code"] == code and all(
         re.search(rf"(?<![\w/]){re.escape(text)}(?![\w/])", message) for text in fault["about"]
@@ -75,7 +76,7 @@ def _show(missed: Sequence[Mapping[str, Any]], wrong: Sequence[Report]) -> None:
 
 
 def _reports(workspace: Path) -> Iterator[Report]:
-    """Yield each report on all launch files of a workspace once."""
+    """Analyse all launch files of a workspace, and yield each distinct report once."""
     with tempfile.TemporaryDirectory() as place:
         root = Path(place)
         Texts.read(workspace).unpack(root)

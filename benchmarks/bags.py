@@ -2,10 +2,10 @@
 
     python benchmarks/bags.py [--seconds 60]
 
-A mission of the shuttle is written to bags of each kind, then replayed through the shuttle's node with all sites
-recorded. The bag has odometry, terrain and leg ten times a second, and a picture of 640 × 480 once a second that the
-node does not receive.
-Times are CPU times of the process, the minimum of three runs.
+A mission of the shuttle is written to a bag of each kind. Each bag is then replayed through the shuttle's node, while
+all sites of the node are recorded. The bag has messages of odometry, terrain and leg ten times a second. Once a second,
+it also has a picture of 640 × 480, to which the node does not subscribe. Times are CPU times of the process, the
+minimum of three runs.
 """
 
 from __future__ import annotations

@@ -2,10 +2,11 @@
 
     python benchmarks/bound_coverage.py [--repetitions 2000]
 
-Rows are distributions of an episode's total; columns are numbers of episodes. A cell holds the shares of samples in
-which the lower and the upper bound held. Exact bounds must hold in at least 94 % of the samples, within the error of
-the benchmark. Approximate bounds have no goal. A loss compares 200 recorded episodes with new episodes of the same
-world; the column is the number of new episodes.
+Each row of the table is a distribution of an episode's total reward, and each column is a number of episodes. A cell
+gives two shares of the samples: those in which the lower bound held, and those in which the upper bound held. Exact
+bounds must hold in at least 94 % of the samples, apart from the sampling error of the benchmark. Approximate bounds
+need not reach any share. For a loss, 200 recorded episodes are compared with new episodes of the same world, and the
+column is the number of new episodes.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from pytest_tarl.seeds import generator
 CONFIDENCE = 0.95
 GOAL = 0.94
 EPISODES = (8, 20, 50, 200)
-ONLINE = (8, 20, 50)  # numbers of new episodes for losses without a range; these bounds are slow to compute
+ONLINE = (8, 20, 50)  # numbers of new episodes for losses without a range, whose bounds are slow to compute
 OFFLINE = 200
 QUANTILE = 0.05
 LIMIT = 0.01  # margin of an acceptance test, as a share of the range
@@ -48,12 +49,12 @@ Held = tuple[bool, bool]
 
 
 def zero_inflated(draws: Generator, n: int) -> Floats:
-    """Return total rewards of which nine in ten are zero."""
+    """Draw total rewards; nine in ten of them are zero."""
     return np.clip(draws.exponential(2, n), 0, 20) * (draws.random(n) < 0.1)
 
 
 def bimodal(draws: Generator, n: int) -> Floats:
-    """Return total rewards of which one in twenty is far lower."""
+    """Draw total rewards; one in twenty is far lower than the others."""
     return np.where(draws.random(n) < 0.05, -9.0, 5.0) + draws.uniform(-1, 1, n)
 
 
@@ -73,7 +74,7 @@ RATES = (0.5, 0.9, 0.99)
 
 @dataclass(frozen=True)
 class World:
-    """A distribution of total rewards, with checks of whether bounds computed from a sample hold."""
+    """A distribution of total rewards, with methods that check whether the bounds from a sample hold."""
 
     name: str
 
@@ -103,11 +104,11 @@ class World:
         return low is None or low <= self.truth[1], True
 
     def loss(self, draws: Generator, n: int, how: Range | None) -> Held:
-        """Return whether the bounds on a loss hold if there is no loss."""
+        """Return whether the bounds on a loss hold when the true loss is 0."""
         return holds(loss_between(self.drawn(draws, OFFLINE), self.drawn(draws, n), CONFIDENCE, how), 0.0)
 
     def limit(self, draws: Generator, n: int, how: Range) -> Held:
-        """Return whether an acceptance test stays below its limit if n episodes lose exactly the margin."""
+        """Return whether the acceptance test never accepts within n episodes if the true loss is exactly the margin."""
         margin = LIMIT * (how.high - how.low)
         least = how.low - self.truth[0] - margin
         away = self.truth[0] + margin
@@ -117,7 +118,7 @@ class World:
         return all(stakes.wealth(seen[:end]) < log(1 / (1 - CONFIDENCE)) for end in ends), True
 
     def welch(self, draws: Generator, n: int) -> Held:
-        """Return whether Welch's bounds hold."""
+        """Return whether Welch's bounds on the loss hold when the true loss is 0."""
         low, high = difference_bounds(self.drawn(draws, OFFLINE), self.drawn(draws, n), 1 - CONFIDENCE)
         return low <= 0.0, high >= 0.0
 
@@ -133,7 +134,7 @@ def rate_holds(p: float, draws: Generator, n: int) -> Held:
 
 
 def sequence_holds(p: float, draws: Generator, n: int) -> Held:
-    """Return whether the bounds on a rate hold after each of n episodes."""
+    """Return whether the bounds on a rate hold at every time when they are checked during n episodes."""
     passed = np.cumsum(draws.random(n) < p)
     barred = log(1 / (1 - CONFIDENCE))
     ends = range(1, n + 1, max(1, n // 50))
@@ -184,7 +185,7 @@ def of_rate(p: float, repetitions: int) -> list[Row]:
 
 
 def of_world(name: str, repetitions: int, kinds: str) -> list[Row]:
-    """Return the rows for a distribution of totals: exact bounds, approximate ones, or both."""
+    """Return the rows for a distribution of totals: exact bounds, approximate bounds, or both."""
     world = World(name)
     declared, fewer, few = world.declared, repetitions // 2, repetitions // 4
     found: list[Row] = []
@@ -221,7 +222,7 @@ def rows(repetitions: int, workers: int, kinds: str) -> Iterator[Row]:
 
 
 def main() -> None:
-    """Print the table, and the number of exact bounds that miss the goal."""
+    """Print the table, and the number of exact bounds that hold in too few samples."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--repetitions", type=int, default=2000)
     parser.add_argument("--workers", type=int, default=2)

@@ -1,12 +1,13 @@
-"""Measure how often chains of tests on shared seeds confirm a drift with just the guaranteed success rate.
+"""Measure how often a chain of tests on shared seeds wrongly confirms a drift that meets the guarantee.
 
     python benchmarks/chain_coverage.py [--chains 4000]
 
-A chain goes from drifts that fail often to three that fail in 5 of 100 episodes, which is just what the guarantee
-allows. A share of the seeds has the same luck under all drifts; the others are independent. A confirmation of one of
-the last three drifts is wrong, and each chain may be wrong with the probability RISK. The table also gives the mean
-number of episodes of a chain and the mean number of the five failing drifts that it confirms, and the same for a chain
-whose tests do not know which seeds failed before.
+A chain tests eight drifts in turn. The first five fail too often. The last three fail in 5 of 100 episodes, which the
+guarantee just allows. For a share of the seeds, the random outcome is the same under all drifts; for the other seeds,
+the outcomes are independent. It is an error to confirm one of the last three drifts, and a chain may make this error
+with a probability of at most RISK. The table also gives two means: the number of episodes of a chain, and the number of
+the five failing drifts that it confirms. For comparison, it repeats all figures for chains whose tests do not use which
+seeds failed before.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from pytest_tarl.stressing.guarantee import Guarantee, Outcome
 from pytest_tarl.stressing.rate_tests import LOOKS, RateTests
 
 RATES = (0.6, 0.4, 0.3, 0.25, 0.2, 0.05, 0.05, 0.05)
-WRONG = 5  # number of the first drift at which the guarantee holds
+WRONG = 5  # index of the first drift at which the guarantee holds
 RISK = 0.05
 SHARES = (0.0, 0.5, 1.0)
 GIVEN = Guarantee(0.95, 0.5, (1.0,) * 100, 1.0)
@@ -32,14 +33,14 @@ GIVEN = Guarantee(0.95, 0.5, (1.0,) * 100, 1.0)
 
 @dataclass
 class Episodes:
-    """An evaluator of drifts whose episodes fail as `failed` says, of shape (drifts, seeds)."""
+    """An evaluator of drifts; `failed`, of shape (drifts, seeds), says which episodes fail."""
 
     failed: Any
     guarantee: Guarantee = GIVEN
     spent: int = 0
 
     def ordered(self, _: str, point: Point, rows: Sequence[int]) -> dict[int, Outcome]:
-        """Return the outcomes of seeds."""
+        """Return the outcomes of a drift on the seeds `rows`."""
         self.spent += len(rows)
         return {row: Outcome(not self.failed[round(point["drift"]), row], 1.0) for row in rows}
 
@@ -48,7 +49,7 @@ class Episodes:
 
 
 def chain(draws: np.random.Generator, alike: float, *, shared: bool = True) -> tuple[bool, int, int]:
-    """Return whether a chain confirms a drift at which the guarantee holds, its episodes, and its right results."""
+    """Run a chain; return whether it errs, its number of episodes, and how many failing drifts it confirms."""
     size = LOOKS[-1]
     own, common = draws.random((len(RATES), size)), draws.random(size)
     luck = np.where(draws.random(size) < alike, common, own)
@@ -63,7 +64,7 @@ def chain(draws: np.random.Generator, alike: float, *, shared: bool = True) -> t
 
 
 def main() -> None:
-    """Print a line for each share of seeds with the same luck under all drifts."""
+    """Print a line for each share of seeds that have the same outcome under all drifts."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--chains", type=int, default=4000)
     number = parser.parse_args().chains

@@ -1,4 +1,4 @@
-"""The drift of a task as one direction: its size, from the nominal value to the value that the test declares."""
+"""Vary the size of a task's drift, from the nominal value to the value that the test declares."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SIZE = "size"  # name of the only direction
 
 @dataclass(frozen=True)
 class Sized:
-    """Runs episodes of a task in which the coordinate of the point to evaluate is the size of a drift."""
+    """Runs episodes of a task; the only coordinate of a point is the size of the task's drift."""
 
     stage: Stage
     name: str  # name of the drift
@@ -36,7 +36,11 @@ class Sized:
     workers = 1
 
     def value(self, size: float) -> Any:
-        """Return the drift of a size: that of a single number, or the share of the way of several numbers."""
+        """Return the drift with this size.
+
+        If the drift is a number, the size is its value. If it has several numbers, the size is the share of the way
+        from the nominal values to the declared values.
+        """
         if not self.ends:
             return round(size) if self.whole else size
         if len(self.ends) == 1:
@@ -58,7 +62,7 @@ class Sized:
 
 
 def world_arguments(stage: Stage) -> dict[str, Any]:
-    """Return the default values of the world that the test makes with `**(…tarl_drift…)`; empty if it makes none."""
+    """Return the defaults of the world that the test creates with `**(…tarl_drift…)`; empty if there is none."""
     item = stage.rollout.item
     for call in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(item.function)))):
         if isinstance(call, ast.Call) and any(
@@ -71,7 +75,7 @@ def world_arguments(stage: Stage) -> dict[str, Any]:
 
 
 def nominal_of(stage: Stage) -> str:
-    """Return the nominal value of a drift that is a number: the one that the test states, or the world's only default.
+    """Return the nominal value of a drift that is a number: the value in the test, or else the world's only default.
 
     Raise SystemExit if there is neither.
     """

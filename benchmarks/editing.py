@@ -3,9 +3,9 @@
     python benchmarks/editing.py TREE [--files 12] [--seed 0] [--all]
 
 Files are drawn from those with a diagnostic; with --all, from all files. Each file is edited in three ways: a comment
-before a random statement, a statement in a random function, and a statement at the end. Times are CPU seconds of the
-linter until all findings are known, and until the findings of the edited file are known. The protocol adds
-milliseconds.
+before a random statement, a statement in a random function, and a statement at the end. Two times are printed, in CPU
+seconds of the linter: until all findings are known, and until the findings of the edited file are known. The language
+server protocol itself adds only milliseconds.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def main() -> None:
     workspace = Workspace([root])
 
     def timed(buffers: Mapping[Path, str], edited_path: str = "") -> tuple[float, float, Result]:
-        """Return the seconds until the edited file's findings are final, the seconds of all files, and the result."""
+        """Return the seconds until the edited file's findings are final, the seconds for all files, and the result."""
         begun = time.process_time()
         finals: list[float] = []
 

@@ -1,4 +1,4 @@
-"""Measure the cost of an episode: of the shuttle (uninstrumented and recorded), and of an empty test.
+"""Measure the cost of an episode of the shuttle, uninstrumented and recorded, and of an empty test.
 
     python benchmarks/episodes.py [--episodes 200]
 
@@ -40,7 +40,7 @@ def test_empty(tarl):
 
 @dataclass
 class Stopwatch:
-    """A pytest plugin that times the episodes of a test instead of running it once; milliseconds by name."""
+    """A pytest plugin that times the episodes of a test instead of running it once; `found` has the milliseconds."""
 
     episodes: int
     found: dict[str, float] = field(default_factory=dict)

@@ -7,9 +7,9 @@ Robots drive past ten places, dry or wet, at 40 sites. Four things differ from t
 
 - 1 % of the robots drift: from a random mission on, a place costs reward, and some missions fail there
 - the last release, rolled out to 4 of the sites after two thirds of the missions, costs reward at another place
-- a season: at 2 other sites, wet steps cost reward in the last fifth of the missions
-- a repair of the release, rolled out to every other robot of its sites in the last sixth: it undoes the loss at all of
-  them but one, where it does nothing
+- a season: at 2 other sites, steps at wet places cost reward in the last fifth of the missions
+- a repair of the release, rolled out in the last sixth of the missions to every other robot of the 4 sites; it undoes
+  the loss at three of these sites and has no effect at the fourth
 
 Groups are formed by version and site, by site, and by site and week. The season is not visible in the first of these
 groupings. For comparison, the script also computes the z-score of the mean reward of each robot and group against the
@@ -72,7 +72,7 @@ class World:
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot and the true changes of its missions. Missions are numbered from 0; -1 means never."""
+    """A robot, and the missions at which it truly changes. Missions are numbered from 0; -1 means never."""
 
     number: int
     site: int
@@ -322,7 +322,7 @@ def changes(by: str, robots: list[Robot], missions: int) -> dict[tuple[str, ...]
 
 
 def found_groups(by: str, told: dict[str, Any], recorded: Sample, robots: list[Robot], missions: int) -> None:
-    """Print the changed groups found by verdict, by onset and by z-score, and the error of the onsets."""
+    """Print how many changed groups the verdict, the onset and the z-score find, and the error of the onsets."""
     truth = changes(by, robots, missions)
     mean, spread = float(recorded.total.mean()), float(recorded.total.std(ddof=1))
     named = {*told["groups_drifted"], *told["groups_below"]}

@@ -1,10 +1,10 @@
-"""Fit the cost of `tarl ingest` and `tarl fleet` to measurements, and extrapolate it to a larger fleet.
+"""Fit a cost model of `tarl ingest` and `tarl fleet` to measurements, and extrapolate to a larger fleet.
 
     python benchmarks/fleet_cost.py [--missions 1e9] [--core-hour 0.05] [--gb-month 0.023]
 
-The measurements are those of docs/benchmarks/fleet.md, section "A fleet". To use other measurements, pass
-them as `--measured 100000:20.1:500 1000000:80.2:1300`: for each, the number of missions, and the CPU seconds and peak
-memory (MB) of a query. Prices are assumptions in dollars; replace them with those of your provider.
+The measurements are those of docs/benchmarks/fleet.md, section "A fleet". To use other measurements, pass them as
+`--measured 100000:20.1:500 1000000:80.2:1300`. Each measurement gives the number of missions, the CPU seconds of a
+query, and its peak memory (MB). Prices are assumptions in dollars; replace them with those of your provider.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 MEASURED = ("100000:12.9:571", "400000:29.7:813", "1000000:61.4:1242")
 BYTES = 193  # stored size of a mission without taint lists (bytes)
 INGESTED = 2000  # number of missions ingested per CPU second
-# number of bytes that a worker returns for a mission: its number, and one byte for each score
+# number of bytes that a worker returns for a mission: the mission's number, and one byte for each score
 SCORES = 26 + 16
 TAKEN = 26 + 25  # number of bytes that a task receives for a mission: its scores and results
 PARALLEL = 0.75  # share of a query's CPU time that runs on workers
@@ -32,12 +32,12 @@ class Line:
     each: float
 
     def at(self, missions: float) -> float:
-        """Return its value."""
+        """Return the quantity for this number of missions."""
         return self.fixed + self.each * missions
 
 
 def fitted(missions: list[float], values: list[float]) -> Line:
-    """Fit a line that minimises the squares of the relative errors."""
+    """Fit the line with the smallest sum of squared relative errors."""
     weight = 1.0 / np.array(values)
     columns = np.stack([np.ones(len(missions)), np.array(missions)], axis=1)
     fixed, each = np.linalg.lstsq(columns * weight[:, None], np.ones(len(values)), rcond=None)[0].tolist()

@@ -3,10 +3,10 @@
     python benchmarks/fleet_false_discoveries.py [--fleets 100] [--robots 100] [--missions 60]
 
 Each fleet has its own recording of the world of benchmarks/fleet.py. In the first half of the fleets, a tenth of the
-robots drift from a random mission on: a place costs reward, and 15 % of the missions fail. In the second half, no
-robot drifts, so a fleet's share of false discoveries is 1 if any robot is named. Missions are drawn as statistics and
-judged by the functions that the command calls. For comparison, the script also computes the z-score of each robot's
-mean reward; |z| > 3 is an alarm.
+robots drift from a random mission on: a place costs reward, and 15 % of the missions fail. In the second half, no robot
+drifts, so a fleet's share of false discoveries is 1 if any robot is named. The script draws the statistics of missions
+at random, and judges them with the functions that `tarl fleet` calls. For comparison, the script also computes the
+z-score of each robot's mean reward; |z| > 3 is an alarm.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ METHODS = ("missions differ", "below a bound", "z-score")
 def drawn(
     rng: np.random.Generator, drifted: np.ndarray[tuple[int], np.dtype[np.bool_]], cells: int
 ) -> Sample:
-    """Return missions as `drive` in benchmarks/fleet.py runs them; in the missions `drifted`, a place costs reward."""
+    """Return missions like those of `drive` in benchmarks/fleet.py; in the missions `drifted`, a place costs reward."""
     count = len(drifted)
     wet = rng.random(count) < 0.3
     stays = rng.random((count, PLACES)) < 0.5

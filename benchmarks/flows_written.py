@@ -3,14 +3,15 @@
     python benchmarks/flows_written.py [benchmarks/flows_written_2/judge]... [--show]
 
 Each workspace is one text: its files follow each other, each after a line `--- path`. The JSON beside it was written
-before the linter was run. For each publish call, it names the subscriptions, services and look-ups of transforms that
-reach the call: with their data (`data`), by a decision (`control`), or only by the fact that a message arrives
-(`event`). `also` lists other kinds that count as right; `weak` marks what does not count, and `why` gives the reason.
-A line that subscribes to several topics has one source for each, `path:line topic`. Since `flows_written_2`, sources
-of which only the arrival of a message matters are not listed: a report of one is surplus.
+before the linter was run. For each publish call, it names its sources: the subscriptions, services and transform
+look-ups that influence the call. Each source has a kind. `data` means that its data is published, `control` that a
+decision depends on it, and `event` that only the arrival of a message matters. `also` lists other kinds that count as
+right. `weak` marks a source that is not counted, and `why` gives the reason for the judgement. A line that subscribes
+to several topics has one source for each, `path:line topic`. From `flows_written_2` on, sources of kind `event` are not
+listed, so a report of such a source counts as surplus.
 
-The linter runs with `tf2 = true`. Responses of services and results of actions that a node asks for are sources for
-the author of the workspaces, but not for the linter; they are counted apart, as events are.
+The linter runs with `tf2 = true`. The author of the workspaces also lists the service responses and action results that
+a node requests. The linter does not report these as sources. They are counted separately, as events are.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from tarl_lint.settings.config import Config, Options
 
 FOLDER: Final = Path(__file__).with_suffix("")
 KINDS: Final = {"explicit": "data", "implicit": "control"}
-ANSWERS: Final = ("service.", "action.")  # beginnings of `Sink.api` of responses, which were not judged
+ANSWERS: Final = ("service.", "action.")  # `Sink.api` begins so for responses; these were not judged
 _ASKS: Final = re.compile(r"\b(create_client|ServiceProxy|\w*ActionClient)\(")
 Pairs = dict[str, dict[str, str]]  # publish call → source → kind
 
@@ -69,7 +70,7 @@ class Counts:
 
 
 def reported(texts: Texts, known: Mapping[str, str], judged: Pairs) -> Pairs:
-    """Return the reported pairs, with sources at the places that the judgement knows where these are the same."""
+    """Return the reported pairs; each source is at its judged place, or else at its reported place."""
     pairs: Pairs = {}
     with tempfile.TemporaryDirectory() as place:
         root = Path(place).resolve()
@@ -85,9 +86,10 @@ def reported(texts: Texts, known: Mapping[str, str], judged: Pairs) -> Pairs:
 
 
 def _sources(root: Path, flow: Flow, known: Mapping[str, str], judged: Mapping[str, str]) -> Sequence[str]:
-    """Return the judged sources that a report means, or its place if the judgement does not know it.
+    """Return the judged sources to which a report refers, or the reported place if no judged source matches.
 
-    If several topics share a line, a report means all that it names; if it names none, it means one of them.
+    If several topics share a line, the report refers to all topics that it names. If it names no topic, it refers to
+    one of those on the line.
     """
     places = [_place(root, path, line) for path, line in _spots(flow.source)]
     topics = {topic.lstrip("~/") for topic in flow.source.topics}
@@ -105,7 +107,7 @@ def _spots(source: Source) -> Iterator[tuple[str, int]]:
 
 
 def _near(places: Sequence[str], known: Mapping[str, str], topics: Set[str]) -> Iterator[str]:
-    """Yield the judged sources within three lines that have the same topic; their author named another line."""
+    """Yield the judged sources with the same topic at most three lines away: the author may have named another line."""
     for place in places:
         path, _, number = place.rpartition(":")
         for one, topic in known.items():
@@ -115,7 +117,7 @@ def _near(places: Sequence[str], known: Mapping[str, str], topics: Set[str]) -> 
 
 
 def _elsewhere(known: Mapping[str, str], topics: Set[str]) -> Iterator[str]:
-    """Yield the judged sources of topics that have only one; a wrapper may subscribe for the line that is judged."""
+    """Yield the judged source of each topic that has only one: the judged line may subscribe through a wrapper."""
     for name in sorted(topics):
         same = [one for one, topic in known.items() if topic.lstrip("~/") == name]
         if len(same) == 1:

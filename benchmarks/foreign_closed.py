@@ -1,4 +1,4 @@
-"""Restrict a process that runs untrusted code: no programs, no network, no files outside a folder."""
+"""Restrict a process that runs untrusted code: it may use no programs, no network and no files outside a folder."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def warm_up() -> None:
 
 
 def close_all_but(folder: Path) -> None:
-    """Make every operation of this process with effects outside a folder raise PermissionError from now on."""
+    """From now on, raise PermissionError for every operation of this process that has effects outside a folder."""
     inside = (str(folder.resolve()) + os.sep, os.devnull)
     standard = {0, 1, 2}
 

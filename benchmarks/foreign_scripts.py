@@ -1,4 +1,4 @@
-"""Find the node scripts of checked-out repositories, and those among them that are counted separately.
+"""Find the node scripts of checked-out repositories, and say which of them are counted separately.
 
 Nothing is executed.
 """
@@ -83,7 +83,7 @@ def _first_line(path: Path) -> bytes:
 
 
 def entry_points(repository: Path) -> Iterator[tuple[Path, str]]:
-    """Yield file and function of each console script in `setup.py`, `setup.cfg` and an unpacked wheel."""
+    """Yield the file and the function of each console script in `setup.py`, `setup.cfg` and an unpacked wheel."""
     for setup in [*repository.rglob("setup.py"), *repository.rglob("setup.cfg")]:
         for module, function in ENTRY.findall(setup.read_text("utf-8", errors="replace")):
             yield setup.parent.joinpath(*module.split(".")).with_suffix(".py"), function
@@ -137,7 +137,7 @@ class _Blank(ast.NodeTransformer):
 
 
 def needs_arguments(tree: ast.AST) -> bool:
-    """Return whether a file defines a command line with required arguments, by `argparse`."""
+    """Return whether a file defines a command line with required arguments by means of `argparse`."""
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not ast.unparse(node.func).endswith(".add_argument"):
             continue

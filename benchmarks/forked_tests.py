@@ -1,8 +1,9 @@
-"""Plugin of pytest that collects once and then runs chosen tests in forks, with or without a fault in the code.
+"""A pytest plugin that collects tests once, then runs chosen tests in forks, with or without a fault in the code.
 
-A fork changes the functions of the file with the fault, so nothing is imported again. This equals a fresh process if
-no changed line has run before, while modules were imported; the caller has to check this (`IMPORTED` in the results of
-`measured`). Processes that a test starts read the changed file from the disk. Needs `os.fork`.
+A fork changes the functions of the file with the fault, so nothing is imported again. The fork behaves like a fresh
+process, provided that no changed line ran during the imports. The caller has to check this: the results of `measured`
+list the lines that ran during the imports under `IMPORTED`. Processes that a test starts read the changed file from the
+disk. Needs `os.fork`.
 """
 
 from __future__ import annotations
@@ -27,10 +28,10 @@ from reached_lines import Reached
 from warm_pytest import ended
 
 CHANNELS = "FORKED_TESTS"  # environment variable with the two ends of pipes, "read,write"
-IMPORTED = "(import)"  # name that stands for importing all modules, among the tests that reach a line
+IMPORTED = "(import)"  # stands for the import of all modules in lists of the tests that reach a line
 UNCHANGED = 77  # exit status if a fault cannot be put into the functions of the process
 SLOWEST = 1.0  # CPU seconds after which a measured test is interrupted
-# limits for one measured file of tests, as multiples of these seconds: CPU seconds, and seconds on a busy machine
+# limits for one measured file of tests, as multiples of SLOWEST: CPU seconds, and wall seconds on a busy machine
 MOST_OF_FILE, LONGEST_FILE = 2.5, 45.0
 
 
@@ -47,7 +48,7 @@ class Ran:
 
 
 class Forks:
-    """Runs tests in forks of a pytest that has collected them."""
+    """Runs tests in forks of a pytest process that has already collected them."""
 
     def __init__(self, requests: int, answers: int, output: Path) -> None:
         self._requests = os.fdopen(requests, "w")
@@ -60,10 +61,10 @@ class Forks:
         self.tests: list[str] = json.loads(first)
 
     def __call__(self, tests: Sequence[str], limit: float, path: str = "", line: int = 0) -> Ran:
-        """Run tests until one fails, with the text that the file `path` has now.
+        """Run tests until one fails, using the current text of the file `path`.
 
-        `line` is the first line that differs from the text that was imported. All of the fork is killed after `limit`
-        seconds.
+        `line` is the first line that differs from the imported text. The fork is killed after `limit` seconds, with the
+        processes that it started.
         """
         status, lines = self._asked(
             {"tests": [*tests], "limit": limit, "path": path, "line": line, "slowest": 0.0}
@@ -76,8 +77,8 @@ class Forks:
     def measured(self, slowest: float = SLOWEST) -> Reached:
         """Run all tests once, one fork per file, and return the lines that they reach.
 
-        Needs a pytest with marks. A test is interrupted after `slowest` CPU seconds of this process, and the rest of a
-        file is left out after MOST_OF_FILE times as much.
+        Needs a pytest process with marks (see `reach_marks.py`). A test is interrupted after `slowest` CPU seconds of
+        its process. When a file has taken MOST_OF_FILE times as many, its remaining tests are left out.
         """
         files: dict[str, list[str]] = {}
         for test in self.tests:
@@ -98,7 +99,7 @@ class Forks:
         return found
 
     def close(self) -> None:
-        """Let pytest end."""
+        """End the pytest process."""
         self._requests.close()
         self._answers.close()
 
@@ -175,12 +176,12 @@ def forks(folder: Path, environment: Mapping[str, str], arguments: Sequence[str]
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtestloop(session: pytest.Session) -> bool | None:
-    """Run what is requested until the pipe ends; without pipes, leave the run to pytest."""
+    """Run the requested tests until the pipe is closed; without pipes, let pytest run as usual."""
     channels = os.environ.pop(CHANNELS, "")
     if not channels:
         return None
     read, write = map(int, channels.split(","))
-    # tests that run pytest inside are slow, and the end of a file may be left out
+    # Tests that start pytest themselves are slow, so they come last: the last tests of a file may be left out.
     quick_first = sorted(session.items, key=lambda item: "pytester" in getattr(item, "fixturenames", ()))
     items = {item.nodeid: item for item in quick_first}
     known = functions()
@@ -210,10 +211,10 @@ def functions() -> dict[str, list[FunctionType]]:
 
 
 def changed(known: Sequence[FunctionType], text: bytes, path: str, line: int) -> int:
-    """Give the functions of a file the code of a new text of it; return how many functions this changes.
+    """Replace the code of a file's functions by that of the file's new text; return the number of changed functions.
 
-    `line` is the first line that differs: functions below it may have moved, but cannot have changed. Raises
-    ValueError if a function uses other variables of the functions around it than before.
+    `line` is the first line that differs: functions below it may have moved, but cannot have changed. Raises ValueError
+    if a function no longer uses the same variables of its enclosing functions.
     """
     codes: dict[tuple[str, int], list[CodeType]] = {}
     waiting = [compile(text, path, "exec", dont_inherit=True)]
@@ -260,7 +261,7 @@ def _run(
 
 
 def _inserted(known: Mapping[str, Sequence[FunctionType]], request: Mapping[str, Any]) -> bool:
-    """Put the fault of a request, if it has one, into the functions of this process; return whether that works."""
+    """Put the fault of a request, if any, into the functions of this process; return whether this succeeds."""
     path = request["path"]
     if not path:
         return True
@@ -276,7 +277,7 @@ def _tested(
     measured: Marks | None,
     slowest: float,
 ) -> int:
-    """Run the items; return 1 at the first failure, unless they are measured."""
+    """Run the tests; return 1 at the first failure or, if tests are measured, when the file has taken too long."""
     failures: list[str] = []
 
     class Reports:
@@ -317,5 +318,5 @@ def _too_slow(_number: int, _frame: FrameType | None) -> None:
 
 
 def _told(test: str, passed: bool, seconds: float, lines: Mapping[str, Sequence[int]]) -> str:
-    """Return a line of the output of a fork."""
+    """Return a test's result as one line of JSON for the output of the fork."""
     return json.dumps({"test": test, "passed": passed, "seconds": seconds, "lines": [*lines.items()]})

@@ -1,11 +1,11 @@
-"""Measure the false alarms and the power of the verdict, and how well the region fits, over many repetitions.
+"""Measure how often the verdict is a false alarm or finds a drift, and how well the region fits, in many repetitions.
 
     python benchmarks/gate.py [--repetitions 500] [--worlds track lane …] [--sizes 0 0.2 1]
 
-The worlds are eight small ones and the two examples. For each world and each way in which a sensor can show the
-drift, a pool of missions is simulated for every size of the drift. Pairs of samples (designed, drifted) are then
-drawn repeatedly from the pools and compared. Reference methods are a two-sample Kolmogorov-Smirnov test on total
-reward, and a threshold of 10 %.
+The worlds are eight small ones and the two examples. For each world, each way in which a sensor can show the drift, and
+each size of the drift, a pool of missions is simulated. Pairs of samples (designed, drifted) are then drawn repeatedly
+from the pools and compared. Reference methods are a two-sample Kolmogorov-Smirnov test on total reward, and a threshold
+of 10 %.
 """
 
 from __future__ import annotations

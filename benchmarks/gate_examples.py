@@ -57,7 +57,7 @@ class Recording:
 
 
 def recorded(name: str, size: float, episodes: int) -> Pool:
-    """Run missions of an example, of which it is not known which cells the drift changes."""
+    """Run missions of an example; the cells that its drift changes are not known."""
     example = EXAMPLES[name]
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / name

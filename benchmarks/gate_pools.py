@@ -34,8 +34,8 @@ class Pool:
 def simulated(world: str, mode: Mode, drift: float, episodes: int) -> Pool:
     """Run missions of one of the small worlds, with the drift shown in one of three ways.
 
-    The sensor that shows where the drift acts is hidden from the comparison, harmless (the same in both worlds), or
-    novel (true only where something drifts).
+    A sensor can show where the drift acts. It is either hidden from the comparison, or harmless (it has the same values
+    in both worlds), or novel (it is true only where the drift acts).
     """
     samples, exposed = [], dict[Cell, list[bool]]()
     for index in range(episodes):

@@ -1,7 +1,7 @@
 """Eight small simulated worlds for gate.py: sensor bins, rewards, and where a drift acts.
 
-The drift goes from 0 (as designed) to 1. A mission yields, step by step, the bins of its sensors, its reward, and
-whether the drift acts at this place or time (if there is a drift).
+The drift goes from 0 (as designed) to 1. For each step, a mission yields the bins of its sensors, the reward, and
+whether the drift acts at this place or time. Without a drift, the last value says where it would act.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
-"""Compare the results of random Python programs that TARL interprets with those that Python computes.
+"""Compare the results that TARL finds for random Python programs with those that Python computes.
 
     python benchmarks/interpreted_programs.py [--count 2000] [--seed 0] [--show 3]
 
-Each program uses the parts of Python that launch files compute values with: regular expressions, collections,
-itertools, data classes, enumerations, classes with special methods, generators, patterns of `match`, exceptions,
-paths. All values of a program are constant, so TARL must know each result, and it must equal that of Python.
-Python executes only programs that this script makes.
+Each program uses the parts of Python with which launch files compute values: regular expressions, collections,
+itertools, data classes, enumerations, classes with special methods, generators, patterns of `match`, exceptions, paths.
+All values of a program are constant, so TARL must know each result, and it must equal that of Python. Python executes
+only programs that this script makes.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Programs(Expressions):
 
 
 def compared(text: str, folder: Path) -> tuple[int, list[str]]:
-    """Return the number of results of a program, and a line for each that TARL reads differently from Python.
+    """Return the number of results of a program, and a line for each result on which TARL and Python differ.
 
     Raises SyntaxError, and any exception that the program raises.
     """

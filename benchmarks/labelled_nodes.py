@@ -1,4 +1,4 @@
-"""Run labelled real nodes in the in-process ROS, and print whether they start, publish and record every step.
+"""Run labelled real nodes in the in-process ROS; print whether each starts and publishes, and which steps are recorded.
 
 Run `python benchmarks/labelled_nodes.py LABELS.json CHECKOUTS`, where CHECKOUTS contains `owner__repository/path` for
 each labelled node. Nothing is downloaded, and nothing is written below CHECKOUTS. Each node gets a test in a scratch
@@ -37,7 +37,7 @@ def test_node(tarl, monkeypatch, tmp_path):
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of a node: the number of its `sites` on `lists` taint lists, `missing` steps, or its failure."""
+    """Result of a node: its numbers of taint `lists` and of `sites` on them, the `missing` steps, or why it failed."""
 
     name: str
     api: str
@@ -98,7 +98,7 @@ def record(outcome: Outcome, node: Path, folder: Path) -> Outcome:
 
 
 def read(outcome: Outcome, ran: str, path: Path) -> Outcome:
-    """Read from a recording which steps were recorded."""
+    """Return which steps of the node a recording contains."""
     from pytest_tarl.learning import fixture as fixtures
     from pytest_tarl.learning.tables import START
 

@@ -124,7 +124,7 @@ def obstacle_detection(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -
 
 
 def patrol(tarl: Any, node: str, _monkeypatch: Any, folder: Path) -> None:
-    """Let a client request a square, and a triangle from a second server of the same kind."""
+    """Let a client request a square or a triangle, depending on the seed."""
     kind = 1.0 if tarl.seed % 2 else 2.0
     client = folder / "client.py"
     client.write_text(PATROL_CLIENT.format(kind=kind))

@@ -1,12 +1,12 @@
-"""Compare what TARL reads from launch files, executing nothing, with the results of roslaunch and launch.
+"""Compare TARL's reading of launch files, which executes nothing, with the results of roslaunch and launch.
 
     python benchmarks/launch_files.py FOLDER... --ros1 PYTHON[:PATH] --ros2 PYTHON[:PATH...] [--show N]
 
 Each FOLDER contains checkouts, one folder per repository. `--ros1` is an interpreter with Debian's python3-roslaunch.
-`--ros2` is one with the sources of launch, launch_xml, launch_yaml and launch_ros. Use both in a disposable
+`--ros2` is an interpreter with the sources of launch, launch_xml, launch_yaml and launch_ros. Use both in a disposable
 environment, since they execute launch files. Arguments without a default get the value `true`. The figures are the
-shares of nodes (package, program, namespace, name), remappings and parameters on which both agree. Outputs of
-commands, files outside the checkout, and launch files that roslaunch or launch rejects are counted separately.
+shares of nodes (package, program, namespace, name), remappings and parameters on which both agree. Outputs of commands,
+files outside the checkout, and launch files that roslaunch or launch rejects are counted separately.
 """
 
 from __future__ import annotations
@@ -192,7 +192,7 @@ def _of_launch(launch: Launch, two: bool) -> Iterator[Fact]:
 
 
 def _without(pairs: Sequence[tuple[str, str]], left: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Return the pairs without one occurrence of each pair of `left`."""
+    """Remove one occurrence of each pair of `left`, and return the remaining pairs."""
     out = Counter(left)
     kept = []
     for pair in pairs:
@@ -212,7 +212,7 @@ def _of_ros2(node: LaunchedNode) -> dict[str, Any]:
         content = _content(setting)
         if setting.name != "~":
             found[setting.name.lstrip("~")] = content
-        elif isinstance(content, dict) and node.kind == "component":  # launch chooses its sections
+        elif isinstance(content, dict) and node.kind == "component":  # launch selects the node's sections
             name = joined(node.namespace, node.name)
             found.update(
                 {key: value for key, value in of_node(content, name).items() if key != "ros__parameters"}

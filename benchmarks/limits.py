@@ -1,10 +1,10 @@
-"""Measure time and memory at very large sizes: whether they grow in proportion, and where the limit is.
+"""Measure time and memory at very large sizes: whether they grow in proportion to the size, and where the limit is.
 
-`python benchmarks/limits.py` runs each case at increasing sizes, each in its own process. The script prints
-CPU seconds and the peak of resident memory, in total and per unit. `--share 1` runs up to 10⁶ messages per
-episode, messages of 100 MB, 10,000 sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The
-exit status is 1 if time or memory per unit more than triples from the second size to the last, or from the first to the
-second if there are only two.
+`python benchmarks/limits.py` runs each case at increasing sizes, each in its own process. The script prints CPU seconds
+and the peak of resident memory, in total and per unit. `--share 1` runs up to 10⁶ messages per episode, messages of 100
+MB, 10,000 sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The exit status is 1 if the time or
+memory per unit more than triples. The growth is measured from the second size to the last, or from the first to the
+second if there are only two sizes.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ rospy.spin()
 
 
 def messages(size: int) -> str:
-    """Publish `size` messages to a node that answers each."""
+    """Publish `size` messages to a node that answers each of them."""
     return echo("Float64", [1.5] * size)
 
 

@@ -2,10 +2,10 @@
 
 CHECKOUT is a checkout of github/codeql, of which only python/ql/test/library-tests/dataflow is read. In those tests,
 the variable SOURCE and a few literals are sources, and arguments of SINK and SINK_F are sinks. Comments state which
-flows exist (`flow=`), which of these CodeQL misses (`MISSING`), and which flows it invents (`SPURIOUS`). The analysis
-learns of both through its settings: the variable becomes a call of a configured source, and the functions are
-configured sinks. Only those files are scored that CodeQL tests for plain data flow and that need no models of library
-functions.
+flows exist (`flow=`), which of these CodeQL misses (`MISSING`), and which flows CodeQL reports although they do not
+exist (`SPURIOUS`). For our analysis, sources and sinks are given as settings: the variable is replaced by a call of a
+configured source, and the two functions are configured as sinks. Files are scored only if CodeQL uses them to test
+plain data flow and if they need no models of library functions.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ Pair = tuple[int, int]  # lines of source and sink
 
 @dataclass
 class Expected:
-    """The flows in the comments of one file: those that CodeQL finds, misses and invents."""
+    """The flows in the comments of one file: those that CodeQL finds, misses and reports wrongly."""
 
     found: set[Pair] = field(default_factory=set)
     missed: set[Pair] = field(default_factory=set)
@@ -72,7 +72,7 @@ def expected(text: str) -> Expected:
                 into = result.missed if match["how"] == "MISSING:" else result.invented
                 continue
             if match["bare"] and told:
-                continue  # the comment lists a flow again that CodeQL also finds on another path
+                continue  # the comment repeats a flow that CodeQL also finds on another path
             source = ANY if match["bare"] else number + int(match["offset"] or 0)
             into.add((source, number))
             told.add((source, number))
@@ -82,9 +82,9 @@ def expected(text: str) -> Expected:
 
 
 def prepared(text: str, wanted: Expected) -> str:
-    """Return the file with sources replaced by calls, without its own definitions, and with calls of its tests.
+    """Return the file with sources replaced by calls, its definitions of sources and sinks removed, and calls added.
 
-    Line numbers do not change.
+    The added calls are at the end and call the test functions. Line numbers do not change.
     """
     tree = ast.parse(text)
     lines = text.split("\n")
@@ -125,7 +125,7 @@ def _names(node: ast.stmt) -> Iterator[str]:
 
 
 def _calls(tree: ast.Module) -> Iterator[str]:
-    """Yield calls of the functions and methods with sinks, with default and with unknown arguments."""
+    """Yield calls of the functions and methods that contain a sink, with default arguments and with unknown ones."""
     for node in tree.body:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and _sinks(node):
             yield f"{node.name}()"
@@ -142,12 +142,12 @@ def _sinks(function: ast.AST) -> bool:
 
 
 def _anything(function: ast.FunctionDef | ast.AsyncFunctionDef, receivers: int) -> str:
-    """Return unknown arguments, including those for parameters with defaults."""
+    """Return unknown arguments for all parameters, including those with defaults."""
     return ", ".join(["ANY"] * (len(function.args.args) - receivers))
 
 
 def found(text: str, name: str) -> tuple[set[Pair], set[Pair]]:
-    """Return the explicit flows of a prepared file as pairs of lines, and those whose value itself reaches the sink.
+    """Return the explicit flows of a prepared file, and those of them in which the value itself reaches the sink.
 
     The other flows pass a list or an object that contains the value. That is a flow for a publish call, but not for
     CodeQL's sinks.
@@ -180,7 +180,7 @@ def _bare(machine: Linker) -> set[Pair]:
 
 
 def _argument_of(pos: Pos, call: Pos) -> bool:
-    """Return whether an expression is the last argument of a call, or the last part of it."""
+    """Return whether an expression is the last argument of a call, or the last part of that argument."""
     return pos != call and (pos[0], pos[2], pos[3] + 1) == (call[0], call[2], call[3])
 
 

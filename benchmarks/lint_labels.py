@@ -1,10 +1,15 @@
 """Score tarl-lint against real nodes whose flows are known: `python benchmarks/lint_labels.py CHECKOUT LABELS.json`.
 
 CHECKOUT contains the repositories, each in a directory named owner/name, owner__name, owner+name or name. A flow is
-matched by the lines of its subscription and publish calls. For each node and in total, the script prints the flows that
-are found, found with the other kind, missing or surplus; how many lines of the labelled paths are found; how many data
-steps are on labelled or optional lines; and the reports at publish calls without a flow. Python 2 files, and flows from
-or to services, actions and transforms, are not counted, since the labels do not cover them.
+matched by the lines of its subscription and publish calls. For each node and in total, the script prints the following
+counts:
+
+- flows that are found, found with the wrong kind, missing, or surplus
+- lines of the labelled paths that are found
+- data steps of found paths that are on labelled or optional lines
+- reports at publish calls that have no labelled flow
+
+The labels cover neither Python 2 files nor flows from or to services, actions and transforms, so these are not counted.
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
 """Score the call resolver on PyCG's micro-benchmark: `python benchmarks/lint_pycg.py CHECKOUT`.
 
-CHECKOUT is a checkout of github/vitsalis/PyCG. This repository contains small programs with their true calls.
-As in PyCG, a program is *sound* if no call is missing and *complete* if none is invented. PyCG itself runs on
-the same programs, from the same checkout. For both tools, only calls between functions of the programs count;
+CHECKOUT is a checkout of github/vitsalis/PyCG. This repository contains small programs with their true calls. As in
+PyCG, a program is *sound* if the tool misses no call, and *complete* if the tool reports no wrong call. PyCG itself
+runs on the same programs, from the same checkout. For both tools, only calls between functions of the programs count;
 calls of builtins and libraries are excluded. Functions that nothing calls are entry points, as in PyCG.
 
-The true calls were written by hand. `--run` executes the programs of which a call is missing, and states how many of
-the missing calls Python makes.
+The true calls were written by hand. With `--run`, the script executes each program with a missing call, and prints how
+many of the missing calls Python really makes.
 """
 
 from __future__ import annotations

@@ -2,13 +2,13 @@
 
     python benchmarks/lint_speed.py [--semgrep PATH/TO/semgrep] [--repetitions 3] TREE [TREE ...]
 
-For every tree, it prints the number of lines, and the CPU seconds of `ast.parse` over all .py files, of tarl-lint
-without a cache and with a warm cache, and of Semgrep with a taint rule from subscriber callbacks to publish.
-The script also prints the ratios of these times, and the peak memory of tarl-lint, including child processes.
-The last tree is copied under other package names and linted at once, twice and four times its size. CPU time
-includes all processes; each figure is the minimum of the repetitions. Suitable public trees: checkouts of ROS
-repositories, Debian's `python3-ros*` packages unpacked with `dpkg -x`, wheels from PyPI, the standard
-library. Python writes bytecode, as it does for an installed package.
+For every tree, the script prints the number of lines and four times in CPU seconds: of `ast.parse` over all .py files,
+of tarl-lint without a cache, of tarl-lint with a warm cache, and of Semgrep. Semgrep uses a taint rule from subscriber
+callbacks to publish calls. The script also prints the ratios of these times, and the peak memory of tarl-lint,
+including child processes. For the last tree, the script also lints two copies in one run, and four copies in another.
+CPU time includes all processes; each figure is the minimum of the repetitions. Suitable public trees: checkouts of ROS
+repositories, Debian's `python3-ros*` packages unpacked with `dpkg -x`, wheels from PyPI, the standard library. Python
+writes bytecode, as it does for an installed package.
 """
 
 from __future__ import annotations
@@ -151,7 +151,7 @@ def line(name: str, tree: Path, arguments: argparse.Namespace) -> str:
 
 
 def copies(tree: Path, number: int, home: Path) -> Path:
-    """Return a directory with copies of a tree: equal packages under different roots."""
+    """Return a directory with copies of a tree, each in a folder of its own."""
     for copy in range(number):
         shutil.copytree(tree, home / f"copy_{copy}", dirs_exist_ok=True, ignore=_not_python)
     return home

@@ -1,15 +1,16 @@
 """Measure what function summaries could save: `python benchmarks/lint_summaries.py TREE [TREE ...]`.
 
-For each tree, it prints the CPU seconds of the interpretation and, within it, of executing function bodies (without
-nested calls), separately for the first run in a call context and for later runs. The script also prints how
-many of these seconds summaries would save if applying one cost nothing. The script assumes that a summary
-holds for all runs of a function with the same key:
+For each tree, the script prints the CPU seconds of the interpretation, and how many of these seconds are spent in
+function bodies (without nested calls). The first run of a function in a call context and later runs are counted
+separately. The script also prints how many of these seconds summaries would save if it cost nothing to apply a summary.
+A summary is assumed to hold for all runs of a function with the same key. There are three variants of the key:
 
-- *arguments*: the kinds and classes of the arguments' objects, their constants, and whether they carry data. The
-  result also depends on what the function reads elsewhere, so no correct summary reaches this bound.
-- *reads*: the same for every value that the run read before storing to it, by kind of object and name of field.
-- *aliases*: in addition, which of these objects are identical, by the paths that lead to them, and which statements no
-  source had reached.
+- *arguments*: the kinds and classes of the arguments' objects, their constants, and whether they carry data. The result
+  also depends on what the function reads elsewhere, so no correct summary can save as much as this variant.
+- *reads*: in addition, the same facts about every value that the run read before it stored to it, by the kind of the
+  object and the name of the field.
+- *aliases*: in addition, which of these objects are identical (told by the paths that lead to them), and which
+  statements no source had reached yet.
 """
 
 from __future__ import annotations
@@ -39,13 +40,13 @@ KEYS = ("arguments", "reads", "aliases")
 
 @dataclass
 class Names:
-    """Gives objects names that do not depend on the call context."""
+    """Assigns each object a name that is the same in every call context."""
 
     frame: Frame
     known: dict[Obj, Hashable] = field(default_factory=dict)
 
     def name(self, obj: Obj) -> Hashable:
-        """Return an object's name: by definition, by the object that it is part of, or by order."""
+        """Return an object's name, from its definition, the object that contains it, or its order of appearance."""
         if obj not in self.known:
             self.known[obj] = self._new(obj)
         return self.known[obj]
@@ -64,7 +65,7 @@ class Names:
         return kind_of(obj), obj.many, obj.laden, len(self.known)
 
     def value(self, value: Value) -> Hashable:
-        """Return a value without the call context: whether it carries data, its objects, its constants."""
+        """Return what is the same in all call contexts: whether the value carries data, its objects, constants."""
         found = sorted(value.pts, key=lambda o: (o not in self.known, o.kind, o.name, o.number))
         return bool(value.deps), tuple(self.name(o) for o in found), value.consts
 
@@ -92,7 +93,7 @@ def read_kinds(run: Run) -> Hashable:
 
 
 def read_objects(ctx: Interpreter, frame: Frame, run: Run) -> Hashable:
-    """Return the values that a run read, with aliases, and the statements at which no source had arrived."""
+    """Return the values that a run read, with aliases, and the statements that no source had reached yet."""
     names = Names(frame)
     found: list[Hashable] = [arguments_of(run.passed, names.value)]
     left = {key: value for key, value in run.found.items() if value is not None}
@@ -110,7 +111,7 @@ def _nameable(names: Names, key: Key) -> bool:
 
 @dataclass
 class Meter:
-    """Measures executed function bodies, and which of them a summary would replace."""
+    """Measures the time of function bodies, and how much of it a summary would save."""
 
     total: float = 0.0  # duration of the interpretation (s)
     overhead: float = 0.0  # time spent measuring (s)

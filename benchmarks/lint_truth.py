@@ -5,9 +5,9 @@
 
 TREES is a directory of checkouts, one directory per repository. The population is every call `x.publish(…)` in their
 Python files. These calls are found in the syntax tree, without the linter; the linter only says which of them have a
-report. `draw` takes equally many calls with and without a report. It prints them sorted by place, so that the list does
-not show which calls have a report. `--without` names files of earlier draws (or a text with `file.py:line`), whose
-calls are excluded.
+report. `draw` takes equally many calls with and without a report. It prints the calls sorted by place, so that the list
+does not show which of them have a report. The calls in the files given with `--without` are excluded: earlier draws, or
+texts that contain `file.py:line`.
 
 Judgements are made from the source alone, before `compare` runs. A judged call names its sources, each with its kind
 (`data` or `control`) and the lines of the path that every correct report must contain:
@@ -119,7 +119,7 @@ def drawn(calls: Sequence[Place], loud: set[Place], seed: int, each: int) -> lis
 
 
 def seen(file: Path) -> set[tuple[str, int]]:
-    """Return, for each place that a text names, the last two parts of the path and the line."""
+    """Return the place of each `file.py:line` in a text, as the last two parts of the path and the line."""
     text = file.read_text(encoding="utf-8")
     return {(_tail(path), int(line)) for path, line in re.findall(r"([\w./+-]+):(\d+)", text)}
 
@@ -182,7 +182,7 @@ class Truth:
 
 
 def lines(texts: Sequence[str], beside: str) -> Iterator[Place]:
-    """Yield the places that a judged path names: lines or ranges of lines, which may follow a path and a colon."""
+    """Yield the places that a judged path names: lines or ranges of lines, optionally after a path and a colon."""
     for text in texts:
         path, _, span = text.rpartition(":")
         first, _, last = span.partition("-")

@@ -1,19 +1,19 @@
 """Mutation testing: insert small faults, chosen by a seed, and run the tests that reach the line.
 
 `make mutants` inserts ten faults in each package of pytest_tarl, and `make mutants OF=tarl_lint` does so for tarl_lint.
-Coverage contexts record which tests reach which line, including processes that tests start. Each fault goes into a
-copy of the checkout without the caches of TARL. The fault is caught if a test fails, or if the tests take far longer
-than without the fault. A test that also fails without the fault catches nothing. A fault that no test reaches is not
-caught. The tests of the file that is named after the module run first, then the other tests, in both cases from fast
-to slow, until the next test would exceed `--budget`. Slower tests might still catch a fault that survives these, so
-the share is a lower bound. Tests with a pytest.ini of their own run by themselves. The script prints the share of
-caught faults with its exact 95 % interval, for each package and in total, and the surviving faults.
+Coverage contexts record which tests reach which line, including processes that tests start. Each fault goes into a copy
+of the checkout without the caches of TARL. The fault is caught if a test fails, or if the tests take far longer than
+without the fault. A test that also fails without the fault does not count. A fault that no test reaches is not caught.
+The tests in the file named after the module run first, then the other tests. Each of these two groups runs from fast to
+slow, until the next test would exceed `--budget`. A slower test might still catch a fault that survives, so the share
+of caught faults is a lower bound. Tests with a pytest.ini of their own run in a separate pytest. The script prints the
+share of caught faults with its exact 95 % interval, for each package and in total, and the surviving faults.
 
-`--forks` takes a small part of this time. One pytest imports everything and collects all tests, and each fault is put
-into the functions of a fork of it (`forked_tests.py`). A fault in a line that runs during the imports is tried in a
-fresh process instead. The lines of each test are measured with marks in place of coverage (`reach_marks.py`). Tests
-that take more than `--slowest` CPU seconds, and all that follow in a file after 2.5 times as much, are left out. Tests
-with a pytest.ini of their own are not run.
+With `--forks`, a run takes only a small part of this time. One pytest imports everything and collects all tests, and
+each fault is put into the functions of a fork of it (`forked_tests.py`). A fault in a line that runs during the imports
+is tried in a fresh process instead. The lines of each test are measured with marks in place of coverage
+(`reach_marks.py`). A test that takes more than `--slowest` CPU seconds is left out. Once the tests of a file have taken
+2.5 times as many, the rest of the file is left out, too. Tests with a pytest.ini of their own are not run.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache",
 # limit of the CPU seconds of the tests that run for one fault; the times were measured without the fault
 BUDGET = 120.0
 PATIENCE = 120.0  # seconds allowed beyond three times the CPU time of the tests without the fault
-SLOWED = 10  # a fork is killed once its test takes this many times its CPU seconds, on a busy machine
+SLOWED = 10  # a fork may take this many times the CPU seconds of its tests (wall time, on a busy machine)
 
 
 @dataclass(frozen=True)
@@ -186,8 +186,8 @@ def tried(
 ) -> Outcome:
     """Insert a fault, run the tests that reach it, and remove it.
 
-    The fault is caught if the failed test (after a timeout, all tests) passes within the same time without
-    the fault.
+    The fault counts as caught if the failed test passes without the fault within the same time. After a timeout, all
+    tests have to pass.
     """
     if not tests:
         return Outcome(fault, "unreached", 0)
@@ -217,7 +217,7 @@ def tried_in_fork(
     forked: Forks,
     patience: float = PATIENCE,
 ) -> Outcome | None:
-    """Insert a fault, run the tests that reach it in a fork, and remove it; return None if only `tried` can do it.
+    """Insert a fault, test it in a fork, and remove it; return None if it needs a fresh process (see `tried`).
 
     The fault is caught if the same tests, up to the one that failed, pass within the same time without the fault.
     """

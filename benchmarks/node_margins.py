@@ -3,9 +3,9 @@
     python benchmarks/real_nodes/bring.py TARGET --source PLACE
     python benchmarks/node_margins.py TARGET [NODE ...]
 
-Each drift of a world is a direction of its own, from the nominal value to the drift; that of a drift with several
-numbers is the share of the way. Each run may use 600 episodes, seed 1. Drifts of a world that only differ in being
-permanent are the same direction.
+Each drift of a world is a direction of its own, from the nominal value to the value of the drift. For a drift with
+several numbers, the coordinate is the share of the way to these numbers. Each run has seed 1 and may use 600 episodes.
+If two drifts of a world differ only in whether they are permanent, they are one direction.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ BUDGET, SEED = 600, 1
 
 def margins(stage: Stage) -> list[Stress]:
     """Return a stress run for each drift of a node, from its nominal world to the drift."""
-    distinct: dict[str, str] = {}  # names by value, each the first of those with the same value
+    distinct: dict[str, str] = {}  # value of a drift → the first name with this value
     for name, drift in stage.marked.drifts.items():
         distinct.setdefault(repr(drift.value), name)
     given: Guarantee | None = None

@@ -2,10 +2,10 @@
 
 Run `python benchmarks/observe.py`. A cycle is the work of a node between a message and its command: the callback and
 the control law, 18 recorded lines. In each cycle the observer receives two sensors and a reward, as on a robot, while
-the log is written and synced. Blocks of both kinds alternate, each in its own process. The time of a cycle is
-measured from the moment at which it was due, so that delays by other threads count; `executing` is measured
-from the first line of the cycle. With `--realtime`, the loop has real-time priority (SCHED_FIFO) as control
-loops do, so that other programs do not count.
+the log is written and synced. Blocks of both kinds alternate, each in its own process. The time of a cycle is measured
+from the moment at which the cycle was due, so that it includes delays by other threads. The row `executing` is measured
+from the first line of the cycle. With `--realtime`, the loop has real-time priority (SCHED_FIFO), as control loops do,
+so that other programs do not delay it.
 """
 
 from __future__ import annotations

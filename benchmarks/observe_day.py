@@ -1,11 +1,10 @@
 """Run a simulated day of `observe` at 100 Hz as fast as possible, to see whether memory grows or steps are lost.
 
-`python benchmarks/observe_day.py --hours 24` runs the control cycle of observe.py under a simulated clock, one
-mission per hour, and rotates the log by size. The script prints the resident memory of the node's process and
-of the writer every hour. Then it reads the log back: each step must occur once, in order, and each second
-must have all of its steps. The exit status is 1 if a step is missing, if the median memory of the last
-quarter exceeds that of the second quarter by more than --growth MB, or if the node's process holds more
-objects.
+`python benchmarks/observe_day.py --hours 24` runs the control cycle of observe.py under a simulated clock, one mission
+per hour, and rotates the log by size. The script prints the resident memory of the node's process and of the writer
+every hour. Then it reads the log back: each step must occur once, in order, and each second must have all of its steps.
+The exit status is 1 in three cases: a step is missing; the median memory of the last quarter of the day exceeds that of
+the second quarter by more than --growth MB; or the number of memory blocks of the node's process has grown.
 
 The simulated clock stands still while more than a second of steps waits for the observer's thread, since a robot's
 clock never runs ahead of that thread. Otherwise the resident memory would show how far the clock ran ahead: the heap
@@ -32,7 +31,7 @@ from pytest_tarl.observing.writer import Rotation, unpacked
 
 RATE = 100  # number of cycles per second
 BEHIND = RATE  # maximum number of steps that wait for the observer's thread
-OBJECTS = 1000  # the number of memory blocks that Python holds may grow by at most this
+OBJECTS = 1000  # maximum growth of the number of memory blocks that Python holds
 SAMPLES = 24  # number of memory samples and of missions
 ABOUT = {"node": "node.py", "sites": [], "sensors": [one.name for one in SENSORS]}
 

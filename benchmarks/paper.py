@@ -2,11 +2,11 @@
 
     python benchmarks/paper.py [--seeds 20] [--workers 2]
 
-For every seed, the shuttle's transit is recorded as designed (200 episodes), compared in mud (40 episodes), compared
-in the unchanged world (40 episodes), and repaired. The transit is also recorded and compared in mud with two
-lines swapped, and with gain and wheels in other units (0.5 instead of 5, which gives the same motion). The
-true extent of the mud comes from the world, not from a sensor. The line follower is also recorded, compared
-at dusk and repaired.
+For every seed, the shuttle's transit is recorded as designed (200 episodes), compared in mud (40 episodes), compared in
+the unchanged world (40 episodes), and repaired. Two variants of the transit are also recorded and compared in mud. In
+one, two lines of the node are swapped. In the other, the gain and the wheels have other units (the gain is 0.5 instead
+of 5, which gives the same motion). The true extent of the mud comes from the world, not from a sensor. The line
+follower is also recorded, compared at dusk and repaired.
 """
 
 from __future__ import annotations
@@ -200,7 +200,7 @@ def _in_mud(rollout: ItemRollout, online: Recorded, drift: str, mud: list[bool])
 
 
 def _guard_hits(order: Order, candidate: Candidate, mud: list[bool]) -> dict[str, float]:
-    """Return the share of steps in mud at which the guard is true, and of the other steps at which it is false."""
+    """Return the share of steps in mud where the guard is true, and of other steps where the guard is false."""
     hits: dict[bool, list[bool]] = {True: [], False: []}
     patched = Mutants(order).source(candidate)
     for seed in seeds.episode_seeds(order.options.seed, "guard", ONLINE):
@@ -213,7 +213,7 @@ def _guard_hits(order: Order, candidate: Candidate, mud: list[bool]) -> dict[str
 
 
 def _peaks(offline: Recorded, online: Recorded, sites: Plan, region: Region) -> dict[str, str]:
-    """Return the code of the site with the largest difference of slices, for each way to learn the utility."""
+    """For each way to learn the utility, return the code of the site whose slices differ most."""
     before, after = aligned(offline.sample, online.sample)
     chosen = {*region.cells, *region.novel}
     rows = np.array([i for i, cell in enumerate(before.cells) if cell in chosen], dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Compare the tiled utility with the table: the region and the first culprit of both, on the two examples.
+"""Compare the utility as a table and with tilings on both examples: the region and the line ranked first.
 
     python benchmarks/parametric.py            # three seeds, about two minutes
 

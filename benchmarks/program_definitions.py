@@ -1,4 +1,4 @@
-"""The functions and classes of random programs. NAME and other words in capitals are replaced."""
+"""The functions and classes of random programs. NAME and other words in capitals are placeholders."""
 
 from __future__ import annotations
 

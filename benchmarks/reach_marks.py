@@ -1,7 +1,8 @@
 """Find out which lines of a package each test reaches, at a fraction of the cost of tracing.
 
-Each straight piece of a function stores a one in memory that all processes of a run share, including forks and killed
-processes. The package is compiled once with these stores; `install` makes imports use the result.
+In each piece of a function without branches, a statement stores a 1 in memory. All processes of a run share this
+memory, so it also contains the marks of forks and of killed processes. The package is compiled once with these stores;
+`install` makes imports use the result.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ class Marks:
         return found
 
     def lines(self, stored: Sequence[int]) -> dict[str, list[int]]:
-        """Return the lines of the pieces of marks, by file."""
+        """Return the lines to which the marks belong, by file."""
         found: dict[str, list[int]] = {}
         for mark in stored:
             path, numbers = self.pieces[mark]
@@ -62,9 +63,9 @@ class Marks:
 
 
 def pieces(body: Sequence[ast.stmt]) -> Iterator[list[ast.stmt]]:
-    """Yield the statements of a block in pieces: of each piece, all run, or an exception ends it.
+    """Yield the statements of a block in pieces; all statements of a piece run unless an exception ends it.
 
-    A compound statement ends a piece, since it may return.
+    A compound statement ends a piece, because a `return` inside it may skip the statements after it.
     """
     piece: list[ast.stmt] = []
     for statement in body:
@@ -120,7 +121,7 @@ def _inside(statement: ast.stmt, first: int, found: dict[int, tuple[int, ...]], 
 
 
 def _heads(statement: ast.stmt) -> Iterator[int]:
-    """Yield the lines of a statement without those of the blocks inside; of a `match`, also those of its patterns."""
+    """Yield the lines of a statement without its blocks; for a `match`, include the lines of its patterns."""
     if isinstance(statement, _SCOPES):
         return
     blocks = [block for name in ("body", "cases") if (block := getattr(statement, name, None))]
@@ -172,7 +173,7 @@ def install() -> None:
 
 
 def marks() -> Marks:
-    """Return the marks of this process, in which `install` has run."""
+    """Return the marks of this process; `install` must have run in it."""
     read = json.loads((Path(os.environ[FOLDER]) / "pieces.json").read_text())
     return Marks(
         {int(mark): (path, tuple(lines)) for mark, (path, lines) in read.items()}, getattr(builtins, NAME)

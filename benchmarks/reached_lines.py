@@ -42,7 +42,8 @@ class Reached:
     def within(self, budget: float, tests: Iterable[str], module: str) -> list[str]:
         """Return passing tests that together take at most `budget` CPU seconds, but at least one test.
 
-        Tests of the file that is named after the module come first, then the others, both from fast to slow.
+        Tests in the file named after the module come first, then the other tests. Each group is sorted from fast to
+        slow.
         """
         own = f"test_{Path(module).stem}.py"
 

@@ -1,4 +1,4 @@
-"""Measure the cost of recording, next to its peers in one run.
+"""Measure the cost of recording, and of coverage tools in the same run.
 
 `python benchmarks/recording.py` prints the tables. Each program runs bare, with an empty hook (the least possible
 overhead), as the plugin instruments it, under coverage.py's C tracer, and under slipcover. Slipcover keeps its

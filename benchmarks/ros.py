@@ -1,7 +1,7 @@
 """Measure episodes per second (100 control steps each) of small rospy and rclpy nodes, in-process and on a real ROS.
 
 Run `python benchmarks/ros.py`, with the Python of `.venv-ros1` or `.venv-ros2` (`make setup-ros1 setup-ros2`) for the
-real ones. Every episode must take the same path to the last bit, even on the real ROS.
+real ones. In every episode, the robot must take the same path, equal to the last bit, even on the real ROS.
 """
 
 from __future__ import annotations

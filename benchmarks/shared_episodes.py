@@ -3,10 +3,11 @@
     python benchmarks/shared_episodes.py [--runs 1000] [--total 160] [--recorded 60] [--seed 0]
 
 Totals of episodes are normal with standard deviation 1; a drift of size d lowers their mean by d. All drifts of a world
-are compared with one recording. The script uses the plugin's interim looks, its permutation test, and its choice of the
-comparison that continues. It ignores regions of sensor space, so a loss counts as found as soon as it is significant.
-The row "even, as many run" shows the smallest even share for which the comparisons, which may end early, run on average
-the same number of episodes as with the shared total. A user cannot know this share beforehand.
+are compared with one recording. The script uses the plugin's schedule of interim tests, its permutation test, and its
+rule for which comparison continues. It ignores regions of sensor space, so a loss counts as found as soon as it is
+significant. Comparisons may end early. The row "even, as many run" therefore uses a larger even share: the smallest one
+with which the comparisons run, on average, as many episodes as with the shared total. A user cannot know this share
+beforehand.
 """
 
 from __future__ import annotations
@@ -40,14 +41,14 @@ Result = tuple[list[bool], int]  # whether each drift was found, and the number 
 
 @dataclass(frozen=True)
 class World:
-    """The recorded total rewards, and for each drift as many total rewards as any rule may run."""
+    """The recorded total rewards, and for each drift enough total rewards for every rule."""
 
     recorded: Floats
     drifts: Sequence[Floats]
     known: dict[tuple[int, int, int], float] = field(default_factory=dict)
 
     def p_value(self, drift: int, look: Look, looks: Sequence[Look]) -> float:
-        """Return the p-value of the loss at a look; equal numbers of episodes always give the same p-value."""
+        """Return the p-value of the loss at an interim test; equal numbers of episodes always give the same p-value."""
         permutations = permutations_for(ALPHA, int(np.ceil(1 / looks[0].share)))
         key = drift, look.episodes, permutations
         if key not in self.known:
@@ -117,7 +118,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _compared(worlds: Sequence[World], total: int, share: int) -> None:
-    """Print the results of the rules; `share` is the even share of the total."""
+    """Print the results of the rules; `share` is the number of episodes per drift in an even split."""
     pooled = measured(partial(shared, total=total), worlds)
     _print("shared", pooled)
     _print("even, looks", measured(partial(even, share=share, looks=Options.LOOKS), worlds))

@@ -51,7 +51,7 @@ _TEXT: dict[type[ast.cmpop] | type[ast.operator] | type[ast.boolop], str] = {
     ast.And: "and",
     ast.Or: "or",
 }
-# kinds of statements without faults, because not every message needs a test
+# kinds of statements that get no faults, because not every message needs a test
 _UNSEEN = (ast.Import, ast.ImportFrom, ast.Assert, ast.Raise)
 
 
@@ -96,7 +96,7 @@ def _last_line(statement: ast.stmt) -> int:
 
 
 def _outermost(tree: ast.Module, data: bytes) -> list[tuple[int, int]]:
-    """Return the byte offsets of the lines of each function that is in no other function, in order."""
+    """Return the byte offsets of the lines of each outermost function, in order."""
     lines = [0, *(at + 1 for at, byte in enumerate(data) if byte == ord("\n")), len(data)]
     found: list[tuple[int, int]] = []
     waiting: list[ast.AST] = [tree]

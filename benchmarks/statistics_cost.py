@@ -1,4 +1,4 @@
-"""Measure the cost of statistics and utility: from buffer to counts, from counts to q, and how it grows.
+"""Measure the cost of computing the statistics from a buffer and the utility from the statistics, and its growth.
 
     python benchmarks/statistics_cost.py            # about a minute
     python benchmarks/statistics_cost.py --workers  # also records with one and two worker processes
@@ -94,7 +94,7 @@ def recorded(steps: int) -> Callable[[], Recorder]:
 
 
 def solving() -> Iterator[str]:
-    """Measure the batch solution."""
+    """Measure the time to compute the utility from all episodes at once."""
     chained = walk(episodes=200, steps=400, cells=2000, sites=0)
     measured = least(lambda: chain_utility(chained.chain, 2000)) * 1e3
     seen = len(np.unique(chained.chain.cell))
@@ -182,8 +182,8 @@ def speed_up() -> Iterator[str]:
     """Record the examples in one process and with two workers.
 
     With two free cores, the ratio of wall times is the speed-up. The CPU time of the main process and of its workers
-    does not depend on other load. With one core per worker, a run takes the CPU time of the main process plus its
-    share of that of the workers.
+    does not depend on other load. With one core per worker, a run takes the CPU time of the main process plus half of
+    the workers' CPU time.
     """
     for example, test, episodes in RECORDINGS:
         what = f"{example}, {episodes} episodes"

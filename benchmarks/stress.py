@@ -5,9 +5,9 @@
 The tasks are those of benchmarks/drift and stress_examples.py. Each has one direction, from its nominal value to its
 drift. The grid has 41 values, each with 40 episodes on its own seeds. The boundary of the grid is where the
 interpolated margin first crosses zero. A line for each task gives both boundaries as shares of the range, the distance
-between them, and the numbers of episodes. With `--harmless N`, each task also gets N runs on the part of the range up
-to half of the grid's boundary. With `--grids`, the grid's boundary of each task is added to a JSON Lines file;
-boundaries that the file contains are not measured again.
+between them, and the numbers of episodes. With `--harmless N`, each task also gets N runs on the part of the range
+below half of the grid's boundary; a boundary that such a run reports is false. With `--grids`, the grid's boundary of
+each task is added to a JSON Lines file; boundaries that the file contains are not measured again.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ GRID, EPISODES = 41, 40  # number of values, and number of episodes at each of t
 RECORDED = 100
 SHARE = 0.15  # share of the grid's episodes that a stress run may use
 NEAR = 0.05  # two boundaries agree if their distance is at most this share of the range
-RISK = 0.05 / 3  # alpha of a run with one ray, divided among the ray, the combinations and the nominal drift
+RISK = 0.05 / 3  # alpha of a run, divided among three tests: of its ray, combinations and nominal drift
 
 
 def span_of(low: float, high: float) -> Space:
@@ -103,7 +103,7 @@ class Compared:
     def contains(self) -> bool:
         """Return whether the interval contains the grid's boundary.
 
-        If the grid has none, finding none is the right answer.
+        If the grid has no boundary, the run is right if it finds none.
         """
         if self.grid is None or self.found is None:
             return self.grid is None and self.found is None

@@ -1,4 +1,4 @@
-"""Find the nearest failing drift in four directions, by a stress run and by other searches of equal cost.
+"""Search four directions for the nearest failing drift, by a stress run and by other searches of equal cost.
 
     python benchmarks/stress_peers/install.sh                       # once: Ψ-TaLiRo and STGEM, an environment each
     python benchmarks/stress_dimensions.py --harmless 100           # false failures
@@ -6,18 +6,18 @@
     python benchmarks/stress_dimensions.py quiet_gripper quiet_dish --harmless 100
     python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours confirmed random …]
 
-The worlds of stress_worlds.py and stress_worlds_2.py are formulas; those of stress_worlds_3.py and stress_worlds_4.py
-are small simulations, written without knowledge of the search; so are those of stress_worlds_5.py to
-stress_worlds_14.py, whose drifts have units and whose nominal values are not always in the middle or at an end of the
-range. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the task,
-and three faults of the topic of its first numeric sensor (bias, latency, dropout), of the same relative size in every
-task. Each method may run BUDGET episodes. A peer receives a cost for each drift that it proposes. If the guarantee
-fails on PROBES common seeds, the cost is the distance from nominal; otherwise it is the margin above the largest
-distance. A failure counts if fresh seeds confirm it; these episodes are not charged. Each method may offer its nearest
-OFFERS failing drifts, of which the k-th is tested at RISK / k(k + 1). A stress run offers the drifts that it
-confirmed, for which it spent episodes, and those that it expects to fail. The method `confirmed` offers only the
-confirmed ones of the same run. A cell of the table gives the number of seeds for which `ours` and `confirmed` are at
-least as near as the peer.
+The worlds of stress_worlds.py and stress_worlds_2.py are formulas. Those of stress_worlds_3.py to stress_worlds_14.py
+are small simulations, written without knowledge of the search. From stress_worlds_5.py on, the drifts have units, and a
+nominal value can be anywhere in its range. Each task of benchmarks/drift has four directions: its own drift, from the
+nominal value to that of the task, and three faults of the topic of its first numeric sensor (bias, latency, dropout),
+of the same relative size in every task. Each method may run BUDGET episodes. A peer, which is another search, receives
+a cost for each drift that it proposes. If the guarantee fails on PROBES common seeds, the cost is the distance from
+nominal, as a share of the largest distance. Otherwise, the cost is 1 plus the margin by which the guarantee holds. A
+failure counts only if fresh seeds confirm it; episodes on these seeds are not part of BUDGET. Each method may offer its
+OFFERS nearest failing drifts; the k-th of them is tested at the level RISK / k(k + 1). A stress run offers the drifts
+that it confirmed with episodes of its budget, and those that it only expects to fail. The method `confirmed` offers
+only the confirmed drifts of the same run. A cell of the table counts the seeds on which `ours` and `confirmed` find a
+failure at least as near as that of the peer.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ PEERS = {"Ψ-TaLiRo": "psy_taliro_peer.py", "STGEM": "stgem_peer.py"}
 
 
 class Numbered(Space):
-    """A space whose test takes a single number as its drift, as the tests of benchmarks/drift do."""
+    """A space for a test whose drift is a single number, as in the tests of benchmarks/drift."""
 
     def world(self, point: Point) -> Any:
         """Return the value of the task's own drift."""
@@ -215,8 +215,8 @@ class Uniform:
 class Process:
     """A peer in its own process and environment.
 
-    The peer writes a point and reads the point's cost, each as a line of JSON. If the peer ends with an
-    error, the points that it asked for before the error still count.
+    The peer writes a point and reads the cost of this point, each as a line of JSON. If the peer ends with an error,
+    the points that it wrote before the error still count.
     """
 
     def __init__(self, home: Path, script: str, size: int, seed: int, seconds: float) -> None:
@@ -270,7 +270,7 @@ def optimiser(method: str, size: int, seed: int, home: Path, seconds: float) -> 
 
 
 def placed(space: Space, numbers: Sequence[float]) -> Point:
-    """Return the point of coordinates from -1 to 1, where 0 is nominal."""
+    """Convert coordinates from -1 to 1, where 0 is nominal, to a point of the space."""
     found = {}
     for (name, extent), number in zip(space.extents.items(), numbers, strict=True):
         if isinstance(extent, Choice):
@@ -287,7 +287,7 @@ def placed(space: Space, numbers: Sequence[float]) -> Point:
 
 
 def _option(extent: Choice, number: float) -> float:
-    """Return the index of the option at a coordinate: each has an equal part, and the nominal one is in the middle."""
+    """Return the index of the option at a coordinate; the options have equal parts, the nominal one in the middle."""
     others = [index for index in range(len(extent.options)) if index != extent.usual]
     others.insert(len(others) // 2, extent.usual)
     return float(others[min(int((number + 1.0) / 2.0 * len(others)), len(others) - 1)])
@@ -368,7 +368,7 @@ def harmless_runs(runs: int, name: str = "harmless") -> str:
 
 
 def row(task: str, found: Mapping[str, Sequence[float | None]]) -> str:
-    """Return a task's line: the median distance of each method, and how often each of OWN is at least as near."""
+    """Return a task's line: the median distance of each method, and how often a method of OWN is at least as near."""
     cells = []
     for method, values in found.items():
         known = [value for value in values if value is not None]

@@ -1,4 +1,4 @@
-"""Simulated machines with drifts in physical units: what the sets of worlds have in common, and their command.
+"""Simulated machines with drifts in physical units: the base of the sets of worlds, and the command that prints them.
 
 A machine is a mission with the ranges of its drifts, and with the success rate and the tolerance that a tester would
 write for it. An episode's noise depends only on its seed, as in a test that uses `tarl.rng`.
@@ -89,7 +89,7 @@ def _drawn(extent: Span | Choice, draws: np.random.Generator) -> float:
 
 
 def told(name: str, machine: Machine, drifts: int = 400, episodes: int = 40) -> str:
-    """Return a line on a machine: nominal, the ends of each range, random drifts."""
+    """Return a line on a machine: its results at the nominal point, at the ends of each range and for random drifts."""
     usual = rates(machine, machine.space.nominal, 1000)
     ends: dict[str, Any] = {}
     for direction, extent in machine.directions.items():
@@ -105,7 +105,7 @@ def told(name: str, machine: Machine, drifts: int = 400, episodes: int = 40) -> 
 
 
 def command(machines: Mapping[str, Machine]) -> None:
-    """Print for each machine how safe nominal is, and how many random drifts fail."""
+    """Print for each machine how safe the nominal point is, and how many random drifts fail."""
     parser = argparse.ArgumentParser(description=command.__doc__)
     parser.add_argument("machines", nargs="*", metavar="MACHINE", help="default: all")
     parser.add_argument("--drifts", type=int, default=400, help="random drifts of each machine")

@@ -3,9 +3,9 @@
     python benchmarks/system_flows.py TREES [--judged benchmarks/system_flows_2.json]
 
 TREES contains a folder `owner+name` for each judged repository, at the commit that the judgements name. For the launch
-file "", all nodes of the tree are analysed without launch files. There is a judgement (node, topic, topic, kind) for
-each pair of topics between which data passes in one node. Flows of nodes that are not Python are not judged. A flow is
-right if node, topics and kind agree.
+file "", all nodes of the tree are analysed without launch files. Each judgement (node, topic, topic, kind) states that
+in this node the first topic influences the second. Flows of nodes that are not Python are not judged. A flow is right
+if node, topics and kind agree.
 """
 
 from __future__ import annotations

@@ -46,7 +46,8 @@ def apart(copy: Path, tests: Iterable[str]) -> list[list[str]]:
 def precompiled(copy: Path) -> None:
     """Compile the sources of the copy.
 
-    Python compares the digest of a source with the compiled one, so it never misses a fault.
+    The compiled files contain the digests of their sources. Python compares these digests, so it notices every inserted
+    fault.
     """
     for package in ("pytest_tarl", "tarl_lint"):
         compileall.compile_dir(copy / package, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)

@@ -3,7 +3,8 @@
 `python benchmarks/third_party_suites.py toolz attrs` downloads the sdists (pinned, with hashes), installs them in a
 temporary environment, runs each suite twice and prints the tests whose outcomes differ. If some outcomes differ, the
 plain suite runs up to three more times, and then the files of the tests that still differ run up to twenty times. An
-outcome that also occurs in a plain run is not due to recording. The exit status is 1 if recording changed an outcome.
+outcome that also occurs in a plain run is not a consequence of recording. The exit status is 1 if recording changed an
+outcome.
 """
 
 from __future__ import annotations

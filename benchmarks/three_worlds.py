@@ -2,10 +2,10 @@
 
     python benchmarks/three_worlds.py
 
-Needs rclpy (`make setup-ros2`, then `.venv-ros2/bin/python`). The test is the tank of tests/realros/external: one
-node, one sensor, two simulated seconds an episode in steps of 0.1 s. Each kind is recorded in a separate run. CPU
-seconds are those of the test and all its processes, including a simulator. The difference between a run of few and a
-run of many episodes excludes the fixed cost of a run.
+Needs rclpy (`make setup-ros2`, then `.venv-ros2/bin/python`). The test is the tank of tests/realros/external: one node,
+one sensor, two simulated seconds an episode in steps of 0.1 s. Each kind is recorded in a separate run. CPU seconds are
+those of the test and all its processes, including a simulator. The costs are the difference between a run of many
+episodes and a run of few, which excludes the fixed cost of a run.
 """
 
 from __future__ import annotations

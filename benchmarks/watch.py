@@ -55,13 +55,13 @@ class Alarms:
     first: dict[str, int | None]
 
     def after(self, method: str, start: int) -> int | None:
-        """Return the missions from the start of a drift to the first alarm; None if it comes earlier or never."""
+        """Return the missions from the start of a drift to the first alarm; None if the alarm came earlier or never."""
         found = self.first[method]
         return found - start if found is not None and found > start else None
 
 
 def watched(monitor: Monitor, missions: Sample, until: bool) -> None:
-    """Pass missions to a monitor; with `until`, pass them in portions and stop at the first alarm."""
+    """Pass missions to a monitor; with `until`, pass the missions in portions and stop at the first alarm."""
     if not until:
         monitor.take(missions, np.zeros(missions.episodes))
         return
@@ -169,7 +169,7 @@ def _row(name: str, found: list[Alarms]) -> str:
 
 
 def delays(streams: int, long: int) -> None:
-    """Print the missions until each method detects a drift; `long` streams have the latest start of the drift."""
+    """Print the missions until each method detects a drift; `long` is the number of streams with the latest start."""
     print(
         "| drift begins at | size | streams | method | before it | noticed | median missions until | 90 % within |"
     )

@@ -69,7 +69,7 @@ class Pools:
 def pools(world: str, size: float) -> Pools:
     """Return the pools of a world; a size of 0 means no drift.
 
-    A mission succeeds if its total is above the designed 3 % quantile.
+    A mission succeeds if its total is above the 3 % quantile of the designed totals.
     """
     designed, drifting = _pool(world, 0.0), _pool(world, size)
     least = float(np.quantile(designed.total, FAILING))
@@ -120,7 +120,7 @@ def fixture(pool: Sample, rng: Generator, declared: Range | None = None) -> Fixt
 
 
 def stream(pool: Sample, cells: tuple[tuple[int, ...], ...], count: int, rng: Generator) -> Sample:
-    """Return `count` missions drawn with replacement, over these cells and one cell for all others."""
+    """Return `count` missions drawn with replacement; all cells other than `cells` become one cell."""
     return _over(gathered(pool, rng.integers(pool.episodes, size=count)), pool, cells)
 
 

@@ -38,7 +38,7 @@ def settings(address: str, quick: bool) -> str:
         text = "".join(line for line in text.splitlines(keepends=True) if '"gallery/index.md"' not in line)
     text = text.replace("[project]\n", "[project]\n" + "\n".join(known) + "\n", 1)
     text = text.replace("[project.theme]\n", '[project.theme]\ncustom_dir = "overrides"\n', 1)
-    # a site with an address is published beside other versions and has a menu to switch between them
+    # A site with an address is published beside sites of other versions, and has a menu to switch between versions.
     if address:
         text = text.replace("[project.extra]\n", '[project.extra]\nversion = { provider = "mike" }\n', 1)
     return text.replace('paths = ["."]', 'paths = [".."]', 1)

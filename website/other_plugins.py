@@ -1,4 +1,4 @@
-"""Pytest options that block the plugins of other projects, whose import takes a second or more.
+"""Options of pytest that block plugins of other projects; importing these plugins takes a second or more.
 
 The development extra installs these plugins; a user has few of them.
 """

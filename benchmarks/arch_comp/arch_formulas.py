@@ -1,4 +1,4 @@
-"""The formulas of the ARCH-COMP falsification category for the three models, as robustness; below 0 is a violation.
+"""The robustness of the formulas of ARCH-COMP's falsification category for three models; below 0 is a violation.
 
 The formulas are those of the reports (ARCH-COMP 2020, EPiC Series in Computing 74, section 3). Robustness is that of
 quantitative semantics (Donzé & Maler 2010). Discrete signals are ±1, and the terms of AT6 are scaled to 1.
@@ -16,12 +16,12 @@ Robustness = Callable[[Outputs], float]
 
 
 def always(values: Signal, low: float, high: float, step: float) -> Signal:
-    """Return, for each time, the least value between `low` and `high` s later, up to the end of the signal."""
+    """Return for each time t the minimum of the signal from t + `low` to t + `high` (s), up to the signal's end."""
     return -eventually(-values, low, high, step)
 
 
 def eventually(values: Signal, low: float, high: float, step: float) -> Signal:
-    """Return, for each time, the largest value between `low` and `high` s later, up to the end of the signal."""
+    """Return for each time t the maximum of the signal from t + `low` to t + `high` (s), up to the signal's end."""
     first, count = round(low / step), round((high - low) / step) + 1
     size = len(values)
     padded = np.concatenate([values[first:], np.full(first + count, -np.inf)])
@@ -35,7 +35,7 @@ def eventually(values: Signal, low: float, high: float, step: float) -> Signal:
 
 
 def within(values: Signal, low: float, high: float, step: float) -> float:
-    """Return the least value between `low` and `high` s."""
+    """Return the minimum of the signal from `low` to `high` (s)."""
     return float(values[round(low / step) : round(high / step) + 1].min())
 
 

@@ -186,7 +186,7 @@ PITCH_RATE, ACTUATOR, DAMPING, FILTER = np.deg2rad(8.0), 2 * pi, 0.7, 1.0 / (2 *
 
 
 def coefficients(ratio: float, pitch: float) -> tuple[float, float]:
-    """Return the power and thrust coefficients of the published polynomials in tip speed ratio and pitch in rad."""
+    """Return the power and thrust coefficients: published polynomials of the tip speed ratio and the pitch (rad)."""
     terms = (
         ratio**3, ratio**2 * pitch, ratio**2, ratio * pitch**2, ratio * pitch, ratio, pitch**3, pitch**2, pitch, 1.0,
     )  # fmt: skip

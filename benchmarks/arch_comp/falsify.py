@@ -56,7 +56,7 @@ class FalsifiedError(Exception):
 
 @dataclass(frozen=True)
 class Model:
-    """A model and its inputs, each with a number of values, a range, and a nominal value."""
+    """A model and its inputs; each input has a number of values, a range, and a nominal value."""
 
     run: Callable[[Signal], Outputs]
     seconds: float

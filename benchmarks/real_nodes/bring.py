@@ -2,10 +2,10 @@
 
     python benchmarks/real_nodes/bring.py TARGET --source PLACE
 
-PLACE is where the repositories are: a folder of clones or checkouts named owner/name or owner+name (a checkout may
-lack its `.git`), or the beginning of a URL to clone from, such as https://github.com. Packages of PyPI are wheels in
-this folder, or come from pip. Each file must be the blob that `nodes.json` names, whatever its source. TARGET/NAME then
-holds the world's test and, at its path in the repository, the node:
+PLACE is where the repositories are. It is either a folder of clones or checkouts named owner/name or owner+name (a
+checkout may lack its `.git`), or the beginning of a URL to clone from, such as https://github.com. Packages of PyPI are
+wheels in this folder, or come from pip. Each file must be the blob that `nodes.json` names, whatever its source.
+TARGET/NAME then holds the world's test and, at its path in the repository, the node:
 
     cd TARGET/NAME && pytest --tarl-record && pytest --tarl-online --tarl-repair
 
@@ -38,9 +38,9 @@ PYPI = "pypi"
 class Node:
     """A file of a repository at a commit; `blob` is the name that git gives to its text.
 
-    A node of the repository "pypi" is a wheel, and its `commit` is the requirement for pip. `by_hand` holds pairs of a
-    text in the file and the replacement that restores the reward, or for each drift triples of a path, a text in it
-    and the replacement.
+    A node of the repository "pypi" is a wheel, and its `commit` is the requirement for pip. `by_hand` is the repair of
+    a person: a list of pairs, each a text in the file and its replacement. If each drift has its own repair, `by_hand`
+    maps the drift to triples: a path, a text in that file, and its replacement.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Node:
 
     @property
     def repairs(self) -> dict[str, Edits]:
-        """Return the edits of each repair, as triples, by the folder that shows them."""
+        """Return the edits of each repair as triples, by the name of the folder that gets this repair."""
         if isinstance(self.by_hand, dict):
             return {f"{self.name}-{drift.replace(' ', '-')}": edits for drift, edits in self.by_hand.items()}
         return {self.name: [[self.path, old, new] for old, new in self.by_hand]}

@@ -3,8 +3,8 @@
     python benchmarks/real_nodes/bring.py TARGET --source PLACE
     python benchmarks/real_nodes/judge.py TARGET/wander [TARGET/NODE ...] [--episodes 400] [--seed 7] [--drift NAME]
 
-Each folder is one that `bring.py` wrote, as it is, with the repair by hand, or with a patch that was applied to it. All
-worlds use the same held-out seeds, which neither recording, comparison nor repair uses.
+Each folder was written by `bring.py`. Its node is unchanged, or has the repair by hand, or has a patch applied to it.
+All worlds use the same held-out seeds, which neither recording, comparison nor repair uses.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Ψ-TaLiRo as a peer: dual annealing. Writes points from -1 to 1 as JSON lines and reads their costs.
+"""Run Ψ-TaLiRo's dual annealing as a peer: write points from -1 to 1 as JSON lines, and read their costs.
 
 python psy_taliro_peer.py DIMENSIONS BUDGET SEED
 """

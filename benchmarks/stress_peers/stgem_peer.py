@@ -1,4 +1,4 @@
-"""STGEM as a peer: its test suite generator OGAN. Writes points from -1 to 1 as JSON lines and reads their costs.
+"""Run STGEM's test suite generator OGAN as a peer: write points from -1 to 1 as JSON lines, and read their costs.
 
 python stgem_peer.py DIMENSIONS BUDGET SEED
 

@@ -1,4 +1,4 @@
-"""The command `ament_tarl_lint`: tarl-lint with a result file where colcon looks for it."""
+"""The command `ament_tarl_lint`: run tarl-lint, and write a result file where colcon looks for it."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from pathlib import Path
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Lint paths, the working directory by default; return 0 where nothing is new, 1 for findings, 2 for mistakes.
+    """Lint paths (default: the working directory); return 0 if no finding is new, 1 for findings, 2 for errors.
 
-    Options that are not known here are those of tarl-lint, such as `--fail-on implicit`.
+    Options that this command does not define itself are passed to tarl-lint, such as `--fail-on implicit`.
     """
     parser = argparse.ArgumentParser(prog="ament_tarl_lint", description=main.__doc__, allow_abbrev=False)
     parser.add_argument("--xunit-file", type=Path, help="write the result there in JUnit's format, too")
