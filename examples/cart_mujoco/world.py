@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 Odometry = message_type("nav_msgs/msg/Odometry")
 
-DOCK, NEAR, BUMP = 2.0, 0.03, 0.05  # place of the dock, how near is docked, how far beyond it is a collision
-WHEEL, TRACK = 0.06, 0.26  # radius of a wheel, distance between both
+DOCK, NEAR, BUMP = 2.0, 0.03, 0.05  # position of the dock, largest gap when docked, overrun at a collision
+WHEEL, TRACK = 0.06, 0.26  # radius of a wheel, distance between the wheels
 TIME_BOUND = 8.0
 FRICTION, PAYLOAD = 0.8, 1.0
 
@@ -58,7 +58,7 @@ class World:
         bus.publish("/odom", message)
 
     def advance(self, bus: Bus) -> None:
-        """Turn the wheels as commanded for one step."""
+        """Apply the latest command to the wheels for one step."""
         command = bus.latest("/cmd_vel")
         speed, turn = (command.linear.x, command.angular.z) if command else (0.0, 0.0)
         self.data.actuator("left").ctrl = (speed - turn * TRACK / 2) / WHEEL
@@ -66,7 +66,7 @@ class World:
         mujoco.mj_step(self.model, self.data, round(self.dt / self.model.opt.timestep))
 
     def monitor(self) -> dict[str, float]:
-        """Judge the last step, in parts."""
+        """Return the parts of the reward for the last step."""
         before, self.gap = self.gap, DOCK - float(self.data.joint("cart").qpos[0])
         if self.gap < -BUMP:
             self.failure = "ran into the dock"

@@ -23,13 +23,13 @@ Illuminance = message_type("sensor_msgs/msg/Illuminance")
 BENDS = ((0.7, 0.0), (0.6, 1 / 0.35), (0.3, 0.0), (0.9, -1 / 0.3), (0.3, 0.0), (0.5, 1 / 0.3), (0.2, 0.0))
 LENGTH = sum(length for length, _ in BENDS)
 DAYLIGHT = (600.0, 800.0)
-FULL_LIGHT = 700.0  # makes a white floor read FLOOR
-LAMP = 0.6  # the course is lit by a lamp up to here
+FULL_LIGHT = 700.0  # light in which the sensors read FLOOR on the bare floor
+LAMP = 0.6  # a lamp lights the course up to this distance along it
 FLOOR, LINE = 0.9, 0.1
-LINE_WIDTH = 0.03  # as the sensors see it
-SENSORS = ((0.07, 0.02), (0.07, -0.02))  # left and right, from the middle of the axle
+LINE_WIDTH = 0.03  # width at which the sensors see the line
+SENSORS = ((0.07, 0.02), (0.07, -0.02))  # left and right, measured from the middle of the axle
 READING_NOISE = 0.01
-LOST = 0.1  # the robot has lost the line
+LOST = 0.1  # at this distance from the line, the robot has lost it
 TIME_BOUND = 10.0
 DRIVE_LAG, SLIDE_LAG, TURN_LAG = 0.15, 0.03, 0.05
 SUBSTEPS = 4
@@ -61,16 +61,16 @@ class World:
 
     @property
     def over(self) -> bool:
-        """Return whether there is nothing left to happen."""
+        """Return whether the run is over."""
         return self.finished or bool(self.failure)
 
     @property
     def light(self) -> float:
-        """Return how bright it is where the robot is."""
+        """Return the light at the position of the robot."""
         return self.daylight * (1.0 if self.along < LAMP else self.dusk)
 
     def publish(self, bus: Bus) -> None:
-        """Tell the node what the sensors see."""
+        """Publish the readings of the sensors."""
         bus.publish("/light", Illuminance(illuminance=self.light))
         bus.publish("/reflectance", Float32MultiArray(data=[self._reading(place) for place in SENSORS]))
 
@@ -89,7 +89,7 @@ class World:
         self.time += self.dt
 
     def monitor(self) -> dict[str, float]:
-        """Judge the last step, in parts: way made, time taken, distance from the line, how it ended."""
+        """Return the parts of the reward for the last step: progress, time, distance from the line, and the end."""
         before = self.along
         self.along, self.off = self._locate()
         if self.off > LOST:

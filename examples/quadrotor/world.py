@@ -28,11 +28,11 @@ DRAG = 0.25  # per m/s
 MOMENT = 0.03
 ROTOR_LAG = 0.03
 ROUTE = ((0.0, 2.0), (3.0, 3.0), (6.0, 2.0), (6.0, 0.0))
-CEILING, FLOOR = 3.8, 1.5  # the band between take-off and landing
+CEILING, FLOOR = 3.8, 1.5  # limits of the altitude between take-off and landing
 NEAR = 0.35
 GUST = (3.6, 5.0)  # positions at which the gust blows
 TIME_BOUND = 20.0
-TAKE_OFF = 4.0  # is done by then
+TAKE_OFF = 4.0  # time by which the take-off is over
 SOFT = 0.6  # limit on the speed of a landing in m/s
 NOISE = 0.01
 SUBSTEPS = 4
@@ -61,11 +61,11 @@ class World:
 
     @property
     def over(self) -> bool:
-        """Return whether there is nothing left to happen."""
+        """Return whether the mission is over."""
         return self.landed or bool(self.failure)
 
     def publish(self, bus: Bus) -> None:
-        """Tell the nodes what the sensors see: position, velocity and what the inertial unit feels."""
+        """Publish the readings of the sensors: position, velocity, and those of the inertial unit."""
         body, noise = self.body, self.rng.normal(0.0, NOISE, 4)
         pose, speed, imu = PoseStamped(), TwistStamped(), Imu()
         pose.pose.position.x, pose.pose.position.z = body.position.x + noise[0], body.position.y + noise[1]
@@ -77,7 +77,7 @@ class World:
         bus.publish("/imu", imu)
 
     def advance(self, bus: Bus) -> None:
-        """Let the rotors pull as commanded for one step, against gravity, drag and wind."""
+        """Move for one step with the commanded thrusts, against gravity, drag and wind."""
         command = bus.latest("/rotors")
         wanted = command.data if command else (0.0, 0.0)
         body = self.body
@@ -94,7 +94,7 @@ class World:
         self.time += self.dt
 
     def monitor(self) -> dict[str, float]:
-        """Judge the last step, in parts: way made, altitude kept, time taken, how it landed."""
+        """Return the parts of the reward for the last step: progress, altitude, time, and the landing."""
         before, self.remaining = self.remaining, self._to_go()
         x, z = self.body.position
         flying = self.time > TAKE_OFF and self.leg < len(ROUTE) - 1
@@ -125,7 +125,7 @@ class World:
         return 5.0 if self.landed else -10.0
 
     def _to_go(self) -> float:
-        """Return how much of the route is left; a waypoint that is near is left behind."""
+        """Return the length of the remaining route; a waypoint counts as passed once the quadrotor is near it."""
         here = self.body.position
         if self.leg < len(ROUTE) - 1 and here.get_distance(ROUTE[self.leg]) < NEAR:
             self.leg += 1

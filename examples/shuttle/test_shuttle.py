@@ -13,7 +13,7 @@ MUD = {"mud": 0.1}  # the share of the commanded speed that the patch leaves
 
 
 def drive(tarl: Tarl, node: str, world: World) -> None:
-    """Let a node drive until its mission is over: one episode."""
+    """Run one episode: let a node drive until its mission is over."""
     tarl.start(node)
     while not world.over:
         world.publish(tarl.bus)
@@ -32,7 +32,7 @@ def test_delivers(tarl: Tarl, tarl_drift: float | None) -> None:
 
 @pytest.mark.tarl(nodes=["traveller.py"], sensors=[X, TERRAIN, LEG], drifts=MUD, min_success=0.98)
 def test_shuttles(tarl: Tarl, tarl_drift: float | None) -> None:
-    """Deliver one parcel at the goal and one at the start; the position does not show the direction of travel."""
+    """Deliver one parcel at the goal and one at the start; the position alone does not show the direction."""
     world = World(tarl.rng("world"), mud=tarl_drift or 1.0, goals=(G2, G1))
     drive(tarl, "traveller.py", world)
     assert world.delivered, world.failure

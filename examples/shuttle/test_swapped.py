@@ -1,4 +1,4 @@
-"""The same delivery by a node in which two lines are swapped: what TARL finds has to move along with them."""
+"""The same delivery by a node with two lines swapped: TARL has to find the same line at its new place."""
 
 import pytest
 from test_shuttle import MUD, TERRAIN, X, drive

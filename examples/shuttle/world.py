@@ -28,8 +28,8 @@ TOP_SPEED = 55.0  # limit of the wheels in rad/s
 TRACTION = 80.0  # N of push per m/s between wheel and ground
 ROLLING = 0.015  # rolling resistance, N per kg
 ODOMETRY_NOISE = 0.01
-TIME_BOUND = 13.5  # from goal to goal ...
-TURNROUND = 2.0  # ... and for turning round in between
+TIME_BOUND = 13.5  # time from goal to goal ...
+TURNROUND = 2.0  # ... and time for turning round at a goal
 PRECISION = 0.2  # a delivery needs the robot this close to the goal ...
 HANDOVER = 10  # ... for this many steps
 SUBSTEPS = 5
@@ -38,8 +38,8 @@ SUBSTEPS = 5
 class World:
     """One mission: visit `goals` in turn, starting at G1.
 
-    `mud` is the share of the commanded speed that the patch leaves to the robot; with 1 the patch is
-    there, and the terrain sensor sees it, but it does no harm.
+    On the patch, the robot reaches the share `mud` of the commanded speed. With 1, the patch is there and the terrain
+    sensor sees it, but the patch has no effect.
     """
 
     dt = 0.1
@@ -63,12 +63,12 @@ class World:
 
     @property
     def delivered(self) -> bool:
-        """Return whether every goal was met in time and precisely."""
+        """Return whether the robot reached every goal in time and precisely."""
         return self.leg == len(self.goals)
 
     @property
     def over(self) -> bool:
-        """Return whether there is nothing left to happen."""
+        """Return whether the mission is over."""
         return self.delivered or bool(self.failure)
 
     @property
@@ -77,7 +77,7 @@ class World:
         return self.patch and PATCH[0] <= self.body.position.x <= PATCH[1]
 
     def publish(self, bus: Bus) -> None:
-        """Tell the node what the sensors see."""
+        """Publish the readings of the sensors."""
         bus.publish("/leg", UInt8(data=self.leg + 1))
         bus.publish("/terrain", Bool(data=self.on_patch))
         odometry = Odometry()
@@ -85,7 +85,7 @@ class World:
         bus.publish("/odom", odometry)
 
     def advance(self, bus: Bus) -> None:
-        """Let the wheels turn as commanded for one step; the motor follows, the mud holds back."""
+        """Move for one step: the motor follows the commanded speed with a lag, and mud slows the robot down."""
         command = bus.latest("/wheel_velocity")
         wheels = max(-TOP_SPEED, min(TOP_SPEED, command.data)) if command else 0.0
         for _ in range(SUBSTEPS):
@@ -96,9 +96,9 @@ class World:
         self.left -= self.dt
 
     def monitor(self) -> float:
-        """Judge the last step: a goal met in time and precisely is worth 10, the way to it half of that.
+        """Return the reward of the last step. Reaching a goal in time and precisely earns 10, half of it on the way.
 
-        Time costs 1 per time bound; a goal that is missed costs 10 and ends the mission.
+        Time costs 1 per time bound. Missing a goal costs 10 and ends the mission.
         """
         before, self.remaining = self.remaining, self._to_goal()
         reward = 5.0 * (abs(before) - abs(self.remaining)) / abs(self.way) - self.dt / TIME_BOUND
@@ -125,5 +125,5 @@ class World:
             self.way = self.remaining = self._to_goal()
 
     def _to_goal(self) -> float:
-        """Return how far the next goal is, negative when it lies behind."""
+        """Return the distance to the next goal; negative if the robot has passed the goal."""
         return self.goals[self.leg] - self.body.position.x

@@ -34,7 +34,7 @@ class Tank(Node):
         self.inflow = message.data
 
     def show(self):
-        """Publish the initial state until the first command, so that whoever comes later has it, too."""
+        """Publish the initial state until the first command, so that nodes that start later receive it, too."""
         if self.inflow is None:
             self.publish()
 

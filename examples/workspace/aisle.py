@@ -12,7 +12,7 @@ LENGTH = 15.0  # s, time for the mission
 
 
 class Aisle:
-    """The scout and its distance to the shelf in metres; `grip` is the share of the speed that the tyres leave."""
+    """The scout and its distance to the shelf in metres; worn tyres reach only the share `grip` of the speed."""
 
     def __init__(self, rng, grip=1.0):
         self.distance = rng.uniform(0.5, 1.0)
@@ -43,12 +43,12 @@ class Aisle:
         return scan
 
     def advance(self, command):
-        """Move for one step with the newest command, None before the first."""
+        """Move for one step with the newest command, or None before the first command."""
         wanted = self.grip * command.linear.x if command is not None else 0.0
         self.speed += (wanted - self.speed) * STEP / LAG
         self.distance -= self.speed * STEP
         self.time += STEP
 
     def judge(self):
-        """Return the rewards of this step: near is good, but not too near."""
+        """Return the rewards of this step: the robot should come near the shelf, but not too near."""
         return {"waiting": -max(0.0, self.distance) * STEP, "shelf": -20.0 if self.hit else 0.0}
