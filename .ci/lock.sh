@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Write requirements-dev.txt and requirements-simulators.txt anew: the newest versions of what the extra `dev` needs on every Python and system that
-# pyproject.toml allows, with the digests of their files. Needs uv (pip install uv).
+# Write requirements-dev.txt and requirements-simulators.txt: the newest versions of the packages that the extras need,
+# for every Python and system that pyproject.toml allows, with the digests of their files. Needs uv (pip install uv).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 {

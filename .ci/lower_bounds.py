@@ -25,7 +25,7 @@ def bounds(extras: list[str]) -> list[str]:
         requirement, _, marker = line.partition(";")
         match = _REQUIREMENT.fullmatch(requirement.strip())
         if match is None:
-            sys.exit(f"pyproject.toml: {line!r} names no lower bound.")
+            sys.exit(f"pyproject.toml: {line!r} has no lower bound.")
         found.append(f"{match[1]}=={match[2]}" + (f" ; {marker.strip()}" if marker else ""))
     return found
 

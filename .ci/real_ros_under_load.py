@@ -50,9 +50,16 @@ def main() -> None:
     parser.add_argument("--probes", type=int, default=500, help="runs of the probe (default 500)")
     parser.add_argument("--suites", type=int, default=50, help="runs of each file of tests (default 50)")
     parser.add_argument("--only", nargs="*", default=[], metavar="FILE", help="only files with these names")
-    parser.add_argument("--minutes", type=float, default=inf, help="begin no run of a file after this time")
+    parser.add_argument(
+        "--minutes", type=float, default=inf, help="minutes after which no further run of a file begins"
+    )
     parser.add_argument("--keep", type=Path, help="folder for the output of each run that failed")
-    parser.add_argument("--load", type=int, default=2 * (os.cpu_count() or 1), help="spinning processes")
+    parser.add_argument(
+        "--load",
+        type=int,
+        default=2 * (os.cpu_count() or 1),
+        help="number of processes that keep the processors busy",
+    )
     given = parser.parse_args()
     end = monotonic() + 60 * given.minutes
     files = sorted((ROOT / "tests" / "realros").rglob("test_*.py"))

@@ -69,7 +69,7 @@ def main() -> None:
     parser.add_argument("--chains", type=int, default=4000)
     number = parser.parse_args().chains
     print(
-        "| same luck | wrong | allowed | episodes, confirmed | without shared seeds |\n|---|---|---|---|---|"
+        "| same outcome | wrong | allowed | episodes, confirmed | without shared seeds |\n|---|---|---|---|---|"
     )
     for alike in SHARES:
         cells = []

@@ -294,7 +294,7 @@ def found_robots(told: dict[str, Any], robots: list[Robot], z: dict[str, float])
     ]
     if away:
         print(
-            f"onset of drifted robots that were named: median {median(away):g} missions off, at most {max(away)}"
+            f"error of the onset of named drifted robots: median {median(away):g} missions, at most {max(away)}"
         )
 
 
@@ -345,7 +345,9 @@ def found_groups(by: str, told: dict[str, Any], recorded: Sample, robots: list[R
     for kind, row in sorted(counts.items()):
         print(f"| {kind} | " + " | ".join(map(str, row)) + " |")
     for kind, some in sorted(away.items()):
-        print(f"onset of {kind}: median {median(some):.1f} missions of a robot off, at most {max(some):.1f}")
+        print(
+            f"error of the onset of {kind}: median {median(some):.1f} missions of a robot, at most {max(some):.1f}"
+        )
 
 
 def found_rest(told: dict[str, Any], robots: list[Robot]) -> None:
@@ -410,7 +412,7 @@ def main() -> None:
         print(
             f"ingest of {count:,} missions in {len(some)} logs: {count / (first - start):,.0f} missions per CPU second"
         )
-        print(f"the same again, all known: {count / (again - start):,.0f}; peak {peak():.0f} MB")
+        print(f"the same logs again: {count / (again - start):,.0f}; peak {peak():.0f} MB")
         about = origin(fixture, path.read_bytes())
         for size in (order.robots // 4, order.robots):
             data = folder / f"data{size}"

@@ -57,7 +57,7 @@ def main() -> None:
     rows = [[float(part) for part in one.split(":")] for one in order.measured]
     sizes, seconds, memory = (list(column) for column in zip(*rows, strict=True))
     cpu, peak = fitted(sizes, seconds), fitted(sizes, memory)
-    print(f"question: {cpu.fixed:.1f} s + {1e6 * cpu.each:.1f} s for 10^6 missions (CPU)")
+    print(f"query:    {cpu.fixed:.1f} s + {1e6 * cpu.each:.1f} s for 10^6 missions (CPU)")
     print(f"memory:   {peak.fixed:.0f} MB + {1e6 * peak.each:.0f} MB for 10^6 missions")
     for size, told, used in zip(sizes, seconds, memory, strict=True):
         print(
@@ -68,8 +68,8 @@ def main() -> None:
     print(f"{many:,.0f} missions:")
     print(f"  stored: {stored:,.0f} GB, {stored * order.gb_month:,.2f} dollars a month")
     print(f"  ingest: {ingest:,.0f} core hours, {ingest * order.core_hour:,.2f} dollars, once")
-    print(f"  a question: {hours:,.1f} core hours, {hours * order.core_hour:,.2f} dollars")
-    print(f"  of these on one machine, whatever the cluster: {(1 - PARALLEL) * hours:,.1f} core hours")
+    print(f"  a query: {hours:,.1f} core hours, {hours * order.core_hour:,.2f} dollars")
+    print(f"  of these, on one machine for any size of the cluster: {(1 - PARALLEL) * hours:,.1f} core hours")
     print(f"  memory of the machine that asks: {peak.at(many) / 1000:,.0f} GB")
     # counts TAKEN twice, because robots and groups are judged in separate tasks
     moved = many * (SCORES + 2 * TAKEN)

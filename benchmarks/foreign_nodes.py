@@ -178,20 +178,20 @@ def report(outcomes: Sequence[Outcome]) -> None:
     ran = [one for one in outcomes if not one.apart]
     started = [one for one in ran if one.starts]
     print(
-        f"\n{len(started)} of {len(ran)} node scripts start without help; {len(outcomes) - len(ran)} others are "
+        f"\n{len(started)} of {len(ran)} node scripts start without adaptation; {len(outcomes) - len(ran)} others are "
         "not counted.\n"
     )
-    print("| what they do | scripts |\n|---|---|")
+    print("| furthest stage | scripts |\n|---|---|")
     for verdict, count in Counter(one.verdict for one in ran).most_common():
         print(f"| {verdict} | {count} |")
-    print("\n| missing | scripts | for instance |\n|---|---|---|")
+    print("\n| missing feature | scripts | for example |\n|---|---|---|")
     groups: dict[str, list[str]] = {}
     for one in ran:
         if one.fails:
             groups.setdefault(f"{'' if one.starts else 'to start: '}{one.missing}", []).append(one.name)
     for missing, names in sorted(groups.items(), key=lambda group: (-len(group[1]), group[0])):
         print(f"| {missing} | {len(names)} | {names[0]} |")
-    print("\n| apart because | scripts |\n|---|---|")
+    print("\n| counted separately because | scripts |\n|---|---|")
     apart = Counter(re.sub(r" \(.*", "", one.apart) for one in outcomes if one.apart)
     for reason, count in apart.most_common():
         print(f"| {reason} | {count} |")

@@ -209,7 +209,7 @@ def score(path: Path, folder: Path, details: bool, total: Counter[str]) -> None:
     try:
         ready = prepared(text, wanted)
     except SyntaxError:
-        print(f"{path.relative_to(folder)}: not valid for this Python, left out")
+        print(f"{path.relative_to(folder)}: left out, because it is not valid in this version of Python")
         return
     if "SINK" not in text:
         return

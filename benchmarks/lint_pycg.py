@@ -203,7 +203,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument(
         "--run",
         action="store_true",
-        help="execute the programs that lack a call, to see whether Python makes it",
+        help="execute each program with a missing call, to see whether Python makes this call",
     )
     options = parser.parse_args(arguments)
     options.checkout = options.checkout.resolve()

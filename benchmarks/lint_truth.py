@@ -220,7 +220,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     drawing = commands.add_parser("draw", help="print publish calls to judge")
     drawing.add_argument("trees", type=Path, help="directory that contains the repositories")
     drawing.add_argument("--seed", type=int, required=True)
-    drawing.add_argument("--each", type=int, default=60, help="calls with a report, and as many without one")
+    drawing.add_argument(
+        "--each", type=int, default=60, help="number of calls with a report, and of calls without one"
+    )
     drawing.add_argument(
         "--without", type=Path, nargs="*", default=[], help="texts that name calls to exclude"
     )

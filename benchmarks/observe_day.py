@@ -81,7 +81,7 @@ def main() -> None:
     print(f"memory, last quarter over second: node {growth[0]:+.1f} MB, writer {growth[1]:+.1f} MB")
     objects = min(blocks[-quarter:]) - min(blocks[quarter : 2 * quarter])
     print(
-        f"memory blocks that the node's process holds, least of the last quarter over the second: {objects:+,}"
+        f"memory blocks of the node's process, minimum of the last quarter minus that of the second: {objects:+,}"
     )
     if missing or disorder or dropped or growth.max() > given.growth or objects > OBJECTS:
         sys.exit(1)

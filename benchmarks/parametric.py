@@ -27,7 +27,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="compare the tiled utility with the table")
     parser.add_argument("--seeds", type=int, default=3)
     arguments = parser.parse_args()
-    print("| example | seed | utility | verdict | region | cells as the table | first culprit by slices |")
+    print(
+        "| example | seed | utility | verdict | region | same cells as the table | line ranked first by slices |"
+    )
     print("|---|---|---|---|---|---|---|")
     for example, test in CASES:
         for seed in range(arguments.seeds):

@@ -293,7 +293,7 @@ def main() -> None:
     parser.add_argument(
         "--quick",
         action="store_true",
-        help="run everything once, to test the script; the figures mean nothing",
+        help="run everything once, to test the script; the figures are not meaningful",
     )
     if parser.parse_args().quick:
         TURNS, RUNS, STARTS = 1, 1, 2  # two starts, because the first one is not counted

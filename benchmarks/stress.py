@@ -177,7 +177,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("tasks", nargs="*")
     parser.add_argument(
-        "--harmless", type=int, default=0, help="additional runs per task on a range where nothing breaks"
+        "--harmless",
+        type=int,
+        default=0,
+        help="additional runs per task on a range where the guarantee holds",
     )
     parser.add_argument("--grids", type=Path, help="JSON Lines file of the grids' boundaries")
     arguments = parser.parse_args()

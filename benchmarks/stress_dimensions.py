@@ -392,7 +392,10 @@ def main() -> None:
         "--peer-seconds", type=float, default=600.0, help="time limit of a peer's process, in seconds"
     )
     parser.add_argument(
-        "--harmless", type=int, default=0, help="only do this number of runs in which nothing breaks"
+        "--harmless",
+        type=int,
+        default=0,
+        help="do only this number of runs, in worlds where the guarantee always holds",
     )
     arguments = parser.parse_args()
     if arguments.harmless:

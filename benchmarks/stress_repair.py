@@ -136,9 +136,12 @@ def main() -> None:
         print(f"| {task} | {done[task].line} |", flush=True)
     every = list(done.values())
     print(f"\nRepaired: {sum(bool(one.change) for one in every)} of {len(every)}.")
-    print(f"The boundary moved away: {sum(bool(one.grew) for one in every)}, significantly in", end=" ")
+    print(
+        f"The boundary moved away from nominal in {sum(bool(one.grew) for one in every)}, significantly in",
+        end=" ",
+    )
     print(f"{sum(one.change == 'more robust' for one in every)};", end=" ")
-    print(f"significantly nearer in {sum(one.change == 'more fragile' for one in every)}.")
+    print(f"it moved significantly nearer in {sum(one.change == 'more fragile' for one in every)}.")
 
 
 if __name__ == "__main__":

@@ -94,8 +94,8 @@ def write(staged: Path) -> None:
     lines = [
         "# Gallery of reports",
         "",
-        "These pages were made by the [examples](../examples/index.md) when this site was built. Each is one file that",
-        "loads nothing.",
+        "The [examples](../examples/index.md) wrote these reports when this site was built. Each report is one",
+        "file and loads nothing from the network.",
         "",
         "| report | example | what it shows |",
         "|---|---|---|",

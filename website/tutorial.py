@@ -203,7 +203,7 @@ def main() -> int:
 
             draw(ran)
     print(
-        f"{shlex.quote(str(arguments.page))}: {len(ran)} commands, {len(other)} with another output than in the page"
+        f"{shlex.quote(str(arguments.page))}: {len(ran)} commands, {len(other)} with outputs that differ from the page"
     )
     return int(bool(other) and not arguments.write)
 

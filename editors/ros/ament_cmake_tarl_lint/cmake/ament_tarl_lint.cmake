@@ -2,7 +2,7 @@
 #
 # ament_tarl_lint([TESTNAME name] [path or option of tarl-lint ...])
 #
-# TESTNAME is tarl_lint by default; without paths the whole package is linted.
+# TESTNAME is tarl_lint by default. Without paths, the whole package is linted.
 function(ament_tarl_lint)
   cmake_parse_arguments(ARG "" "TESTNAME" "" ${ARGN})
   if(NOT ARG_TESTNAME)
