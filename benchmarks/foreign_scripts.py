@@ -51,7 +51,8 @@ class Script:
     def package(self) -> Path:
         """Return the folder of the script's ROS package, or else the folder around its Python package.
 
-        pytest imports the `__init__.py` of each folder above a test before the in-process ROS is installed.
+        A test has to be outside the script's Python package: pytest imports the `__init__.py` of the folders above a
+        test before the in-process ROS is installed.
         """
         inside = [one for one in self.path.parents if one.is_relative_to(self.repository)]
         packages = [place for place, one in enumerate(inside) if (one / "__init__.py").is_file()]

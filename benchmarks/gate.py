@@ -4,8 +4,8 @@
 
 The worlds are eight small ones and the two examples. For each world, each way in which a sensor can show the drift, and
 each size of the drift, a pool of missions is simulated. Pairs of samples (designed, drifted) are then drawn repeatedly
-from the pools and compared. Reference methods are a two-sample Kolmogorov-Smirnov test on total reward, and a threshold
-of 10 %.
+from the pools and compared. There are two reference methods: a two-sample Kolmogorov-Smirnov test on total reward, and
+an alarm if the mean total reward falls by more than 10 %.
 """
 
 from __future__ import annotations

@@ -120,7 +120,7 @@ def both(*, episodes: int, cells: int, width: int, steps: int) -> str:
 def recording(size: int) -> str:
     """Save and load a recording of about `size` MB.
 
-    Beyond the 500th, episodes repeat earlier episodes under other seeds.
+    From the 501st on, the episodes are copies of earlier episodes under other seeds.
     """
     count = max(2, size * 1_000_000 // EPISODE)
     distinct = [world(range(seed, seed + 1), 400, 20, 1500) for seed in range(min(count, 500))]

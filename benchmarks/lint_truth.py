@@ -57,7 +57,7 @@ class Place:
         """Return the place that `text` names: `path:line`, or a line of the file `beside`.
 
         A path is relative to the directory of the trees if it begins with the same folder as `beside`; otherwise, it is
-        relative to that folder.
+        relative to this first folder of `beside`.
         """
         path, _, line = text.rpartition(":")
         home = beside.partition("/")[0]

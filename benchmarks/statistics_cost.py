@@ -121,7 +121,7 @@ def growth() -> Iterator[str]:
 
 
 def cost(episodes: int, steps: int, cells: int, lists: int) -> tuple[float, float, float, float]:
-    """Return the milliseconds to count and to solve, the peak memory (MB), and the size of the recording (kB)."""
+    """Return the ms to count events and to compute the utility, the peak memory (MB), and the recording's size (kB)."""
     traces = [episode(seed, steps, cells, SITES) for seed in range(episodes)]
     members = [range(SITES)] * lists
 

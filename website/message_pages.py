@@ -30,7 +30,7 @@ def slug(words: str) -> str:
 
 
 def anchor(words: str) -> str:
-    """Return the anchor that GitHub gives a heading, which links in docs/ use."""
+    """Return GitHub's anchor of a heading; the links in docs/ use these anchors."""
     return re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
 
 

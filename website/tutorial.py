@@ -74,7 +74,7 @@ def same(shown: str, printed: str) -> bool:
 
 
 def shortened(shown: str, printed: str) -> str:
-    """Shorten the printed output to as many first and last lines as the page shows."""
+    """Shorten the printed output to its first and last lines, as many as the page shows."""
     head, *rest = LEFT_OUT.split(shown, maxsplit=1)
     lines = printed.splitlines(keepends=True)
     if not rest:

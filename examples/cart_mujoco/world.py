@@ -23,7 +23,7 @@ FRICTION, PAYLOAD = 0.8, 1.0
 
 
 class World:
-    """One docking. A drift gives the `friction` of the floor and the `payload`."""
+    """One docking. A drift changes the `friction` of the wheels or the `payload` in kg."""
 
     dt = 0.05
 

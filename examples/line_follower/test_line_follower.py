@@ -7,7 +7,7 @@ from pytest_tarl import Sensor
 from pytest_tarl.episode import Tarl
 
 LIGHT = Sensor("light", topic="/light", field="illuminance", low=0, high=1000, bins=10, unit="lx")
-COURSE = Sensor("course", low=0, high=LENGTH, bins=14, unit="m")  # not known to the robot; for the report
+COURSE = Sensor("course", low=0, high=LENGTH, bins=14, unit="m")  # only for the report
 
 
 @pytest.mark.tarl(nodes=["line_follower.py"], sensors=[LIGHT, COURSE], drifts={"dusk": 0.35}, episodes=100)

@@ -1,4 +1,4 @@
-"""The same mission with formulas beside the monitor; needs `pip install "tarl[stl]"`."""
+"""The same mission with formulas in addition to the monitor; needs `pip install "tarl[stl]"`."""
 
 import pytest
 from world import ROUTE, World

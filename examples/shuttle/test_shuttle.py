@@ -9,7 +9,7 @@ from pytest_tarl.episode import Tarl
 X = Sensor("x", topic="/odom", field="pose.pose.position.x", low=0, high=12, bins=24, unit="m")
 TERRAIN = Sensor("terrain", topic="/terrain", field="data")
 LEG = Sensor("leg", topic="/leg", field="data")
-MUD = {"mud": 0.1}  # the share of the commanded speed that the patch leaves
+MUD = {"mud": 0.1}  # share of the commanded speed that the robot reaches on the patch
 
 
 def drive(tarl: Tarl, node: str, world: World) -> None:
