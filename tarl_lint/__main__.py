@@ -1,4 +1,4 @@
-"""The entry point of the process `tarl-lint`, also by `python -m tarl_lint`; it cannot import linted files."""
+"""The entry point of the process `tarl-lint`, also used by `python -m tarl_lint`. It cannot import linted files."""
 
 import sys
 

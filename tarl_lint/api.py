@@ -58,7 +58,7 @@ class Analysis:
     def configuring(self) -> Mapping[SiteId, tuple[Step, tuple[SiteId, ...]]]:
         """Return the statements outside the flows that fill an object with constants, and the sites that use it.
 
-        Examples are `self.pid = PID(1.0, 0.1, 0.0)` if a statement of a flow calls `self.pid(…)`, and
+        One example is `self.pid = PID(1.0, 0.1, 0.0)` if a statement of a flow calls `self.pid(…)`. Another one is
         `GAINS = [0.5, 2.0]` if a statement of a flow iterates over GAINS.
         """
         return self.prober.configuring
@@ -76,7 +76,7 @@ class Analysis:
         return self.prober.operands(site)
 
     def holders(self, topic: str, field: str, site: SiteId) -> tuple[str, ...]:
-        """Return the expressions that contain a topic's unchanged field at a site, shortest first."""
+        """Return the expressions at a site that contain the unchanged value of a field of a topic, shortest first."""
         return self.prober.holders(topic, field, site)
 
 

@@ -39,7 +39,7 @@ class Baseline:
 def subtract(findings: Sequence[Finding], accepted: Mapping[str, int]) -> tuple[Finding, ...]:
     """Return the findings, marked as accepted where the baseline has them.
 
-    If more findings have the same fingerprint than the baseline accepts, all of them are new.
+    If the run finds more findings with one fingerprint than the baseline accepts, all of them count as new.
     """
     found = Counter(f.fingerprint for f in findings)
     return tuple(

@@ -87,7 +87,8 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
     ),
 }
 
-# methods that use transforms, by what they return: a transform or what it transforms, a truth value or a time, nothing
+# methods that use transforms, in three groups: those that return a transform or transformed data, those that return
+# a truth value or a time, and those that return nothing
 TRANSFORMING: Final = frozenset(
     ["lookup_transform", "lookup_transform_full", "lookup_transform_async", "lookup_transform_full_async",
      "lookup_transform_core", "lookupTransform", "lookupTransformFull", "lookupTwist", "lookupTwistFull",

@@ -76,7 +76,7 @@ class Workspace:
 
 
 class _Memory(Cache):
-    """The reports of the last runs, by key, in memory. The cache on disk is read but never written."""
+    """The reports of the last runs, by key, in memory. The cache on disk is only read."""
 
     adapts = True
 
@@ -108,7 +108,7 @@ class _Memory(Cache):
         return self._analyses.adapted(scripts)
 
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
-        """Store a report, and the parts of files that its analysis has read."""
+        """Store a report, together with the parts of files that its analysis has read."""
         self._analyses.keep(scripts, readings, report)
 
     def edited(self, digests: Mapping[str, str]) -> frozenset[str]:

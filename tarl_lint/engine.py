@@ -47,10 +47,11 @@ def examine(
 ) -> tuple[tuple[Finding, ...], dict[str, Exception], tuple[Cut, ...], tuple[str, ...]]:
     """Return the findings in a group of modules, the failures by file, and the programs that exhausted their budget.
 
-    The last element holds the classes outside the files at which flows ended.
+    The last element of the result lists the classes outside the files at which flows ended.
 
-    With `isolate`, the rest is analysed as if the failed code did nothing; otherwise, failures are raised. With
-    `readings`, what was read of each file is stored there.
+    With `isolate`, code that makes the analysis fail is treated as if it did nothing, and the rest is analysed.
+    Otherwise, failures are raised. If `readings` is given, the parts that the analysis reads of each file are
+    stored there.
     """
     if one_sided(modules, config, HAZARDS):
         return (), {}, (), ()
@@ -93,10 +94,11 @@ def trace(
     parameters: list[ParameterName] | None = None,
     fixed: Mapping[str, object] = MappingProxyType({}),
 ) -> tuple[Linker, tuple[Flow, ...]]:
-    """Return the flows and the interpreter that found them. A thorough interpreter answers further queries.
+    """Return the flows and the interpreter that found them. A thorough interpreter can answer further queries.
 
-    With `parameters`, topic names may contain parameters. A name refers to a parameter by its index in this list, to
-    which the analysis appends. `fixed` are the values of parameters; DEFAULT stands for the default in the code.
+    With `parameters`, topic names may contain parameters. The analysis appends each parameter to this list, and a
+    topic name refers to it by its index in the list. `fixed` are the values of parameters; DEFAULT stands for the
+    default in the code.
     """
 
     def linked() -> tuple[Linker, tuple[Flow, ...]]:

@@ -45,7 +45,7 @@ class Outline:
     # last part of a name → values assigned to it
     assigned: dict[str, list[ast.expr]] = field(default_factory=dict)
     declared: set[str] = field(default_factory=set)  # names that functions declare global
-    shared: frozenset[str] | None = None  # globals that functions change; None until computed
+    shared: frozenset[str] | None = None  # global variables that functions change; None until computed
     # node → names of the locks held there (a cache)
     held: dict[ast.AST, frozenset[str]] = field(default_factory=dict)
     lock_calls: dict[ast.AST, list[tuple[str, str, int]]] = field(
@@ -124,7 +124,7 @@ class Evidence:
         self._limited: dict[int, bool] = {}
 
     def limited(self, statement: ast.AST) -> bool:
-        """Return whether the syntax of a statement limits the value that it computes."""
+        """Return whether the syntax of a statement shows that the statement limits the value it computes."""
         known = self._limited.get(id(statement))
         if known is None:
             known = self._limited[id(statement)] = limits(statement, self.ours)
@@ -158,7 +158,7 @@ class Evidence:
         return any(m.contains(last) and m.matches(PROGRAM) for m in self.machine.modules.values())
 
     def reads(self, name: str, *, attribute: bool, path: str = "") -> Iterator[Read]:
-        """Yield every place that may read a name, including strings used for look-ups."""
+        """Yield every place that may read a name, including strings with which code looks up names."""
         for module in self.machine.modules.values():
             if not module.contains(name) or (path and module.path != path):
                 continue

@@ -16,7 +16,8 @@ from tarl_lint.errors import UsageError
 from tarl_lint.report.line import Line
 from tarl_lint.settings.config import suggestion
 
-ALIKE: Final = 0.8  # minimum similarity (0 to 1) of a suggested code; high, because all codes begin with TARL
+# minimum similarity (0 to 1) of a suggested code. The value is high because all codes begin with TARL.
+ALIKE: Final = 0.8
 _HEADINGS: Final = (("INVALID", "Reported"), ("VALID", "Not reported"))
 
 

@@ -1,4 +1,4 @@
-"""Fingerprints: the identity of a finding in a baseline, independent of position and steps."""
+"""Fingerprints: the identity of a finding in a baseline. A fingerprint does not depend on position and steps."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def _package(package: str, module: str) -> str:
 
 
 def _in_baseline(end: Source | Sink) -> str:
-    """Return the topics of an end; a default name counts as unknown, because a launch file may replace it."""
+    """Return the topics of an end of a flow; a default name counts as unknown, because a launch file may replace it."""
     return UNKNOWN if end.default_topics else topic_text(end.topics)
 
 

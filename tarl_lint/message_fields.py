@@ -17,7 +17,7 @@ def _fields(names: str, kind: str = "") -> dict[str, str]:
 
 
 HEADED: Final = _fields("header", "Header")
-# message types for which the analysis can detect that the program replaced all fields of a copy
+# message types for which the analysis can detect that a program replaces every field of a copied message
 FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     **{name: _fields("data") for name in NUMBERS},
     "ColorRGBA": _fields("r g b a"),
@@ -54,7 +54,7 @@ FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     | _fields(
         "angle_min angle_max angle_increment time_increment scan_time range_min range_max ranges intensities"
     ),
-}  # type → name of a field → type of the field, for field types that have fields themselves
+}  # message type → name of a field → type of the field; only for fields whose type has fields of its own
 
 _ARRAYS: Final = (
     "Byte",
@@ -190,7 +190,7 @@ def _camera(names: str) -> dict[str, str]:
 
 
 _TIME: Final = "builtin_interfaces/Time"
-# "1" or "2", the release of ROS → types whose fields differ in the other one
+# release of ROS, "1" or "2" → message types whose fields are different in the other release
 BY_RELEASE: Final[Mapping[str, Mapping[str, Mapping[str, str]]]] = {
     "1": {
         "CameraInfo": _camera("D K R P"),

@@ -41,7 +41,7 @@ WRITES: Final = re.compile(r"_?(?:write|dump|save|serialize|export|encode_?into|
 def changes(method: str, *, dropped: bool) -> bool:
     """Return whether a method changes its object by its arguments.
 
-    `dropped` says that the result is not used, so the call must have another purpose.
+    `dropped` means that the program does not use the result, so the call must have an effect.
     """
     return CHANGES.match(method) is not None or (dropped and not only_tells(method))
 
@@ -72,19 +72,19 @@ def observes(name: str) -> bool:
 
 
 def derives(name: str) -> bool:
-    """Return whether a method returns a stream of what its object gets later."""
+    """Return whether a method returns a stream of the data that its object receives later."""
     return DERIVES.match(name) is not None
 
 
 def returns_all(name: str) -> bool:
-    """Return whether a method that a library's base class defines returns all data of its object, as `json` does."""
+    """Return whether a method, defined by a library's base class, returns all data of its object, as `json` does."""
     return WHOLE.match(name) is not None
 
 
 def fails(name: str) -> str | None:
-    """Return the exception that a library call raises for an unsuitable value; "" for any exception, None for none.
+    """Return the exception that a library call raises for an unsuitable value: "" for any exception, None for none.
 
-    Only conversions, parsers and look-ups count, because they fail depending on their argument.
+    Only conversions, parsers and look-ups count, because whether they fail depends on their argument.
     """
     if name in ("float", "int", "complex"):
         return "ValueError"

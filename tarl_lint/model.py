@@ -101,8 +101,8 @@ class Flow:
     """One (subscription, publish call) pair with its taint list: `steps` in topological order from the source.
 
     `chain` has the indices in `steps` of the shortest path from the message's arrival to the publish call. The path
-    of an explicit flow follows data; that of an implicit flow follows data and conditions. `chain` is empty
-    if no single path was found.
+    of an explicit flow follows data only. The path of an implicit flow follows data and conditions. `chain` is
+    empty if no single path was found.
     """
 
     kind: Kind
@@ -116,9 +116,9 @@ class Flow:
 class Finding:
     """One diagnostic: a flow (TARL101 to TARL103) or a hazard (TARL2xx).
 
-    `package` is where the finding begins: a ROS package if there is one, else a Python package, else a script. For a
-    hazard, `about` is its subject and `place` the qualified name of its function. Neither contains lines or local
-    names, so the hazard is recognised in an edited file.
+    `package` is where the finding begins: a ROS package if there is one, else a Python package, else a script. For
+    a hazard, `about` is its subject and `place` the qualified name of its function. Neither of these two contains
+    line numbers or local names, so the hazard is recognised in an edited file.
     """
 
     code: str
@@ -151,13 +151,14 @@ class Cut:
 
 @dataclass(frozen=True, slots=True)
 class Operand:
-    """A use of a constant by a site, which a repair may replace.
+    """A use of a constant by a site. A repair may replace the constant.
 
-    `span` is the expression that uses the constant, on the site's own lines; `code` is its text (`5`, `self.kp`).
-    `value` is the constant, or None if it is known only at run time (a parameter without default). `definition` is
-    the place where the constant is defined; for a literal it equals `span`. If the expression stands for several
-    constants, such as a parameter of a function with two calls, `definition` is None, and `definitions` contains all
-    places. `setting` is the key of a value that is loaded from a file.
+    `span` is the expression that uses the constant, on the site's own lines; `code` is the text of this expression
+    (`5`, `self.kp`). `value` is the constant. It is None if it is known only at run time, as for a parameter
+    without default. `definition` is the place where the constant is defined; for a literal, it equals `span`. An
+    expression may stand for several constants, for example a parameter of a function with two calls. Then
+    `definition` is None, and `definitions` contains all places. `setting` is the key of a value that is loaded from
+    a file.
     """
 
     site: SiteId

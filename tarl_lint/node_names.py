@@ -88,7 +88,7 @@ def _text(
 
 
 def _parameter(function: ast.FunctionDef, index: int, cls: ast.ClassDef | None, tree: ast.Module) -> str:
-    """Return the text that all calls of a class pass as a parameter of `__init__`, or else the default."""
+    """Return the text that every call of a class passes for a parameter of `__init__`; if no call does, the default."""
     name = function.args.args[index].arg
     passed = [
         argument

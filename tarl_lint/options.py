@@ -32,7 +32,10 @@ MOST_SHOWN: Final = 100  # maximum number of flows shown individually in a text 
 
 
 class _Help(argparse.HelpFormatter):
-    """Determines the terminal width itself, since argparse would import shutil for every added option."""
+    """Determines the terminal width itself.
+
+    argparse would import shutil for every added option to find the width.
+    """
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=max(40, _columns() - 2))
@@ -126,7 +129,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 class _Once(argparse.Action):
-    """An option that may be given once, since its last value would silently replace the others."""
+    """An option that may be given only once, since otherwise its last value would silently replace the earlier ones."""
 
     def __call__(
         self,

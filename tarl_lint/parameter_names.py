@@ -1,4 +1,4 @@
-"""Parts of topic names that only the launch determines. In a string, marks stand for parameters and node names."""
+"""Parts of topic names that only the launch determines. Marks in a string stand for parameters and node names."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ _MARKED: Final = re.compile(f"{MARK}(\\d+){MARK}")
 class ParameterName:
     """A parameter: its name in the code and its default, which is None if the default is not a single known text.
 
-    Other kinds are the node's name, the last part of it ("own"), its namespace, and a name after resolving and
-    remapping.
+    Besides parameters, the class represents the node's name, the last part of the node's name ("own"), the node's
+    namespace, and a name after resolving and remapping.
     """
 
     name: str

@@ -64,7 +64,7 @@ def suppressions(path: str, text: str) -> tuple[Suppression, ...]:
 
 
 def _codes(comment: re.Match[str]) -> tuple[str, ...]:
-    """Return the rules that a comment names; "" means all. Codes of other tools in a noqa are ignored."""
+    """Return the rules that a comment names; "" means all rules. In a `noqa`, codes of other tools are ignored."""
     if comment["noqa"] is not None:
         words = re.split(r"[\s,]+", comment["noqa"].upper())
         return tuple(word for word in words if word.startswith("TARL"))

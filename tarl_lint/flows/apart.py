@@ -1,4 +1,4 @@
-"""Tells apart the sources and sinks at one line, at which a helper class subscribes or publishes for others."""
+"""Distinguish the sources, or sinks, at one line: a helper class may subscribe or publish there for several others."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ Record = TypeVar("Record", SourceRecord, SinkRecord)
 
 
 def told_apart(records: Iterable[Record]) -> list[Record]:
-    """Return one source, or one sink, for each line and its topics.
+    """Return one source, or one sink, for each combination of a line and topics.
 
-    A record is merged into another record of the same line if the other record has all its topics and more, because the
-    analysis may have reached the line before it knew the names. If a record has no topic, both must be of one call
-    context.
+    A record is merged into another record of the same line if the other record has all its topics and further ones,
+    because the analysis may have reached the line before it knew all names. If one of the two records has no topic,
+    both must belong to the same call context.
     """
     found: list[Record] = []
     for same in by_line(records):
@@ -34,7 +34,10 @@ def told_apart(records: Iterable[Record]) -> list[Record]:
 
 
 def sinks_told_apart(records: Iterable[SinkRecord]) -> list[SinkRecord]:
-    """Return one sink for each line and its topics; publishers that are sent to in the same contexts are one sink."""
+    """Return one sink for each combination of a line and topics.
+
+    Publishers that publish in the same call contexts are merged into one sink.
+    """
     alike: dict[object, list[SinkRecord]] = {}
     for record in records:
         alike.setdefault((record.path, record.pos, frozenset(record.contexts)), []).append(record)
@@ -45,9 +48,10 @@ def sinks_told_apart(records: Iterable[SinkRecord]) -> list[SinkRecord]:
 
 
 def named_first(flows: Iterable[Flow]) -> Iterator[Flow]:
-    """Yield the flows into one sink, but of the sources at one line those without topics only if they tell more.
+    """Yield the flows into one sink, without flows from sources without topics that add nothing to flows of their line.
 
-    A class that registers sources may also be analysed without a caller, and then its topics are unknown.
+    A class that registers sources may also be analysed without a caller, and then the topics of its sources are
+    unknown.
     """
     found = list(flows)
     kinds: dict[object, set[str]] = {}
@@ -61,9 +65,10 @@ def named_first(flows: Iterable[Flow]) -> Iterator[Flow]:
 
 
 def named_sinks_first(flows: Iterable[Flow]) -> Iterator[Flow]:
-    """Yield flows, but none into a sink without topics if a sink with topics has it too.
+    """Yield flows; omit a flow into a sink without topics if the same flow also enters a sink with topics.
 
-    Both sinks are at the same place, and the flows have the same source. An explicit flow may replace an implicit one.
+    Both sinks are at the same place, and both flows have the same source. An explicit flow may replace an implicit
+    one.
     """
     found = list(flows)
     kinds: dict[object, set[str]] = {}
@@ -77,7 +82,7 @@ def named_sinks_first(flows: Iterable[Flow]) -> Iterator[Flow]:
 
 
 def by_line(records: Iterable[Record]) -> Sequence[Sequence[Record]]:
-    """Return the records of each call; a registration may be several kinds of sources."""
+    """Return the records of each call, by line; one registration may belong to several kinds of sources."""
     groups: dict[object, list[Record]] = {}
     for record in records:
         kind = (record.api, record.kind) if isinstance(record, SourceRecord) else None
@@ -86,12 +91,12 @@ def by_line(records: Iterable[Record]) -> Sequence[Sequence[Record]]:
 
 
 def _outgrown(record: Record, other: Record) -> bool:
-    """Return whether another record has all topics of a record, and more."""
+    """Return whether some other record has all topics of this record, and further ones."""
     return record.topics < other.topics and bool(record.topics or record.contexts & other.contexts)
 
 
 def merged(records: Sequence[Record]) -> Record:
-    """Return the records of one line as one source or sink; it stands where the first of them stands."""
+    """Return the records of one line as one source or sink, in the place of the first record."""
     return reduce(_merged, records)
 
 

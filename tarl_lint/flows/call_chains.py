@@ -7,7 +7,7 @@ from tarl_lint.memory.value_flow_graph import Place
 
 
 def calls(frame: Frame, outer: Frame) -> list[Place]:
-    """Return the calls that lead from one frame to another, outermost first; empty if no calls do."""
+    """Return the calls that lead from one frame to another, outermost first; empty if no calls lead there."""
     found: list[Place] = []
     current: Frame | None = frame
     while current is not None and current is not outer:

@@ -23,7 +23,7 @@ class Entrance(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """Nodes with the result of `Choices.made_there`."""
+    """A set of nodes, with the result of `Choices.made_there` for them."""
 
     nodes: Set[int]
     found: Set[int]
@@ -44,7 +44,7 @@ class Choices:
     def made_there(self, nodes: Set[int], known: Made = NOTHING_MADE) -> set[int]:
         """Return the constants that conditions among the nodes choose, and the nodes that produce these constants.
 
-        `known` is a subset of the nodes with its result.
+        `known` holds a subset of the nodes, with the result for this subset.
         """
         graph = self.graph
         found = set(known.found)
@@ -66,7 +66,7 @@ class Choices:
         return found
 
     def made_of(self, nodes: Set[int], known: Made) -> Made:
-        """Return nodes with the result of `made_there`; `known` is the same for a subset of them."""
+        """Return nodes with the result of `made_there` for them; `known` is the same for a subset of the nodes."""
         return Made(nodes, self.made_there(nodes, known))
 
     def _alongside(self, node: int) -> Sequence[tuple[int, Branches]]:
@@ -79,7 +79,7 @@ class Choices:
         return known
 
     def makers(self, values: Iterable[int], ways: Branches) -> set[int]:
-        """Return those inputs of values, direct or not, that are computed under one of the conditions `ways`."""
+        """Return the inputs of values, direct or indirect, that are computed under one of the conditions `ways`."""
         data, branches, stands_for = self.graph.data, self.graph.branches, self.graph.stands_for
         found: set[int] = set()
         pending = list(values) if ways else []
@@ -92,7 +92,7 @@ class Choices:
         return found
 
     def renewed(self, nodes: Set[int], known: Set[int]) -> set[int]:
-        """Return the nodes whose value is chosen, and by other conditions in `nodes` than in the subset `known`."""
+        """Return the nodes whose value is chosen by conditions in `nodes` other than those in the subset `known`."""
         news = nodes - known
         asking = (news & self.graph.gates.keys()) | (news & self.alongside.keys())
         if known:
@@ -123,7 +123,7 @@ class Choices:
             yield from self._chosen_by.get(node, ())
 
     def _reversed(self) -> dict[int, list[int]]:
-        """Return, for each condition and each value used without conditions, the nodes that ask for them."""
+        """Return, for each condition and each value used without conditions, the nodes that depend on it."""
         graph = self.graph
         found: dict[int, dict[int, None]] = {}
         for node, (_, choice) in graph.gates.items():

@@ -9,7 +9,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.models.ros.endpoints import SourceRecord
 
 Enclosing = dict[int, Written]  # `id` of a statement → the statement, in order
-# keys: (`id` of an enclosing statement, `id` of the step that it precedes)
+# keys: pairs of the `id` of an enclosing statement and the `id` of the step that this statement precedes
 Before = dict[tuple[int, int], None]
 
 
@@ -29,7 +29,7 @@ class Surroundings:
     def context(
         self, origin: SourceRecord, steps: Sequence[tuple[Frame, Written]]
     ) -> tuple[list[Written], list[tuple[int, int]]]:
-        """Return the statements around steps and registration, and pairs (statement, step that it precedes)."""
+        """Return the statements around the steps and the registration, and pairs of such a statement and its step."""
         found: Enclosing = {}
         edges: Before = {}
         registration = self.registration(origin)

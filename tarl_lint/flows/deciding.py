@@ -19,8 +19,8 @@ CONSTRUCTORS = frozenset(["__init__", "__post_init__"])
 def deciding(tracer: Tracer, flows: Collection[Flow]) -> tuple[Step, ...]:
     """Return the statements that are on no flow although published values depend on them, by data or control.
 
-    Only files on a flow count. Assignments that set up a node (of a module, a class or a constructor) are left out:
-    their constants are found where they are used.
+    Only files that contain a statement of a flow count. Assignments that set up a node (in a module, a class or a
+    constructor) are left out: their constants are found where they are used.
     """
     paths = {step.span.path for flow in flows for step in flow.steps}
     inside = {step.site for flow in flows for step in flow.steps}

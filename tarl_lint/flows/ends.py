@@ -12,7 +12,10 @@ from tarl_lint.models.ros.endpoints import DefaultName, SinkRecord, SourceRecord
 
 @dataclass(frozen=True, eq=False)
 class Ends:
-    """Describes the ends of flows. The name of a sink contains its number among the sinks with the same topics."""
+    """Describes the ends of flows.
+
+    Sinks with the same topics are numbered, and the name of a sink contains its number.
+    """
 
     texts: Texts
     sinks: Collection[SinkRecord]

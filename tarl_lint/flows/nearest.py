@@ -1,4 +1,4 @@
-"""Results for sets of nodes, each extended from the result for a large subset.
+"""Results for sets of nodes; each result is extended from the known result for a large subset.
 
 Most flows of a program share most of their nodes, even if they end in different publish calls.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Set
 from typing import Final, Generic, Protocol, TypeVar
 
-# a subset gets a result of its own if it has this many nodes more than any known subset
+# a subset gets its own stored result if it has at least this many more nodes than every subset with a stored result
 WORTHWHILE: Final = 500
 MAX_KEPT: Final = 8  # maximum number of results that are kept
 
@@ -28,7 +28,7 @@ class Nearest(Generic[T]):
     """Keeps results for subsets of the sets that were requested."""
 
     def __init__(self, empty: T, extended: Callable[[Set[int], T], T], worthwhile: int = WORTHWHILE) -> None:
-        """`extended(nodes, known)` returns the result for some nodes, given the result for a subset of them."""
+        """`extended(nodes, known)` returns the result for some nodes, given the result for the subset `known`."""
         self._empty = empty
         self._extended = extended
         self._worthwhile = worthwhile
@@ -37,10 +37,10 @@ class Nearest(Generic[T]):
         self._last: dict[Hashable, Set[int]] = {}
 
     def of(self, nodes: Set[int], kind: Hashable, *more: T) -> T:
-        """Return the result for some nodes; `more` are known results for subsets of them.
+        """Return the result for some nodes; `more` holds known results for subsets of the nodes.
 
-        Sets of one kind, such as those of one source, share most of their nodes. `nodes` is kept, so it must not be
-        changed later.
+        Sets of one kind, such as those of one source, share most of their nodes. `nodes` is kept, so the caller
+        must not change it later.
         """
         known = self._largest_inside(nodes, more)
         last = self._last.get(kind, frozenset())

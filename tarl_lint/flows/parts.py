@@ -49,11 +49,11 @@ class Part:
     passed: dict[int, Written] = field(
         default_factory=dict
     )  # calls between conditions and the values they choose
-    # pairs that order conditions, the calls between them, and the values they choose
+    # pairs that put these in order: conditions, the values they choose, and the calls between conditions and values
     entrances: Pairs = field(default_factory=dict)
 
     def copy(self) -> Part:
-        """Return an equal part that can be extended without a change of this one."""
+        """Return an equal part; extending the copy does not change this part."""
         return Part(
             self.nodes,
             {**self.written},
@@ -72,13 +72,15 @@ class Parts:
     def __init__(self, statements: Statements, choices: Choices) -> None:
         self.statements = statements
         self.choices = choices
-        self.bits = Bits()  # of all statements; the orders of all parts share them
-        # node → the nodes of other statements that it depends on, and the bits of these statements
+        self.bits = Bits()  # bits of all statements, shared by the orders of all parts
+        # node → the nodes of other statements on which the node depends, and the bits of these statements
         self._formers: dict[int, tuple[tuple[int, ...], int]] = {}
-        # bits → the one object that stands for equal bits, since nodes in many contexts have equal bits
+        # bits → the one object that represents all equal bits; this saves memory, since nodes in many contexts have
+        # equal bits
         self._bits: dict[int, int] = {}
         self._ways: dict[tuple[Frame, Frame], Way | None] = {}
-        # node → (condition, node that uses the value, calls between) of each condition that chooses its value
+        # node → one triple for each condition that chooses the value of the node: the condition, the node that uses
+        # the value, and the calls between these two
         self._entrances: dict[int, Sequence[tuple[int, int, Way]]] = {}
 
     def of(self, nodes: Set[int], known: Part) -> Part:
@@ -101,7 +103,7 @@ class Parts:
                 part.placed[places[node].frame, id(found)] = found
 
     def _add_order(self, part: Part, nodes: Iterable[int]) -> None:
-        """Add the order between statements; set apart dependencies on earlier iterations of a loop."""
+        """Add the order between statements; store dependencies on earlier iterations of a loop separately."""
         inside, written, places = part.nodes, part.written, self.statements.graph.places
         key_of, bits = self.statements.key_of, self.bits
         for node in nodes:
@@ -128,7 +130,7 @@ class Parts:
                 part.precedence.add(earlier, after)
 
     def _formers_of(self, node: int, after: int) -> tuple[tuple[int, ...], int]:
-        """Return the nodes of other statements than `after` that a node depends on, and the bits of the statements."""
+        """Return the nodes of other statements than `after` on which a node depends, and the bits of the statements."""
         key_of, bits = self.statements.key_of, self.bits
         formers: list[int] = []
         asked = 0

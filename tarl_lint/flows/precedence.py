@@ -1,7 +1,7 @@
-"""Which statements precede which: a relation that can be copied and extended at little cost.
+"""A relation that says which statements precede others; copying and extending it is cheap.
 
-Every flow has a relation of its own. The statements that precede another one are the bits of an integer: copies share
-these integers, and one operation joins two sets.
+Every flow has a relation of its own. For each statement, the bits of an integer represent the statements that
+precede it. Copies of a relation share these integers, and one operation unites two sets.
 """
 
 from __future__ import annotations
@@ -10,7 +10,10 @@ from collections.abc import Iterable, Mapping
 
 
 class Bits(dict[int, int]):
-    """Key → its bit; a key gets the next free bit at its first use. Relations with common bits share this table."""
+    """A table from keys to bits. A key gets the next free bit at its first use.
+
+    Relations with common bits share one table.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -34,7 +37,7 @@ class Precedence:
     """A relation between keys. A key does not precede itself."""
 
     def __init__(self, pairs: Iterable[tuple[int, int]] = (), bits: Bits | None = None) -> None:
-        """`bits` is the table of other relations, with which this one shares its bits."""
+        """`bits` is a table of bits that other relations may use, too."""
         self.bits = Bits() if bits is None else bits
         self.before: dict[int, int] = {}  # key → bits of the keys that precede it
         self.update(pairs)
@@ -46,7 +49,7 @@ class Precedence:
         return made
 
     def update(self, pairs: Iterable[tuple[int, int]]) -> None:
-        """Add pairs (former, latter)."""
+        """Add pairs of keys; the first key of a pair precedes the second."""
         for former, latter in pairs:
             self.add(self.bits[former], latter)
 
@@ -57,7 +60,8 @@ class Precedence:
     def add_ahead_of_loops(self, turns: Iterable[tuple[int, int]], function: Mapping[int, object]) -> None:
         """Order statements of other functions before the loops whose bodies use their values.
 
-        `turns` has the pairs (statement of the body, head) in which the head uses a value of an earlier iteration.
+        Each pair in `turns` consists of a statement in the body of a loop and the head of this loop. The head uses
+        a value that the statement computes in an earlier iteration.
         """
         heads: dict[int, int] = {}
         for carried, head in turns:
@@ -73,9 +77,9 @@ class Precedence:
             self.add(formers & ~together.get(id(function.get(head)), 0), head)
 
     def _all_before(self, keys: int, known: dict[int, int]) -> int:
-        """Return the keys and all that precede them, directly or not, as bits.
+        """Return the bits of some keys and of all keys that precede them, directly or not.
 
-        `known` maps numbers of keys to earlier results for these keys alone, and is extended.
+        `known` maps the number of a key to the result for this key alone. The function adds results to it.
         """
         found = 0
         while left := keys & ~found:
@@ -107,6 +111,6 @@ class Precedence:
         return {one for number, one in enumerate(self.bits.keys_of) if bits >> number & 1}
 
     def first_of(self, key: int, left: int) -> int | None:
-        """Return a key that precedes `key` and is among `left`, a set as bits; None if there is none."""
+        """Return a key that precedes `key` and is among `left`, a set of keys given as bits; None if there is none."""
         waiting = self.before.get(key, 0) & left
         return self.bits.keys_of[waiting.bit_length() - 1] if waiting else None

@@ -1,4 +1,4 @@
-"""Reachability from sources to sinks: which pairs are flows, and through which statements."""
+"""Reachability from sources to sinks: which pairs of a source and a sink are flows, and through which statements."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Reach:
 
     data: set[int]
     any: set[int]
-    # node of a container's length → source data in those elements that a condition decides to add
+    # node of a container's length → data of the source in those elements that are added under a condition
     counted: Mapping[int, set[int]]
 
 
@@ -88,7 +88,7 @@ class Tracer:
             return
         sink = self.ends.sink(record)
         graph = self.graph
-        # everything that follows a reached node is reached too: a node in both sets is on a way to the sink
+        # all nodes that follow a reached node are reached too, so a node in both sets is on a path to the sink
         behind = closure(record.nodes, [graph.data]), closure(record.nodes, [graph.data, graph.control])
         on_data = [self.made_from(behind[0] & reach.data, reach) for _, _, reach in reaching]
         on_any = [behind[1] & reach.any for _, _, reach in reaching]
@@ -109,7 +109,7 @@ class Tracer:
     def paths(
         self, record: SinkRecord, reaching: Iterable[Reaching]
     ) -> Iterator[Callable[[Set[int]], Sequence[int]]]:
-        """Yield a function for each source that finds a path to the sink.
+        """For each source, yield a function that finds a path to the sink.
 
         The path leads only through data if data of the source reaches the sink.
         """
@@ -126,14 +126,17 @@ class Tracer:
                 yield through_data.path_from
 
     def data_formers(self, counted: Mapping[int, set[int]]) -> Callable[[int], list[int]]:
-        """Return a function from a node to the data it is made from; for a container's length, also the elements."""
+        """Return a function that maps a node to the data from which it is made.
+
+        For the node of a container's length, this includes the elements.
+        """
         data = self.graph.data
         return lambda node: sorted(data[node] | counted[node] if node in counted else data[node])
 
     def made_from(self, ends: set[int], reach: Reach) -> set[int]:
-        """Return the nodes of a source's data from which the ends are computed.
+        """Return the nodes with data of the source from which the ends are computed.
 
-        All data of the source that leads to one of the ends by data edges is among the ends.
+        If data of the source leads to one of the ends by data edges, all this data is among the ends.
         """
         found = set(ends)
         while more := set().union(*(reach.counted[n] for n in found & reach.counted.keys())) - found:
@@ -142,7 +145,7 @@ class Tracer:
 
 
 def ending_in_publish_call(path: Sequence[int], steps: Sequence[Step]) -> tuple[int, ...]:
-    """Return a path with its publish call last, even if arguments of this call are calls of functions on the path."""
+    """Return a path that ends with its publish call, even if arguments of this call are calls of functions on it."""
     calls = [place for place in path if steps[place].role == "publish"]
     return (*(place for place in path if place not in calls), *calls[-1:])
 

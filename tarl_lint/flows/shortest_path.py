@@ -13,8 +13,9 @@ class ShortestPaths:
     A step to a node of the same statement, or to one without a statement, costs nothing (0-1 breadth-first search
     from the ends). The order of `ends` and `formers` breaks ties, so both must be ordered.
 
-    The paths of a subscription consist of nodes that it reaches. The search need not be restricted to these: what a
-    reached node leads to is reached too, so no path from a subscription enters a node that it does not reach.
+    The paths of a subscription consist of nodes that it reaches. The search need not be restricted to these nodes:
+    everything to which a reached node leads is reached too, so a path from a subscription contains only nodes that
+    the subscription reaches.
     """
 
     def __init__(
@@ -44,7 +45,7 @@ def _search(
     following: dict[int, int],
     settled: dict[int, None],
 ) -> Iterator[int]:
-    """Settle one node after the other, and yield each; `following` is the next node of its shortest path."""
+    """Yield nodes in the order in which their costs become final; `following` is the next node on a shortest path."""
     cost = dict.fromkeys(ends, 0)
     pending = deque(cost)
     while pending:

@@ -21,7 +21,7 @@ FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 @dataclass(slots=True, eq=False)
 class Written:
-    """A statement (or the body of a lambda, or an arm of `match`) and the statements that enclose it."""
+    """A statement (or the body of a lambda, or a `case` of `match`) and the statements that enclose it."""
 
     node: ast.AST
     qualname: str
@@ -31,7 +31,10 @@ class Written:
 
     @property
     def defines(self) -> bool:
-        """Return whether this is a function or class; statements that enclose a definition do not enclose its calls."""
+        """Return whether this is a function or class.
+
+        A statement around a definition does not enclose the calls of the defined function or class.
+        """
         return isinstance(self.node, (*FUNCTIONS, ast.ClassDef))
 
     @property
@@ -143,7 +146,7 @@ class Text:
         return known
 
     def stretch(self, pos: Pos) -> Span:
-        """Return a position as a span."""
+        """Return a range of positions as a span."""
         line, column, end_line, end_column = pos
         return Span(
             self.module.path, line, self._column(line, column), end_line, self._column(end_line, end_column)

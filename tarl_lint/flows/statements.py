@@ -1,4 +1,4 @@
-"""The statements of a value-flow graph's nodes, and the statements that lead to them. All flows share the answers."""
+"""The statement of each node of a value-flow graph, and the statements that lead to it. All flows share the results."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tarl_lint.models.ros.endpoints import SourceRecord
 
 
 class Found(dict[int, Written | None]):
-    """Node → its statement, or None without one; computed at the first use of the node."""
+    """A table from nodes to their statements (None for a node without statement); filled at the first use of a node."""
 
     def __init__(self, graph: Graph, texts: Texts) -> None:
         super().__init__()
@@ -33,7 +33,7 @@ class Found(dict[int, Written | None]):
 
 
 class Keys(dict[int, int | None]):
-    """Node → `id` of its statement, or None without one; computed at the first use of the node."""
+    """A table from nodes to the `id` of their statement (None without statement); filled at the first use of a node."""
 
     def __init__(self, found: Mapping[int, object | None]) -> None:
         super().__init__()
@@ -103,7 +103,7 @@ class Statements:
         return known
 
     def nodes_after(self, nodes: Collection[int]) -> Iterator[int]:
-        """Yield the nodes that have one of these nodes in `nodes_before`, and the merged nodes between."""
+        """Yield the nodes for which `nodes_before` returns one of these nodes, and the merged nodes between them."""
         pending = list(nodes)
         seen: set[int] = set()
         while pending:

@@ -44,7 +44,7 @@ class TaintLists:
     def of(self, origin: SourceRecord, on_data: Set[int], part: Part, record: SinkRecord) -> TaintList:
         """Return the taint list of a flow: data and control steps of the part's nodes, and the context steps.
 
-        `part` is changed: it belongs to this flow alone.
+        This method changes `part`, which belongs to this flow alone.
         """
         written, precedence = part.written, part.precedence
         dependence: dict[int, Dependence] = dict.fromkeys(written, "control")

@@ -1,4 +1,4 @@
-"""Objects that code outside the files passes: an instance of the class that annotates a parameter."""
+"""Objects that code outside the files passes to a function: instances of the class that annotates the parameter."""
 
 from __future__ import annotations
 

@@ -41,7 +41,10 @@ def try_statement(ctx: Interpreter, s: ir.Try, frame: Frame) -> bool:
 
 
 def _together(ctx: Interpreter, leaving: list[Leaving]) -> list[list[Leaving]]:
-    """Group what leaves a `try` by its kind; each group has one state, in which the `finally` is executed once."""
+    """Group the ways to leave a `try` by kind.
+
+    Each group has one state, in which the `finally` is executed once.
+    """
     groups: dict[object, list[Leaving]] = {}
     for one in leaving:
         groups.setdefault(one.cause if isinstance(one.cause, str) else type(one.cause), []).append(one)
@@ -83,7 +86,10 @@ def jumped(ctx: Interpreter, kind: Literal["break", "continue"], frame: Frame) -
 
 
 def _handled(ctx: Interpreter, s: ir.Try, frame: Frame) -> bool:
-    """Execute a `try` without its `finally`: a handler can be entered before and after every statement of the body."""
+    """Execute a `try` without its `finally`.
+
+    A handler can be entered before and after every statement of the body.
+    """
     depth = len(ctx.store.layers)
     ctx.condition(frame, s)
     ctx.store.push()

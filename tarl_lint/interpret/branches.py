@@ -17,7 +17,7 @@ from tarl_lint.models import object_lists, rows, sizes, unpacking
 
 MAX_TURNS = 4  # maximum number of known elements over which a loop is unrolled
 MAX_EXACT_TURNS = 8  # value of MAX_TURNS in a run for one launched node
-# a loop whose body has at most this many plain statements is unrolled over up to MAX_KNOWN elements
+# a loop is unrolled over up to MAX_KNOWN elements if its body has at most this many plain statements
 SHORT = 3
 # maximum number of passes over a loop's body; only a safety limit, since the value domain is finite
 MAX_PASSES = 12
@@ -106,7 +106,8 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         if ctx.work.charged > MAX_STATEMENTS:
             ctx.cut[ctx.program] = None
             ctx.store.reads.whole = False
-            # nested loops multiply the passes: at this limit, stop although the state is not stable yet
+            # nested loops multiply the number of passes, so the loop stops at this limit although its state is not
+            # stable yet
             break
         head = again
     frame.heads[(s.id, *frame.turn)] = head
@@ -117,7 +118,7 @@ def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
     """Return the initial state at a loop's head: the fixpoint of the loop's last execution in this call context.
 
     States only grow, from one pass of an outer loop to the next and from one run of an entry point to the next. The
-    former fixpoint is therefore below the new one, and an inner loop needs a single pass if nothing has changed.
+    last fixpoint is therefore below the new one. If nothing has changed, an inner loop needs a single pass.
     """
     known = frame.heads.get((s.id, *frame.turn))
     return {} if known is None else joins.joined(ctx, [{}, known])
@@ -126,7 +127,8 @@ def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
 def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame, *, each: bool) -> list[Value]:
     """Return the elements to unroll a loop over; [] if they are unknown or too many.
 
-    A loop is only unrolled if its elements carry data, or if `each` iteration has topics of its own.
+    A loop is only unrolled if its elements carry data, or if `each` is True: then each iteration has topics of its
+    own.
     """
     elements = sizes.unpacked(ctx, source) or []
     if any(o.name == heap.MEMBERS for o in source.pts):
@@ -168,8 +170,8 @@ def _turns(
 ) -> bool:
     """Unroll a loop: execute the body once for each element.
 
-    If `passes` is not 0, each element may be missing; then the loop is repeated until its state is stable, because
-    the order of the elements is unknown, up to this number of times.
+    If `passes` is not 0, each element may be missing and the order of the elements is unknown. The loop is then
+    repeated until its state is stable, but at most `passes` times.
     """
     depth, before, outside = len(ctx.store.layers), frame.turn, frame.steps
     turns, decides = frame.turns, not passes and frame.cls is None and ctx.registrations.asks(s)
@@ -243,7 +245,7 @@ def _loop_end(ctx: Interpreter, s: ir.Loop, done: list[Delta], broken: list[Delt
 
 
 def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
-    """Execute a `with`, calling `__enter__` and `__exit__` of analysed classes and both parts of generators."""
+    """Execute a `with`, with `__enter__` and `__exit__` of analysed classes, or both parts of a generator."""
     managers: list[tuple[Value, Value]] = []
     for number, (context, target) in enumerate(s.items):
         value = expressions.evaluate(ctx, context, frame)
@@ -270,7 +272,7 @@ def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
 def _special_of_manager(
     ctx: Interpreter, manager: Value, names: Sequence[str], given: Sequence[Value], frame: Frame, s: ir.With
 ) -> Value | None:
-    """Call a method of a context manager, which may be an asynchronous one; None if its class has none."""
+    """Call a method of a context manager; None if its class has no such method. The method may be asynchronous."""
     for name in names:
         said = dunder_methods.special(ctx, manager, name, given, frame, s.pos)
         if said is not None:

@@ -9,23 +9,24 @@ docs/analysis.md.
 from __future__ import annotations
 
 MAX_CALLS = 24  # maximum depth of the call stack; deeper calls are treated as library calls
-MAX_DELEGATIONS = 6  # maximum number of calls of one method, each for another object, on the call stack
+# maximum number of calls of one method on the call stack at the same time, each for a different object
+MAX_DELEGATIONS = 6
 READS_PER_STATEMENT = 20  # number of object reads or added edges that count as one statement of work
 VALUES_PER_STATEMENT = 40  # number of values shared at a wait that count as one statement of work
-# number of values that take as long as one statement to look up, compare or copy in bulk (measured); this work counts
-# towards the limits, but does not change the order of the roots
+# number of values that take as long as one statement to look up, compare or copy in bulk (measured); this work
+# counts towards the limits, but does not influence the order in which roots run
 VALUES_HANDLED = 300
 MAX_FRAMES = 20_000  # maximum number of call contexts of a program
 # maximum number of statements in one run of a root; afterwards, calls are treated as library calls
 MAX_STATEMENTS = 25_000
-# number of statements in one run of a root after which the calls of a frequently called function share a context
+# after this number of statements in one run of a root, the calls of a frequently called function share a context
 SEPARATE_STATEMENTS = 3_000
 # maximum number of calls of a function in separate contexts; further calls share one context
 SEPARATE_CALLS = 8
 # after this number of statements of a program, only roots that never ran are run; after twice this number, no root is
 # run
 PROGRAM_LIMIT = 80_000
-# maximum number of statements in one run of a root once its program has reached PROGRAM_LIMIT
+# maximum number of statements in one run of a root, after its program has reached PROGRAM_LIMIT
 LATE_RUN_LIMIT = 400
 # maximum number of statements in an irrelevant call: a call that passes no data and leads into a module that neither
 # subscribes nor publishes
@@ -34,10 +35,10 @@ IRRELEVANT_CALLS_LIMIT = 1_000  # maximum number of statements in all irrelevant
 MAX_ROUNDS = 40  # maximum number of fixpoint rounds over the roots
 LARGE_RUN = 500  # a root whose last run took at least this many statements is run after smaller ones
 MAX_GENERATIONS = 1  # maximum number of nested restarts of a thread or callback that starts itself
-# maximum number of objects of one class with separate roots for a method that a thread or framework runs, and that
-# code outside the files passes to a function
+# two limits on the objects of one class: how many get separate roots for a method that a thread or framework runs,
+# and how many code outside the files passes to a function
 MAX_ALIKE = 6
-# maximum number of elements over which a loop is unrolled that registers something or makes objects of analysed classes
+# maximum number of unrolled iterations of a loop that registers something or makes objects of analysed classes
 MAX_ROWS = 48
-MAX_NESTED_ROWS = 96  # maximum number of iterations of unrolled loops that are nested in one function
-MAX_APART = 48  # maximum number of sources, or of sinks, at one call that are told apart by their topics
+MAX_NESTED_ROWS = 96  # maximum number of iterations of all nested unrolled loops of one function together
+MAX_APART = 48  # maximum number of sources, or sinks, that are distinguished by their topics at one call

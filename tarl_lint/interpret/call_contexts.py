@@ -126,7 +126,10 @@ def _invoke(
 def _generator(
     ctx: Interpreter, frame: Frame, run: replay.Run, caller: Frame, call: ir.Call, result: Value
 ) -> Value:
-    """Return the generator that a call makes, a sequence of what it yields; its length depends on what it waits for."""
+    """Return the generator that a call makes: a sequence of the values that it yields.
+
+    The length of the sequence depends on the events for which the generator waits.
+    """
     collected = recency.allocate(ctx, "sequence", caller, ("generator", call.slot))
     collected.name = heap.GENERATOR
     collected.describe(generators.mailbox(ctx, frame))
@@ -138,7 +141,7 @@ def _generator(
 
 
 def _decide_call(frame: Frame, guards: Branches) -> None:
-    """Let decisions inside the calling expression decide about a call, also if an earlier one was not decided.
+    """Let decisions inside the calling expression decide about a call, even if an earlier call was made without them.
 
     For example, `handlers[self.state]()` may call several functions once a later state is known.
     """
@@ -185,7 +188,7 @@ def _execute(
 
 
 def _again(ctx: Interpreter, closure: Obj, arguments: Arguments) -> Value:
-    """Return the results known so far of a call that is not executed, with the data of its arguments."""
+    """Return the known results of a call that is not executed, with the data of its arguments."""
     known = BOTTOM
     for frame in ctx.stack:
         if frame.key[3] == closure.key if isinstance(frame.key, tuple) and len(frame.key) > 3 else False:
@@ -297,7 +300,7 @@ def bind_parameters(ctx: Interpreter, frame: Frame, closure: Obj, arguments: Arg
 def _missing(
     ctx: Interpreter, parameter: ir.Parameter, closure: Obj, rest: Value | None, mapping: Value | None
 ) -> Value:
-    """Return the value of a parameter that no argument names: its default, or what `*` or `**` collects."""
+    """Return the value of a parameter that no argument names: its default, or the arguments in `*` or `**`."""
     value = ctx.store.get((closure, parameter.name)) if parameter.default is not None else None
     result = BOTTOM if value is None else value
     if rest is not None and parameter.kind == "plain":
@@ -355,7 +358,7 @@ def _initialise(
 
 
 def _handed(frame: Frame) -> list[Obj]:
-    """Return the objects that a function yields or raises."""
+    """Return the objects that a function hands to its caller: those that it yields or raises."""
     raised = (o for escape in frame.escapes for o in escape.value.pts)
     return [*frame.yielded.pts, *raised]
 
@@ -369,5 +372,5 @@ def carries(ctx: Interpreter, arguments: Arguments) -> bool:
 
 
 def _receiver(value: Value) -> bool:
-    """Return whether an argument needs no node, because it is an instance or class of the analysed files."""
+    """Return whether an argument is an instance or class of the analysed files, and therefore needs no node."""
     return bool(value.pts) and not value.deps and all(o.kind in ("instance", "class") for o in value.pts)

@@ -64,7 +64,7 @@ def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
 def _noted(
     ctx: Interpreter, expr: ir.Call, name: str, argument: ir.Expr, value: Value, frame: Frame
 ) -> Value:
-    """Give a number passed by keyword its own node, so that queries find it in the new object."""
+    """Give a number that is passed by keyword its own node, so that queries find the number in the new object."""
     if not ctx.thorough:
         return value
     return literals.entry(ctx, argument, value, frame, ("keyword", expr.slot, name))
@@ -149,7 +149,7 @@ def made_by_library(ctx: Interpreter, obj: Obj, name: str) -> Value:
 
 
 def _held_by(ctx: Interpreter, obj: Obj, member: Value, name: str) -> frozenset[Obj]:
-    """Return the callables stored in an attribute, without the object's own library methods."""
+    """Return the callables stored in an attribute. The object's own library methods are left out."""
     return frozenset(o for o in member.pts if callable_held(ctx, o) and o.info != (obj, name))
 
 
@@ -170,7 +170,7 @@ def call_value(
 ) -> Value:
     """Call every object that a value may be. The result of an unknown callee depends on its arguments.
 
-    `carriers` are the nodes through which the receiver of methods arrived.
+    `carriers` are the nodes through which the receiver of a method arrived.
     """
     targets = function.objects
     if ctx.nothing_yet(function):
@@ -196,7 +196,10 @@ def call_value(
 
 
 def _converted(ctx: Interpreter, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-    """Return the result of `Phase(msg.data)`: the data decide which member it is, and whether there is one."""
+    """Return the result of `Phase(msg.data)`, a call of an enumeration.
+
+    The data decide which member the result is, and whether there is one.
+    """
     given = arguments[0]
     if len(given) == 1 and (known := enumerations.with_value(ctx, cls, given[0])) is not None:
         return known

@@ -61,10 +61,10 @@ def make_frame(
 
 
 def _recurs(ctx: Interpreter, function: ir.Function, closure: Obj, receiver: frozenset[Obj] | None) -> bool:
-    """Return whether a call is too deep a recursion.
+    """Return whether a call is a recursion that is too deep.
 
-    A function that runs for another object, such as for a part of a composite, or that is another closure of the same
-    code does not call itself.
+    A call of the same function for another object, such as a part of a composite, is no recursion. Neither is a
+    call of another closure of the same code.
     """
     running = [f.key for f in ctx.stack if f.function is function]
     if len(running) <= 1 or len(running) > MAX_DELEGATIONS:

@@ -105,7 +105,7 @@ def _note_library(ctx: Interpreter, functions: Sequence[Obj]) -> None:
 
 
 def wraps(ctx: Interpreter, obj: Obj) -> bool:
-    """Return whether a decorator is an analysed function, or an analysed class with callable instances."""
+    """Return whether a decorator is an analysed function, an instance with `__call__`, or a class of such instances."""
     if obj.kind == "class":
         return any(ctx.store.get((owner, "__call__")) is not None for owner in lineage(obj))
     return obj.kind in ("closure", "bound", "partial") or (

@@ -98,11 +98,11 @@ def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, star
 
 
 def _passed_by_others(ctx: Interpreter, cls: Obj, statement: ir.Class, module: Obj) -> bool:
-    """Return whether code outside the files may make an object of a class to pass it on, or to pass others to it.
+    """Return whether other code may make objects of a class and pass them on, or may pass objects to the class.
 
-    If a class annotates a parameter, other code is assumed to pass objects of this class or of its most derived
-    subclasses. It may also pass objects of the analysed files to the constructor of a class that publishes or has a
-    timer.
+    Other code is code outside the files. If a class annotates a parameter, other code is assumed to pass objects of
+    this class or of its most derived subclasses. It may also pass objects of the analysed files to the constructor
+    of a class that publishes or has a timer.
     """
     if not ctx.wanted.isdisjoint(lineage(cls)):
         return not any(o.kind == "class" and o is not cls and cls in lineage(o) for o in ctx.objects.values())
@@ -153,7 +153,7 @@ def _framework_methods(ctx: Interpreter, obj: Obj, owner: Obj, info: ClassInfo) 
 
 
 def _called_by_others(ctx: Interpreter, obj: Obj) -> bool:
-    """Return whether code outside the analysed files makes objects of this class, and calls their methods."""
+    """Return whether code outside the analysed files makes objects of this class and calls their methods."""
     return obj.info in ctx.plugins or obj.info in ctx.guests
 
 

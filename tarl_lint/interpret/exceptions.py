@@ -13,10 +13,10 @@ from tarl_lint.models.ros import publications
 
 
 def leave(ctx: Interpreter, escape: Escape, frame: Frame, states: dict[int, Delta] | None = None) -> None:
-    """Pass an exception to the handlers of the function that may catch it, and to the caller unless one certainly does.
+    """Pass an exception to the function's handlers that may catch it, and to the caller unless one certainly does.
 
-    A `finally` on the way is executed first (`attempts.py`). `states` has the states that earlier exceptions at the
-    same point have passed on, by the number of layers below; they share these states.
+    A `finally` on the way is executed first (`attempts.py`). `states` holds the states that earlier exceptions
+    passed on at the same point; exceptions share these states. Its keys are the numbers of layers below.
     """
     states = {} if states is None else states
     for attempt in reversed(frame.tries):
@@ -34,7 +34,7 @@ def leave(ctx: Interpreter, escape: Escape, frame: Frame, states: dict[int, Delt
 
 
 def _state(ctx: Interpreter, depth: int, states: dict[int, Delta]) -> Delta:
-    """Return the state that an exception passes on, without the object whose `__init__` it has left.
+    """Return the state that an exception passes on; if the exception leaves an `__init__`, without the new object.
 
     Nothing refers to this object, unless its `__init__` has stored it elsewhere before.
     """
@@ -72,7 +72,7 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
 def may_wait(ctx: Interpreter, decides: Nodes, frame: Frame) -> None:
     """Make the rest of the function, or of a loop's iteration, depend on the event for which a call waits.
 
-    So does the rest of the callers, unless the call is in a loop: statements after a loop do not depend on it.
+    The rest of the callers depends on the event, too. If the call is in a loop, statements after the loop do not.
     """
     statement = frame.statement
     if not decides or statement is None or frame.cls is not None:
@@ -85,7 +85,7 @@ def may_wait(ctx: Interpreter, decides: Nodes, frame: Frame) -> None:
 
 
 def _expected(ctx: Interpreter, frame: Frame) -> str:
-    """Return the exception that the innermost `try` expects of a failing library call, such as a class of tf2.
+    """Return the exception, such as a class of tf2, that the innermost `try` expects from a failing library call.
 
     Return UNKNOWN if its handlers name no class of a library.
     """
@@ -101,14 +101,14 @@ def _expected(ctx: Interpreter, frame: Frame) -> str:
 def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
     """Make statements after a call depend on whether the called function raises, as after a `raise`.
 
-    Where no handler is found, assertions and calls in a loop are ignored: the statements after the loop would
-    otherwise depend on the number of its iterations.
+    Without a handler, assertions and calls in a loop are ignored. Otherwise, the statements after the loop would
+    depend on the number of its iterations.
     """
     statement = caller.statement
     if statement is None:
         return
     ctx.store.push(frame.thrown)
-    by_name: dict[str, Escape] = {}  # an exception that several calls below raise leaves the caller once
+    by_name: dict[str, Escape] = {}  # several calls may raise the same exception; it leaves the caller once
     for escape in frame.escapes:
         if (caller.jumps or _bare(escape.statement)) and not _handled(ctx, escape.name):
             continue

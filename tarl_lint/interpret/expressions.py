@@ -73,7 +73,7 @@ def holder(expr: ir.Name, frame: Frame) -> Obj:
 
 
 def global_name(ctx: Interpreter, name: str, frame: Frame) -> Value:
-    """Return the value of a name that the module does not bind: a name from `import *`, or else a builtin."""
+    """Return the value of a name that the module does not bind: it comes from `import *`, or else it is a builtin."""
     value = ctx.store.get((frame.module, name))
     if value is None:
         value = heap.opened(ctx, frame.module, name)
@@ -147,7 +147,7 @@ def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:
 def by_key(ctx: Interpreter, base: Value, index: Value, frame: Frame, slot: Hashable) -> Nodes:
     """Return the node that decides what a look-up in a mapping finds; empty if no data decides the mapping's keys.
 
-    An entry with a constant key is there, whatever the other keys are.
+    An entry with a constant key exists whatever the other keys are.
     """
     decides = NONE
     for obj in base.objects:
@@ -178,7 +178,7 @@ def _part_of_text(
 
 
 def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
-    """Return an element; a tainted index taints it."""
+    """Return an element of a container; a tainted index taints the element."""
     extra = base.deps | ctx.use(index)
     if not base.pts:
         return Value(extra)
@@ -199,7 +199,7 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
 
 
 def _default_keys(ctx: Interpreter, obj: Obj, index: Value) -> frozenset[str]:
-    """Return the defaults of a key that only the robot knows, if the mapping has entries under all of them."""
+    """Return the defaults of a key that is known only on the robot, if the mapping has an entry for each default."""
     defaults = index.default_keys() if obj.kind == "mapping" else frozenset[str]()
     held = ctx.store.get((obj, GIVEN_KEYS)) if defaults else None
     stored = held.consts if held is not None else None
@@ -267,7 +267,7 @@ def _choice(ctx: Interpreter, expr: ir.Choice, frame: Frame) -> Value:
 def under_guard(
     ctx: Interpreter, expr: ir.Expr, guard: tuple[int, str], test: ir.Expr, frame: Frame
 ) -> Value:
-    """Evaluate an expression that is executed only for one outcome of a decision."""
+    """Evaluate an expression that is executed only for one outcome of a decision; its value depends on the decision."""
     ctx.guards.append(guard)
     former = ctx.ops.narrow_part(ctx, test, frame, holds=guard[1] == "then")
     value = evaluate(ctx, expr, frame)

@@ -1,4 +1,4 @@
-"""Defaults of entries of parameters: in `rospy.get_param("~", {}).get("gain", 0.3)`, the number 0.3."""
+"""Defaults of entries in tables of parameters: the default of `rospy.get_param("~", {}).get("gain", 0.3)` is 0.3."""
 
 from __future__ import annotations
 

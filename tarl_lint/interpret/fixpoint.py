@@ -39,7 +39,7 @@ class Linker(Interpreter):
         *,
         thorough: bool = True,
     ) -> None:
-        """With `failures`, store an exception there under its file and continue; otherwise raise it.
+        """If `failures` is given, store each exception there under its file and continue; otherwise raise it.
 
         Unless `thorough`, ignore values that do not come from a source, since flows do not need them.
         """
@@ -86,17 +86,18 @@ class Linker(Interpreter):
                 self._settle()
             if len(self.roots) == before:
                 break
-        if self.waiting:  # no root stores anything new any more, so values that are unknown now stay unknown
+        if self.waiting:  # roots store nothing new any more, so values that are unknown now stay unknown
             self.patient = False
             self.pending.update(self.waiting)
             self._settle()
-        while parts.connect(self):  # a new condition may add outcomes, until all parts have all of them
+        # a new condition may add outcomes; repeat until no part gets a new outcome
+        while parts.connect(self):
             self._settle()
         carry_nodes.settle(self.graph)
         self._forget_runs()
 
     def _forget_runs(self) -> None:
-        """Drop the records of finished calls, which only further runs to the fixpoint need, before flows are traced."""
+        """Before flows are traced, drop the records of finished calls, which only the fixpoint needs."""
         for frame in self.frames.values():
             frame.recorded = None
         self.graph.forget_arrivals()
@@ -135,7 +136,7 @@ class Linker(Interpreter):
         return 1 if root.kind != "module" else 0 if took is None else 2, took or 0, root.number
 
     def _reconsider(self) -> None:
-        """Queue the roots that ignored a node because no source reached it, if a source reaches it now."""
+        """Queue the roots that ignored a node because no source reached the node, if a source reaches it now."""
         for node in [n for n in self.doubts if n in self.graph.live]:
             self.pending.update(self.doubts.pop(node))
 

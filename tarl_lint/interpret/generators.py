@@ -1,4 +1,4 @@
-"""Generators that get values by `send`: whoever sends a value runs the statements up to the next `yield`.
+"""Generators that get values by `send`: the code that sends a value runs the statements up to the next `yield`.
 
 The body of a generator is executed once, when it is made, with all values that are ever sent. Its caller may go on at
 every `yield`, and the rest of the body may never run.
@@ -19,7 +19,7 @@ VALUE: Final = "<value>"  # field of a mailbox: the values that other roots have
 
 
 def mailbox(ctx: Interpreter, frame: Frame) -> Obj:
-    """Return the object that holds what the generators of a call context get."""
+    """Return the object that holds the values sent to the generators of a call context."""
     return recency.intern(ctx, "lib", ("mailbox", frame.id), "mailbox")
 
 
@@ -48,8 +48,8 @@ def suspended(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
     unused = isinstance(statement, ir.Evaluate) and statement.value is expr
     if statement is None or (unused and box not in ctx.posted):
         return UNKNOWN
-    # add these conditions even if nothing has been sent yet, because nodes keep the conditions that are known at their
-    # creation
+    # add these conditions even if nothing has been sent yet, because nodes keep only the conditions that are known
+    # when the nodes are created
     frame.function.may_leave(statement, SUSPENDED)
     if box not in ctx.posted:
         return UNKNOWN
@@ -59,7 +59,10 @@ def suspended(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
 
 
 def delegated(ctx: Interpreter, expr: ir.Yield, inner: Value, frame: Frame) -> Value:
-    """Return the value of `yield from`: what inner generators return. What is sent is passed on to them."""
+    """Return the value of `yield from`: the values that inner generators return.
+
+    Values that are sent are passed on to the inner generators.
+    """
     sent, result = suspended(ctx, expr, frame), UNKNOWN
     for obj in inner.objects:
         if obj.name == heap.GENERATOR:

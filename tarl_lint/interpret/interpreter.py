@@ -38,7 +38,10 @@ Probe = Callable[["Interpreter", Frame, ir.Stmt, ir.Expr, Value], None]
 
 
 def control_of(function: ir.Function) -> object:
-    """Return a function's control dependence, which is replaced when a call in it may raise a new exception."""
+    """Return a function's control dependence.
+
+    It is replaced when a call in the function is found to raise a new exception.
+    """
     return function.control
 
 
@@ -74,7 +77,7 @@ class Interpreter:
         self.settings: dict[Obj, tuple[str, ir.Pos]] = {}
         self.patient = True  # whether a later root may still store values that are unknown now
         self.waiting: dict[Root, None] = {}  # roots that read a value that is unknown so far
-        # node that no source reaches so far → roots that ignored the node for this reason
+        # node that no source has reached so far → roots that ignored the node for this reason
         self.doubts: dict[int, dict[Root, None]] = {}
         # conditions inside the current expression (as in `a if b else c`) that decide what is evaluated
         self.guards: list[tuple[int, str]] = []
@@ -88,18 +91,22 @@ class Interpreter:
         self.widened: set[Hashable] = set()  # call contexts that several calls share
         self.cut: dict[str, None] = {}  # programs whose analysis is incomplete
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
-        self.given: set[Obj] = set()  # objects among the arguments of roots
+        self.given: set[Obj] = set()  # objects that are arguments of roots
         self.passed: dict[Hashable, list[Value]] = {}  # root → its arguments
-        # sources by path, position and topics; for a launched node, by context instead of topics
+        # sources by path, position and topics; for a launched node, the key has the call context instead of the
+        # topics
         self.sources: dict[Hashable, SourceRecord] = {}
         self.apart: dict[tuple[str, ir.Pos], int] = {}  # registration → number of its sources
-        # sinks by path, position and publisher; for a launched node, by context instead of publisher
+        # sinks by path, position and publisher; for a launched node, the key has the call context instead of the
+        # publisher
         self.sinks: dict[Hashable, SinkRecord] = {}
         self.sent: dict[tuple[str, ir.Pos], int] = {}  # publish call → number of its sinks
         self.called: set[tuple[str, int]] = set()  # module and line of each called function
-        # for each instance made by methods: allocation sites and objects, from the first maker to the instance itself
+        # instance made by methods → the chain of its makers: allocation sites and objects, from the first maker to
+        # the instance itself
         self.chains: dict[Obj, tuple[tuple[Hashable, Obj], ...]] = {}
-        # key of a closure made by a call → functions of the chain of closures that made it, itself last
+        # key of a closure made by a call → the functions of the chain of closures that made this closure, with the
+        # closure itself last
         self.closure_chains: dict[Hashable, tuple[ir.Function, ...]] = {}
         self.made: set[Hashable] = set()  # keys of instantiated classes
         self.guests: set[object] = set()  # classes that only code outside the analysed files instantiates
@@ -109,7 +116,7 @@ class Interpreter:
             set()
         )  # classes that annotate parameters of functions that code outside the files calls
         self.parts: dict[Obj, Part] = {}  # states of machines and behaviours of trees
-        self.groups: dict[Obj, Group[Obj]] = {}  # their containers
+        self.groups: dict[Obj, Group[Obj]] = {}  # the machines and trees that contain these parts
         # allocation site → nodes that put its objects into containers
         self.inserted: dict[Hashable, set[int]] = {}
         # allocation site → nodes that put something into its containers, or set its events
@@ -138,7 +145,7 @@ class Interpreter:
 
     @property
     def following_clients(self) -> bool:
-        """Return whether requests to services and goals of actions are sinks, and their answers sources."""
+        """Return whether requests to services and goals of actions count as sinks, and their answers as sources."""
         return self.launching or self.config.clients
 
     @property
@@ -165,7 +172,11 @@ class Interpreter:
     def source_key(
         self, path: str, pos: ir.Pos, frame: Frame, topics: Collection[str]
     ) -> tuple[Hashable, ...]:
-        """Return the key of a subscription: for a launch as for any end, else by topics, up to MAX_APART for a call."""
+        """Return the key of a subscription.
+
+        For a launch, it is formed like the key of any end. Otherwise it contains the topics, for at most MAX_APART
+        sources at one call.
+        """
         place = (path, pos)
         key = self.end_key(path, pos, frame) if self.launching else (*place, *sorted(topics))
         if self.launching or key in self.sources:
@@ -194,7 +205,7 @@ class Interpreter:
         return spent
 
     def note_import(self, found: Module, importer: Module) -> None:
-        """Charge the roots of an imported file to the programs that import it, unless the file is one itself."""
+        """Charge the roots of an imported file to the programs that import it, unless the file is itself a program."""
         importers = self.work.importers.setdefault(found.path, {})
         if importer.path in importers or importer is found or importer.name.startswith(f"{found.name}."):
             return
@@ -208,7 +219,7 @@ class Interpreter:
         self.graph.asked %= READS_PER_STATEMENT
 
     def look(self, objects: Iterable[Obj]) -> None:
-        """Note that the running call depends on the meaning, fields and data of these objects, by their stamps."""
+        """Note that the running call depends on these objects: their meaning, fields and data. Stamps record these."""
         noted = self.store.reads.objects
         for obj in objects:
             if obj not in noted:
@@ -217,7 +228,7 @@ class Interpreter:
     # --- places -----------------------------------------------------------------------------------------
 
     def branches(self, frame: Frame, statement: ir.Stmt | None, turns: Turns | None = None) -> Branches:
-        """Return all conditions of a statement, including those of callers; `turns` are the current ones by default."""
+        """Return all conditions of a statement, with those of callers. `turns` defaults to the current iterations."""
         if statement is None:
             return frame.base
         turns = inside(statement, frame.turns if turns is None else turns)
@@ -230,7 +241,7 @@ class Interpreter:
     def _conditions(
         self, frame: Frame, statement: ir.Stmt, turns: Turns, but: ir.Loop | None = None
     ) -> Branches:
-        """Return the conditions of a statement, except those inside the loop `but`."""
+        """Return the conditions of a statement, except the conditions inside the loop `but`."""
         whole = self.control(frame)
         control = whole.iteration(turns[-1][0]) if turns else whole
         local = control.closure.get(statement.id, frozenset())
@@ -271,7 +282,7 @@ class Interpreter:
         return node, way
 
     def condition(self, frame: Frame, statement: ir.Stmt, turns: Turns | None = None) -> int:
-        """Return the node of a statement's decision."""
+        """Return the node that represents the decision of a statement."""
         turns = inside(statement, frame.turns if turns is None else turns)
         return self._decision(frame, statement, "", turns)
 
@@ -328,7 +339,7 @@ class Interpreter:
         return Value(self.graph.merged(key, value.deps, self.stack[-1]), value.pts, value.consts)
 
     def carry(self, value: Value, node: int) -> Value:
-        """Return the value as it leaves a statement's node."""
+        """Return a value as it leaves the node of a statement."""
         content = self.ops.deep(self, value.pts) if value.pts else NONE
         if value.deps:
             self.graph.flow(self.settled(value), node)
@@ -389,7 +400,7 @@ class Interpreter:
         return len(self.filled.get(obj.site, ()))
 
     def always_filled(self, objects: Iterable[Obj]) -> bool:
-        """Return whether some statement fills one of several queues, or sets an event, under no condition on data."""
+        """Return whether some statement fills one of several queues, or sets an event, without a condition on data."""
         found: set[int] = set()
         for obj in objects:
             self.store.reads.ask(self.filled_by, obj)
@@ -416,7 +427,7 @@ class Interpreter:
         return self.patient
 
     def sendings(self, mailbox: Obj) -> tuple[int, int]:
-        """Return how many roots have sent data to generators, and how many nodes; neither number decreases."""
+        """Return the number of roots that have sent data to generators, and of nodes. Neither number ever decreases."""
         sent = self.posted.get(mailbox, {})
         return len(sent), sum(map(len, sent.values()))
 

@@ -25,7 +25,8 @@ READING = frozenset(["get", "getattr", "get_param"])  # calls that return a stor
 def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -> Value:
     """Return the value of a list, tuple or set literal; an empty one has no constants.
 
-    The join of an empty one with an unknown value has unknown constants, so that loops are not skipped over it.
+    Joining an empty literal with an unknown value gives unknown constants, so that a loop over the result is not
+    skipped.
     """
     obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
     if not expr.items:

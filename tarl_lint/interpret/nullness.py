@@ -19,7 +19,7 @@ COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)
 def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes | None:
     """Return the nodes that decide `x is None` if the test only checks whether x is set, else None.
 
-    Whether a message has arrived is not data; the conditions under which it was stored are.
+    Whether a message has arrived does not count as data, but the conditions under which it was stored do.
     """
     first, second = expr.parts
     if not isinstance(second, ir.Const) or second.value is not None:
@@ -121,7 +121,7 @@ def _may_be_none(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> bool:
 
 
 def _keys(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Iterator[Key]:
-    """Yield the keys of a variable or field; for a field of an instance, also its keys in the classes."""
+    """Yield the keys of a variable or field; for a field of an instance, also those of the field in the classes."""
     if isinstance(expr, ir.Name):
         yield ctx.ops.holder(expr, frame), expr.name
     elif isinstance(expr, ir.Attribute) and isinstance(expr.base, (ir.Name, ir.Attribute, ir.Item)):

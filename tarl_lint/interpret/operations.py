@@ -120,11 +120,11 @@ class Operations(Protocol[Ctx]):
         ...
 
     def gate(self, ctx: Ctx, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
-        """Return the node that decides which elements a new container gets; empty if no data decides it."""
+        """Return the node that decides which elements a new container gets; empty if no data decides this."""
         ...
 
     def generic(self, ctx: Ctx, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-        """Make the result depend on all arguments; store into the argument that the catalog lists as written."""
+        """Make the result depend on all arguments; store into the argument that is written according to the catalog."""
         ...
 
     def holder(self, expr: ir.Name, frame: Frame) -> Obj:
@@ -168,7 +168,10 @@ class Operations(Protocol[Ctx]):
         ...
 
     def receiver(self, ctx: Ctx, base: Value) -> Value:
-        """Return what a publish call is called on, without the decisions between publishers that are all alike."""
+        """Return the receiver of a publish call.
+
+        Decisions between publishers that are all alike are left out.
+        """
         ...
 
     def register_filter(self, ctx: Ctx, target: Obj | None, it: Invocation) -> Value:

@@ -64,7 +64,7 @@ MESSAGES = frozenset(["message", "goal"])
 THERE = frozenset([*MESSAGES, *OURS])  # kinds of objects that are never None
 SCALARS = frozenset(["str", "int", "float", "bool", "bytes"])
 MAX_TEXT = 300
-FALSE = frozenset([False, None, ""])  # values of `a and False` for an unknown `a` that is not a container
+FALSE = frozenset([False, None, ""])  # possible values of `a and False` if `a` is unknown and not a container
 
 
 def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
@@ -107,7 +107,7 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
 
 
 def narrowed(value: Value, classes: Value) -> Value:
-    """Return a value without the objects that cannot be instances of the classes in a pattern."""
+    """Remove from a value the objects that cannot be instances of the classes in a pattern."""
     if not classes.pts or any(c.kind not in ("class", "ext") for c in classes.pts):
         return value
     scalar = all(c.name.removeprefix("builtins.") in SCALARS for c in classes.pts)
@@ -120,7 +120,7 @@ def narrowed(value: Value, classes: Value) -> Value:
 def _may_be(obj: Obj, classes: frozenset[Obj], *, exact: bool) -> bool:
     """Return whether an object may be an instance of one of the classes.
 
-    `exact` says that there is no other class except for those of numbers and strings.
+    `exact` means that the analysis knows all classes, except those of numbers and strings.
     """
     if obj.kind == "instance" and isinstance(obj.info, Obj):
         return not exact or not classes.isdisjoint(lineage(obj.info))
@@ -163,7 +163,7 @@ def chosen(ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashab
 def truth(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes:
     """Return the nodes that decide whether a value counts as true.
 
-    A message, also one that is a field of another one, and an object without `__bool__` and `__len__` are always true.
+    A message is always true, even as a field of another message; so is an object without `__bool__` and `__len__`.
     The truth of a container depends on its length.
     """
     if not value.pts:
@@ -189,7 +189,10 @@ def _always_true(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
-    """Return the value of `a or b`. The first operand decides which one it is; calls in the second depend on it."""
+    """Return the value of `a or b`.
+
+    The first operand decides which operand is the result. Calls in the second operand depend on this decision.
+    """
     result, deps, guards, decided = BOTTOM, NONE, len(ctx.guards), False
     former: Former = []
     for number, part in enumerate(expr.parts):
@@ -254,7 +257,7 @@ def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] 
 
 
 def _certainly_set(values: list[Value]) -> bool:
-    """Return whether the operation compares the first value with None, and that value is certainly an instance."""
+    """Return whether the operation compares its first value with None, and this value is certainly an instance."""
     first, second = values
     none = second.consts == NONE_ONLY and not second.pts
     return (
@@ -304,7 +307,7 @@ def _asked(expr: ir.Operation) -> str:
 
 
 def _whole(obj: Obj) -> bool:
-    """Return whether an object is part of no other one; its identity then reveals none of its data."""
+    """Return whether an object is part of no other object, so that its identity reveals no data of another object."""
     return _there(obj) and obj.parent is None
 
 

@@ -1,4 +1,4 @@
-"""Tags among arguments: parameters that get parts of the same object are narrowed together.
+"""Tags among arguments: if several parameters get parts of one object, a test narrows all of them together.
 
 In `handle(*job)` and `handle(job.kind, job.value)`, a test of the first parameter also narrows the second one.
 """
@@ -26,7 +26,10 @@ def origins(ctx: Interpreter, caller: Frame, call: ir.Call, passed: Arguments) -
 
 
 def _before(found: Sequence[Origin], caller: Frame) -> Iterator[Origin]:
-    """Yield where the objects came from, at no place: a call that is replayed depends on it, too."""
+    """Yield where the objects came from, without a place.
+
+    A replayed call depends on this, too.
+    """
     for _, value, _ in found:
         place: Frame | None = caller
         while place is not None and (whole := tags.whole_of(value, place)) is not None:
@@ -76,7 +79,7 @@ def _named(ctx: Interpreter, caller: Frame, call: ir.Call) -> Iterator[Origin]:
 
 
 def _origin(ctx: Interpreter, expr: ir.Expr, caller: Frame) -> tuple[Value, str | Value | None] | None:
-    """Return the objects of which an argument is a part, and the attribute or index; None if it is not known."""
+    """Return the objects of which an argument is a part, and its attribute or index; None if these are not known."""
     if isinstance(expr, ir.Name):
         key = tags.key_of(expr, caller)
         taken = tags.taken_from(ctx, key, caller)

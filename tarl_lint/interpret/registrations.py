@@ -1,9 +1,9 @@
 """Find code that registers something (an input, a publisher, a timer) or makes objects of the analysed files.
 
-A loop over such code is unrolled, so that each iteration has its own topics, callbacks and objects. Code that adds
-states and behaviours to others counts as well. A loop whose element chooses the publisher is unrolled, too. Functions
-and classes are distinguished only by their names. Code that calls one of two functions with the same name is assumed to
-call both, so some loops are unrolled without need.
+A loop over such code is unrolled, so that each iteration has its own topics, callbacks and objects. A loop over
+code that adds states or behaviours to other ones is unrolled as well, and so is a loop whose element chooses the
+publisher. Functions and classes are distinguished only by their names. Code that calls one of two functions with
+the same name is assumed to call both, so some loops are unrolled without need.
 """
 
 from __future__ import annotations
@@ -36,7 +36,8 @@ class Registrations:
     def __init__(self, trees: Sequence[ast.Module], wrappers: Iterable[str]) -> None:
         self.trees = trees
         self.wanted = REGISTRATIONS.union(name.rpartition(".")[2] for name in wrappers)
-        # name of a function or class → the code that a call of it runs; None before the first search
+        # name of a function or class → the code that runs when this function or class is called; None before the
+        # first search
         self.bodies: dict[str, list[ast.AST]] | None = None
         self.called: dict[str, frozenset[str]] = {}  # name → names that its code calls
         # loop, comprehension or name → whether it registers or makes objects
@@ -67,7 +68,7 @@ class Registrations:
     def asks(self, loop: ir.Loop) -> bool:
         """Return whether a loop calls methods of its elements, and conditions decide what follows in the loop.
 
-        An earlier element may then decide whether a method of a later one is called, as in a tree of behaviours.
+        An earlier element may then decide whether a method of a later element is called, as in a behaviour tree.
         """
         found = self.asking.get(loop)
         if found is None:
@@ -76,9 +77,9 @@ class Registrations:
         return found
 
     def publishes(self, loop: ir.Loop) -> Literal["direct", "helper", ""]:
-        """Return where the element of a loop chooses a publisher: in its body, in a function that it calls, or nowhere.
+        """Return the code in which a loop's element chooses a publisher: the body, a called function, or none.
 
-        A loop over publishers, which all get the same message, does not count.
+        A loop over publishers that all get the same message does not count.
         """
         found = self.rows.get(loop)
         if found is None:
@@ -162,14 +163,14 @@ def _names(target: ir.Expr | None) -> frozenset[str]:
 
 
 def calls_method_of(target: ir.Expr | None, nodes: Sequence[ast.AST]) -> bool:
-    """Return whether code calls a method of a variable of the loop around it."""
+    """Return whether code calls a method of a variable of the loop around the code."""
     names = _names(target)
     called = (one.func for one in walk(*nodes) if isinstance(one, ast.Call))
     return any(isinstance(one, ast.Attribute) and _is_one(_indexed(one.value), names) for one in called)
 
 
 def _indexed(expr: ast.expr) -> ast.expr:
-    """Return the index of `children[number]`; other expressions themselves."""
+    """Return the index of an expression such as `children[number]`; any other expression is returned as it is."""
     return expr.slice if isinstance(expr, ast.Subscript) else expr
 
 

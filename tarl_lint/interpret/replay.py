@@ -19,26 +19,26 @@ from tarl_lint.memory.store import Delta, Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import ABSENT, Key, Value, join, join_all
 
-READS = 40  # number of compared facts that count as one statement of work
+READS = 40  # this number of compared facts counts as one statement of work
 
 Mode = tuple[object, ...]
 
 
 @dataclass(slots=True, eq=False)
 class Run:
-    """One run of a function in a call context: arguments, of what they are parts, reads, results."""
+    """One run of a function in a call context: its arguments, the objects that contain them, its reads, its results."""
 
     passed: Arguments
     parts: tuple[Origin, ...]
     mode: Mode
     reads: Reads
-    found: dict[Key, Value | None]  # key → value that the run read; None if unset
+    found: dict[Key, Value | None]  # key → value that the run read; None if no value was set
     stored: dict[Key, bool]
     cost: int
     result: Value
     returned: list[Value]
     escapes: list[Escape]
-    blocked: dict[int, None]  # decisions of the calls that may wait for ever
+    blocked: dict[int, None]  # decisions of calls that may wait for ever
     thrown: Delta | None  # stores before an exception leaves the function
     delta: Delta
     edges: int  # number of edges that the run made
@@ -89,7 +89,7 @@ def _executed(
     found, stored = store.found_by(reads)
     ctx.work.handled += len(found) + len(reads.objects)
     reads.finish(found.keys(), stored.keys())
-    # without the states of memory, which are in `delta` now
+    # the states of memory are left out, because `delta` contains them
     frame.returns = [({}, value) for value in returned]
     return Run(
         passed, parts, mode, reads, found, stored, ctx.work.spent - before,
@@ -99,7 +99,7 @@ def _executed(
 
 
 def _hears(store: Store, last: Run) -> bool:
-    """Return whether other roots may still store the values that they could store when the call last ran."""
+    """Return whether other roots may still store the values that they could store during the last run of the call."""
     heard = store.heard()
     if last.heard is not heard and last.heard == heard:
         last.heard = heard
@@ -130,13 +130,13 @@ def _raised(run: Run) -> dict[tuple[int, str], Value]:
 
 
 def _left(ctx: Interpreter, run: Run, key: Key) -> Value | None:
-    """Return the value of a key after a run. A cleared field equals an unset one if it was unset before the run."""
+    """Return the value of a key after a run. If a field was unset before the run, clearing it makes no difference."""
     value = run.delta.get(key)
     return None if value is ABSENT and ctx.store.peek(key) is None else value
 
 
 def _wait_again(ctx: Interpreter, reads: Reads) -> None:
-    """Repeat the wait of a replayed call: publish the earlier stores that the call did not overwrite."""
+    """Repeat the wait of a replayed call: publish the stores before the call that the call did not overwrite."""
     worklist.show(ctx, reads.own)
     for key, value in reads.admitted.items():
         ctx.store.take(key, value)

@@ -1,7 +1,7 @@
-"""Parts of state machines and behaviour trees: the outcome of one part decides whether others run.
+"""Parts of state machines and behaviour trees: the outcome of one part decides which other parts run.
 
-A tree of groups is flattened into one graph, whose edges are the outcomes of parts. A part depends on the outcomes of
-another one as a statement depends on a condition (Ferrante, Ottenstein and Warren 1987).
+A tree of groups is flattened into one graph, whose edges are the outcomes of parts. A part depends on the outcomes
+of another part in the way in which a statement depends on a condition (Ferrante, Ottenstein and Warren 1987).
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from tarl_lint.ir.postdominance import EXIT, passed, postdominators
 from tarl_lint.memory.values import Obj
 
 P = TypeVar("P")  # a part: a state, a behaviour or a group
-# A `machine` runs the member to which an outcome leads. A `chain` runs its members in order, until one has another
-# outcome than `goes_on`. A `fork` runs all members, and a `wrapper` its only one.
+# A `machine` runs the member to which an outcome leads. A `chain` runs its members in order, until a member has an
+# outcome other than `goes_on`. A `fork` runs all members. A `wrapper` runs its only member.
 Kind = Literal["machine", "chain", "fork", "wrapper"]
 Cont = Callable[[str], int]
 MAX_DEPTH: Final = 12  # maximum depth of nested groups
@@ -27,8 +27,9 @@ ANY: Final = ""  # stands for an outcome that is not known
 class Part:
     """A state or behaviour in the value-flow graph.
 
-    `runs` is the node of the decision whether it runs, `ended` that of the decision how it ends. `answers` has the
-    nodes of the outcomes that it returns, with the possible outcomes of each; None if they are unknown.
+    `runs` is the node of the decision whether the part runs, and `ended` is the node of the decision how it ends.
+    `answers` maps the nodes of the outcomes that the part returns to the possible outcomes of each; the value is
+    None if the outcomes are unknown.
     """
 
     runs: int
@@ -37,7 +38,7 @@ class Part:
     method: Obj | None = None  # the method of a part that returns its outcome
 
     def outcomes(self) -> frozenset[str]:
-        """Return all outcomes that it may have; empty if they are not known."""
+        """Return all outcomes that the part may have; empty if they are not known."""
         known = [one for one in self.answers.values() if one is not None]
         return frozenset[str]().union(*known) if len(known) == len(self.answers) else frozenset()
 
@@ -46,10 +47,10 @@ class Part:
 class Group(Generic[P]):
     """A container of parts.
 
-    `members` are the parts by label, in order. `ways` has the labels to which outcomes of a member lead. A label that
-    no member has is an outcome of the group, as is an outcome without a way. `renames` are the outcomes of a group
-    that stand for others of its member. `offers` are the outcomes that a member, or the group if it is a fork, may have
-    if they are not known otherwise.
+    `members` are the parts by label, in order. `ways` has the labels to which outcomes of a member lead. A label
+    without a member is an outcome of the group, and so is an outcome that is not in `ways`. `renames` maps outcomes
+    of the member to outcomes of the group. `offers` are the outcomes that a member may have if they are not known
+    otherwise; for a fork, they are those of the group.
     """
 
     kind: Kind
@@ -59,7 +60,7 @@ class Group(Generic[P]):
     first: str = ""
     automatic: dict[str, dict[str, None]] = field(
         default_factory=dict
-    )  # outcomes of a label that lead to the next label
+    )  # outcomes of the member with a label that lead to the next member
     renames: Mapping[str, str] = field(default_factory=dict)
     offers: frozenset[str] = frozenset()
 
@@ -70,7 +71,7 @@ class Group(Generic[P]):
 
 @dataclass(frozen=True, slots=True)
 class Dependence(Generic[P]):
-    """`part` runs only after some outcomes of `decider`; `outcomes` is None if any member of a fork may decide."""
+    """`part` runs only after some outcomes of `decider`; if any member of a fork may decide, `outcomes` is None."""
 
     part: P
     decider: P
@@ -89,7 +90,7 @@ class Flattened(Generic[P]):
     inside: list[tuple[P, P]] = field(default_factory=list)  # (fork, part that runs in it)
 
     def place(self, parts: tuple[P, ...]) -> int:
-        """Return a new place of parts that may stand there."""
+        """Return a new place for parts that may stand there."""
         number = len(self.edges) + 1
         self.edges[number], self.parts[number] = {}, parts
         return number
@@ -102,7 +103,7 @@ class Flattened(Generic[P]):
         depth: int,
         offered: frozenset[str] = frozenset(),
     ) -> None:
-        """Add the edges of a place, and what is inside a group there; `offered` are outcomes that lead elsewhere."""
+        """Add the edges of a place and, for a group, the parts inside. `offered` are outcomes that lead elsewhere."""
         group = self.groups.get(parts[0]) if len(parts) == 1 else None
         if group is None or not group.members or depth > MAX_DEPTH or len(self.edges) > MAX_PLACES:
             known = [self.outcomes_of(one) for one in parts]
@@ -127,7 +128,7 @@ class Flattened(Generic[P]):
                 self.lead(places[label], tuple(members), follow, depth + 1, group.offers | ways)
 
     def _following(self, group: Group[P], label: str, places: Mapping[str, int], leave: Cont) -> Cont:
-        """Return where the outcomes of a member lead."""
+        """Return the places to which the outcomes of a member lead."""
         labels = list(places)
         after = labels[labels.index(label) + 1 :]
 
@@ -144,16 +145,16 @@ class Flattened(Generic[P]):
 
 
 def _end(outcome: str) -> int:  # noqa: ARG001 - the signature of `Cont`
-    """Return the end of the whole graph, to which every outcome of the outermost group leads."""
+    """Return the end of the whole graph; every outcome of the outermost group leads to it."""
     return EXIT
 
 
 def dependences(
     groups: Mapping[P, Group[P]], outcomes_of: Callable[[P], frozenset[str]]
 ) -> Iterator[Dependence[P]]:
-    """Yield which parts depend on outcomes of others; `outcomes_of` returns a part's outcomes, if they are known.
+    """Yield the dependences of parts on outcomes of other parts. `outcomes_of` returns a part's outcomes, if known.
 
-    Groups that contain themselves, and very large ones, are cut.
+    Groups that contain themselves, and very large groups, are cut.
     """
     contained = {part for group in groups.values() for members in group.members.values() for part in members}
     for whole in groups:

@@ -22,7 +22,7 @@ CALLBACKS = frozenset(["closure", "bound", "partial", "method"])
 def may_share(arguments: Arguments) -> bool:
     """Return whether a call may share a context.
 
-    A call that passes a callback may not: it identifies a subscription.
+    A call that passes a callback may not, because such a call identifies a subscription.
     """
     plain, named = arguments
     return not any(obj.kind in CALLBACKS for value in (*plain, *named.values()) for obj in value.pts)
@@ -63,8 +63,8 @@ def enter(ctx: Interpreter, frame: Frame, caller: Frame, passed: Arguments) -> A
 def leave(ctx: Interpreter, frame: Frame, result: Value) -> Value:
     """Return the result of a call as its caller gets it.
 
-    Only a caller whose call runs reads it, so the conditions of the other calls do not decide it. Conditions inside the
-    calling expression, such as the choice between several callees, do.
+    A caller reads the result only if its own call runs, so the conditions of other calls do not decide the result.
+    Conditions inside the calling expression, such as the choice between several callees, decide it.
     """
     ((called, _),) = conditions(ctx, frame)
     instead = frozenset(ctx.guards)

@@ -39,7 +39,7 @@ def _asked(
     known: Sequence[Value],
     frame: Frame,
 ) -> Value:
-    """Evaluate the elements in order, each under the conditions that the earlier ones decide."""
+    """Evaluate the elements in order, each under the conditions that the earlier elements decide."""
     obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
     turn, guards, decides = frame.turn, len(ctx.guards), NONE
     for number, one in enumerate(known):

@@ -32,7 +32,7 @@ def chosen(ctx: Interpreter, targets: list[Obj], arguments: Arguments) -> list[O
 
 
 def decides(ctx: Interpreter, targets: list[Obj], arguments: Arguments) -> Nodes:
-    """Return the nodes that decide which implementation runs: those that chose the object that is the argument."""
+    """Return the nodes that decide which implementation runs: those that chose the object passed as first argument."""
     registered = any(closure_of(one) in ctx.dispatches for one in targets)
     return arguments[0][0].deps if registered and arguments[0] and arguments[0][0].pts else NONE
 
@@ -53,7 +53,7 @@ def for_types(ctx: Interpreter, targets: list[Obj], known: Sequence[Sequence[str
 
 
 def _types(ctx: Interpreter, value: Value) -> list[list[str]] | None:
-    """Return the names of the possible types, each with those of its base classes; None if they are not known."""
+    """Return the names of the possible types, each with the names of its base classes; None if they are not known."""
     if not value.pts or value.consts not in (None, NO_CONSTANTS):
         return None
     ctx.look(value.pts)

@@ -23,10 +23,10 @@ class NullnessFacts:
     doubtful: set[ir.Call] = field(default_factory=set)  # calls whose result may be None because of data
     came: dict[Key, set[int]] = field(
         default_factory=dict
-    )  # for each copy of a variable in `vacant`: the nodes that decide whether the copy is set
+    )  # copy of a variable in `vacant` → the nodes that decide whether the copy is set
     came_out: dict[ir.Call, set[int]] = field(
         default_factory=dict
-        # for each call that returns a copy of a variable in `vacant`: the nodes that decide whether the copy is set
+        # call that returns a copy of a variable in `vacant` → the nodes that decide whether the copy is set
     )
 
     def of_key(self, key: Key | None) -> tuple[bool, bool, int]:
@@ -46,7 +46,7 @@ class Work:
 
     spent: int = 0  # number of statements of work in this run
     saved: int = 0  # the part of `spent` that was done in replayed calls
-    # number of values that this run handled to search for data, to record calls, and to return from calls
+    # number of values that this run handled while it searched for data, recorded calls, and returned from calls
     handled: int = 0
     idled: int = 0  # the part of `spent` that was done in calls into modules without ROS calls
     limit: int = MAX_STATEMENTS
@@ -65,9 +65,9 @@ class Work:
     owners: dict[str, str] = field(default_factory=dict)  # cache of `charged_to`: file → program
 
     def charged_to(self, path: str) -> str:
-        """Return the program whose budget a file's roots use: the first one that imports it, perhaps indirectly.
+        """Return the program whose budget a file's roots use: the first program that imports the file, even indirectly.
 
-        A package's `__init__.py` that nothing imports counts as a program only if there is no other one.
+        A package's `__init__.py` that nothing imports counts as a program only if there is no other program.
         """
         owner = self.owners.get(path)
         if owner is None:

@@ -247,7 +247,7 @@ def remove(ctx: Interpreter, base: Value, index: ir.Expr, frame: Frame) -> None:
 
 
 def _answer(s: ir.Return) -> ir.Call:
-    """Return a call that represents how ROS sends the result of a handler."""
+    """Return a call that represents the code of ROS that sends the result of a handler."""
     return ir.Call(ir.Const(None, s.pos), (), (), s.pos, 0)
 
 

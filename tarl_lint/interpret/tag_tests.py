@@ -21,18 +21,19 @@ Tags = frozenset[object]  # constants, and members of enumerations
 
 @dataclass(frozen=True)
 class Test:
-    """The condition that an expression is, or is not, one of several tags, or an instance of classes."""
+    """The condition that an expression is, or is not, one of several tags or an instance of one of several classes."""
 
     expr: ir.Expr
     tags: Tags
     holds: bool
-    # whether the expression is compared with all tags, so that it is none of them if this fails
+    # whether the expression is compared with all tags; if so, a failed comparison means that the expression is none
+    # of them
     exact: bool = True
     classes: Value | None = None
 
 
 def tests(ctx: Interpreter, test: ir.Expr, frame: Frame, *, holds: bool) -> Iterator[Test]:
-    """Yield the tests of tags that certainly hold or fail if a condition does."""
+    """Yield the tests of tags that certainly hold if a condition holds, or certainly fail if it fails."""
     if isinstance(test, ir.Call):
         yield from _of_class(ctx, test, frame, holds=holds)
     if not isinstance(test, ir.Operation):
@@ -56,7 +57,7 @@ def tests(ctx: Interpreter, test: ir.Expr, frame: Frame, *, holds: bool) -> Iter
 
 
 def _alternatives(ways: list[list[Test]]) -> Iterator[Test]:
-    """Yield the test that one of several alternatives makes, if all of them compare the same expression."""
+    """Yield the test that one of several alternatives makes, if all alternatives compare the same expression."""
     if all(len(way) == 1 and way[0].holds and way[0].classes is None for way in ways):
         first = ways[0][0]
         if all(_same(way[0].expr, first.expr) for way in ways):
@@ -84,12 +85,12 @@ def _of_class(ctx: Interpreter, call: ir.Call, frame: Frame, *, holds: bool) -> 
 
 
 def _names(expr: ir.Expr) -> bool:
-    """Return whether an expression may be a tag: a variable, or an entry or attribute of one."""
+    """Return whether an expression may be a tag: a variable, or an entry or attribute of a variable."""
     return isinstance(expr, ir.Name) or of_variable(expr) is not None
 
 
 def of_variable(expr: ir.Expr) -> tuple[ir.Name, str | Value] | None:
-    """Return the variable of `x.name`, `x[0]` or `x.get("key")`, with the attribute or the index."""
+    """Return the variable in `x.name`, `x[0]` or `x.get("key")`, and the attribute or index."""
     if isinstance(expr, ir.Attribute) and isinstance(expr.base, ir.Name):
         return expr.base, expr.name
     if isinstance(expr, ir.Item) and isinstance(expr.base, ir.Name) and isinstance(expr.index, ir.Const):
@@ -124,11 +125,12 @@ def tags_of(value: Value) -> Tags | None:
         known = value.consts == NO_CONSTANTS and all(map(enumerations.is_member, value.pts))
         return frozenset(value.pts) if known else None
     keys = value.keys()
-    return keys if keys and None not in keys else None  # whether a value is set is not a tag, see nullness.py
+    # None is no tag: nullness.py handles tests whether a value is set
+    return keys if keys and None not in keys else None
 
 
 def calls_nothing(test: ir.Expr) -> bool:
-    """Return whether a condition calls nothing but `isinstance`, and `get` of a variable."""
+    """Return whether a condition contains no calls except those of `isinstance` and of a variable's `get`."""
     if isinstance(test, ir.Call):
         named = isinstance(test.function, ir.Name) and test.function.name == "isinstance"
         return named or of_variable(test) is not None

@@ -1,8 +1,9 @@
-"""Tags: in the branches of an `if` that tests one, variables hold only the objects with a matching tag.
+"""Tags: in the branches of an `if` that tests a tag, variables hold only the objects with a matching tag.
 
 A tag tells objects of different kinds apart, as in `kind, value = queue.get()` with `if kind == "stop"`: the first
 element of a tuple, an entry of a mapping, an attribute, or the class of an object. Local variables that got their
-values from such objects are narrowed, for example `value`. After the `if`, they have their former values again.
+values from such objects are narrowed, for example `value`. After the `if`, the variables have their former values
+again.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ def keep(frame: Frame, key: Key, taken: Taken) -> None:
 
 
 def narrow(ctx: Interpreter, test: ir.Expr, frame: Frame, before: Narrowed, *, holds: bool) -> Narrowed:
-    """Narrow variables in the current state, in which a condition holds or not; return their new values.
+    """Narrow variables in the current state, in which a condition holds or fails; return their new values.
 
     The former values are added to `before`.
     """
@@ -98,8 +99,8 @@ def narrow(ctx: Interpreter, test: ir.Expr, frame: Frame, before: Narrowed, *, h
 def decide(ctx: Interpreter, s: ir.If, frame: Frame, narrowed: Narrowed, *, holds: bool) -> None:
     """Let a branch depend on the objects with a matching tag, and not on the others.
 
-    The conditions under which other objects came into the same queue do not decide whether the branch runs. If the
-    test excludes constants, what chose among them decides both branches.
+    The conditions under which the other objects came into the same queue do not decide whether the branch runs. If
+    the test excludes constants, the conditions that chose among the constants decide both branches.
     """
     if not calls_nothing(s.test) or any(
         not value.pts and taken_from(ctx, key, frame) is None for key, value in narrowed.items()
@@ -156,7 +157,7 @@ def _constants(ctx: Interpreter, name: ir.Name, test: Test, frame: Frame) -> Ite
         return
     kept = known & test.tags if test.holds else known - test.tags if test.exact else known
     if kept and kept != known:
-        # a single constant is the same for all data for which the branch runs
+        # a single constant does not depend on the data with which the branch is entered
         yield key, Value(NONE if len(kept) == 1 else now.deps, consts=kept)
 
 
@@ -206,7 +207,7 @@ def taken_from(ctx: Interpreter, key: Key, frame: Frame) -> Taken | None:
 
 
 def _with(ctx: Interpreter, key: Key, now: Value, kept: frozenset[Obj], frame: Frame) -> Value:
-    """Return the value of a variable if it is one of some objects, or was taken from one of them."""
+    """Return the value of a variable if it is one of some objects, or was taken from one of these objects."""
     taken = taken_from(ctx, key, frame)
     if taken is None:
         return Value(now.deps, kept, now.consts)
@@ -218,9 +219,9 @@ def _with(ctx: Interpreter, key: Key, now: Value, kept: frozenset[Obj], frame: F
 
 
 def _only(ctx: Interpreter, value: Value, kept: frozenset[Obj], frame: Frame) -> Value:
-    """Return a value that may be one of several objects with only some of them, also where a variable got it from.
+    """Reduce a value to some of its possible objects, also in the variable from which it was taken.
 
-    The variable is one of the function, or of a caller that passed a part of the object.
+    This is a variable of the function, or of a caller that passed a part of the object.
     """
     if (found := whole_of(value, frame)) is None:
         return Value(value.deps - _passed_only(ctx, value.pts, kept), kept, value.consts)
@@ -232,7 +233,7 @@ def _only(ctx: Interpreter, value: Value, kept: frozenset[Obj], frame: Frame) ->
 
 
 def whole_of(value: Value, frame: Frame) -> tuple[Frame, Key, Taken] | None:
-    """Return the variable of a function or its callers that has a value, and where it got it; None if there is none."""
+    """Return the variable of a function or its callers that has a value, and the value's origin; None without one."""
     place: Frame | None = frame
     while place is not None:
         for key, known in place.taken.items():
@@ -244,7 +245,7 @@ def whole_of(value: Value, frame: Frame) -> tuple[Frame, Key, Taken] | None:
 
 
 def _node(ctx: Interpreter, taken: Taken, kept: frozenset[Obj], frame: Frame) -> int:
-    """Return the node of the statement that gave a variable its value, for some of the objects."""
+    """Return the node of the statement that gave a variable its value, for only some of the objects."""
     slot = ("target", taken.slot, "of", tuple(sorted(o.number for o in kept)))
     if taken.frame is not None:
         return ctx.node(taken.frame, slot, "call")  # the statement of the caller is still the call
@@ -261,7 +262,7 @@ def _field(ctx: Interpreter, value: Value, field: str | Value) -> Value:
 
 
 def _passed_only(ctx: Interpreter, all_of_them: frozenset[Obj], kept: frozenset[Obj]) -> Nodes:
-    """Return the nodes that put only those objects into a container that are not kept."""
+    """Return the nodes that put objects into a container, if none of these objects is kept."""
     for obj in all_of_them:
         ctx.store.reads.ask(ctx.inserted_by, obj)
     ours = [ctx.inserted.get(obj.site) for obj in kept]
@@ -272,7 +273,7 @@ def _passed_only(ctx: Interpreter, all_of_them: frozenset[Obj], kept: frozenset[
 
 
 def _matches(ctx: Interpreter, obj: Obj, field: str | Value, test: Test) -> bool:
-    """Return whether an object may have a tag as a test asks for."""
+    """Return whether an object may have a tag for which a test asks."""
     if obj.kind not in TAGGED or enumerations.is_member(obj):
         return True
     if test.classes is not None:
@@ -287,7 +288,7 @@ def _matches(ctx: Interpreter, obj: Obj, field: str | Value, test: Test) -> bool
 
 
 def _of_classes(obj: Obj, classes: Value, *, holds: bool) -> bool:
-    """Return whether an object may be, or may not be, an instance of one of some classes."""
+    """Return whether an object is possibly an instance of one of the given classes, and whether it possibly is not."""
     if holds:
         return obj in operators.narrowed(Value(pts=frozenset([obj])), classes).pts
     if obj.kind != "instance" or not isinstance(obj.info, Obj):

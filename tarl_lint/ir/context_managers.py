@@ -26,7 +26,7 @@ _INNER: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda
 
 
 class _Parts(NamedTuple):
-    """Statements before the `yield`, the `yield` itself, and the statements after it."""
+    """The statements before the `yield` of a generator, the `yield` itself, and the statements after it."""
 
     before: list[ast.stmt]
     place: ast.Yield
@@ -87,7 +87,7 @@ def _ended(statement: ast.stmt, made: list[ast.stmt]) -> list[ast.stmt]:
 
 
 def _parts(body: Sequence[ast.stmt]) -> _Parts | None:
-    """Divide a body at its `yield`, for which `_HERE` stands in `before`; None if this is not possible."""
+    """Divide a body at its `yield`; None if this is not possible. In the first part, `_HERE` stands for the `yield`."""
     for number, statement in enumerate(body):
         if not _yields([statement]):
             continue

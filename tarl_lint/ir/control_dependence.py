@@ -23,7 +23,7 @@ Raising = Mapping[int, Iterable[str]]
 NEAR: Final = 100
 NOTHING_RAISES: Raising = {}
 NEXT: Final = -2  # number of a pseudo-statement: the beginning of the next iteration
-# names beside those of exceptions, for statements that may wait for ever:
+# names that are used like the names of exceptions, for statements that may wait for ever:
 BLOCKED: Final = "<blocked>"  # a call that waits; the rest of the function or iteration depends on it
 SUSPENDED: Final = "<suspended>"  # a `yield` that waits for `send`; the rest of the generator depends on it
 
@@ -32,8 +32,8 @@ SUSPENDED: Final = "<suspended>"  # a `yield` that waits for `send`; the rest of
 class Control:
     """For each statement, the branches on which it depends directly (`direct`) or in any way (`closure`).
 
-    If there are very many branches, only the nearest are stored; `far` has the statements for which this is so.
-    `statements` are the statements by number.
+    If there are very many branches, only the nearest are stored, and `far` contains the statement. `statements`
+    maps numbers to statements.
     """
 
     direct: Mapping[int, frozenset[Branch]]
@@ -85,7 +85,7 @@ class _Graph:
         self.edges.setdefault(source, {})[way] = target
 
     def throw(self, source: int, way: str, name: str, exits: _Exits) -> None:
-        """Link a statement to each handler that may catch an exception, and to the exit unless one certainly does."""
+        """Link a statement to each handler that may catch an exception; if none certainly does, also to the exit."""
         for number, target in enumerate(exits.of(name, self.types)):
             self.link(source, f"{way} {number}" if number else way, target)
 
@@ -297,7 +297,10 @@ def _reachable(graph: _Graph, entries: Sequence[int]) -> list[int]:
 
 
 def _direct(graph: _Graph, order: Sequence[int], nearest: Mapping[int, int]) -> dict[int, frozenset[Branch]]:
-    """Return the direct control dependence: n depends on branch (a, b) if n is on every path from b, but not from a."""
+    """Return the direct control dependence.
+
+    Statement n depends on branch (a, b) if n is on every path from b to the exit, but not on every path from a.
+    """
     found: dict[int, set[Branch]] = {n: set() for n in order}
     for node in order:
         ways = graph.edges[node]

@@ -68,7 +68,7 @@ class ExceptionTypes:
     _known: dict[str, tuple[frozenset[str], bool]] = field(default_factory=dict, compare=False)
 
     def catches(self, handled: Handled, name: str) -> bool | None:
-        """Return whether a handler catches an exception: certainly (True), certainly not (False), or maybe (None)."""
+        """Return whether a handler catches an exception: True (certainly), False (certainly not), or None (maybe)."""
         if not handled:
             return True
         above, whole = self._above(name)
@@ -148,7 +148,10 @@ def handled_by(types: ir.Expr | None) -> Handled:
 
 
 def _called(expr: ir.Expr | None) -> str:
-    """Return the name of a class; a library's class is distinguished from the builtin class of that name."""
+    """Return the name of a class.
+
+    If a class of a library has the name of a builtin class, the result tells the two apart.
+    """
     if isinstance(expr, ir.Attribute):
         return f".{expr.name}" if expr.name in BUILTIN else expr.name
     return _SAME.get(expr.name, expr.name) if isinstance(expr, ir.Name) else UNKNOWN

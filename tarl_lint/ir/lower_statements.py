@@ -14,8 +14,8 @@ from tarl_lint.ir.program_exits import OWN_EXIT, ends_program, exception
 from tarl_lint.ir.scopes import Scope, collect, plain
 from tarl_lint.read.source import Module
 
-# kinds of `match` subjects that are first stored in a temporary variable; otherwise each `case` would evaluate the
-# subject again
+# subjects of these kinds are first stored in a temporary variable; otherwise each `case` of the `match` would
+# evaluate the subject again
 MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)
 NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations that are not dataclass fields
 

@@ -33,7 +33,7 @@ def captures(
 
 
 def _narrowed(pattern: ast.pattern | None, subject: ir.Expr, where: ir.Pos, lower: Lower) -> ir.Expr:
-    """Return the subject; as an object of a class, if the pattern names one."""
+    """Return the subject; if the pattern names a class, as an object of that class."""
     if not isinstance(pattern, ast.MatchClass):
         return subject
     return ir.Operation("as", [subject, lower(pattern.cls)], where)

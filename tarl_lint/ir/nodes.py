@@ -70,7 +70,7 @@ class Call:
     slot: int
 
     def inner(self, number: int = 0) -> Call:
-        """Return a call that a library makes during this one, with a slot of its own; `number` counts such calls."""
+        """Return a call that a library makes during this call, with its own slot; `number` counts such calls."""
         return replace(self, slot=-1000 * (abs(self.slot) + 1) - number)
 
     def inner_bare(self, number: int = 0) -> Call:
@@ -130,7 +130,7 @@ class Comprehension:
     slot: int
     node: ast.expr  # the syntax tree of `element`
     tests: Sequence[ast.expr] = ()  # the syntax trees of the conditions after `if`
-    lazy: bool = False  # whether it may stop early, as in `all(part.ready() for part in parts)`
+    lazy: bool = False  # whether the evaluation may stop early, as in `all(part.ready() for part in parts)`
 
 
 @dataclass(slots=True, eq=False)
@@ -252,7 +252,7 @@ class Evaluate(Stmt):
 
 @dataclass(slots=True, eq=False)
 class If(Stmt):
-    """`if`, one arm of `match`, or `assert` (whose `else` raises)."""
+    """`if`, one `case` of `match`, or `assert` (whose `else` raises)."""
 
     test: Expr
     body: Sequence[Stmt]
@@ -269,9 +269,7 @@ class Loop(Stmt):
     orelse: Sequence[Stmt]
     endless: bool = False
     nodes: Sequence[ast.stmt] = ()  # the syntax trees of the body of a `for`
-    end: int = (
-        0  # of a `for`: the numbers of the statements in its body are between its own number and this one
-    )
+    end: int = 0  # of a `for`: its own number and those of the statements in its body are below this one
 
     def has(self, number: int) -> bool:
         """Return whether a number is that of this `for` or of a statement in its body."""

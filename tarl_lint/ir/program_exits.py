@@ -6,7 +6,7 @@ import ast
 import re
 from typing import Final
 
-# a file in which `exit` or `quit` may be something else than Python's own function or that of `sys`
+# finds a file in which `exit` or `quit` may be a function other than Python's own or that of `sys`
 OWN_EXIT: Final = re.compile(
     r"\b(?:def|class|as)\s+(?:exit|quit)\b|\b(?:exit|quit)\s*=(?!=)"
     r"|\bfrom\s+(?!sys\b)\S+\s+import\b[^\n]*\b(?:exit|quit)\b"

@@ -29,7 +29,7 @@ class Scope:
     renamed: dict[str, str] = field(default_factory=dict)
     # the value that `renamed` had in the parent scope at the place where this scope is defined
     around: dict[str, str] = field(default_factory=dict)
-    plain: bool = False  # whether no expression in the file binds a name or yields
+    plain: bool = False  # True if no expression in the file binds a name or contains `yield`
     prints: bool = False  # for a module: whether `print` is Python's built-in function
     exits: bool = False  # for a module: whether `exit` and `quit` are Python's own functions
 
@@ -65,7 +65,7 @@ class Scope:
 
 
 def collect(scope: Scope, body: Iterable[ast.AST]) -> bool:
-    """Add the names that statements bind to `scope`. Return whether one of the statements yields."""
+    """Add the names that statements bind to `scope`. Return whether one of the statements contains `yield`."""
     yields = False
     for node in _own_statements(body) if scope.plain else _own_nodes(body):
         if isinstance(node, ast.Name):
@@ -103,7 +103,7 @@ def _own_nodes(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
 
 
 def plain(text: str) -> bool:
-    """Return whether the text of a file shows that none of its expressions binds a name or yields."""
+    """Return whether the text of a file shows that its expressions bind no name and contain no `yield`."""
     return ":=" not in text and "yield" not in text
 
 

@@ -86,7 +86,7 @@ def together(objects: Iterable[Obj]) -> Set[Obj]:
 
 
 def _beyond(obj: Obj) -> Iterator[Obj]:
-    """Yield the objects that an object refers to, apart from its fields; a frame refers to the enclosing one."""
+    """Yield the objects to which an object refers outside its fields; a frame refers to the enclosing frame."""
     if obj.info is not None:
         yield from _about(obj.info)
     if isinstance(obj, Frame) and obj.outer is not None:

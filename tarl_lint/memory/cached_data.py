@@ -1,4 +1,4 @@
-"""What searches for the data inside objects have found, kept for the next search of the same run."""
+"""Results of searches for the data inside objects, kept for the next search of the same run."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ State = tuple[int, int, bool, str]
 
 @dataclass(slots=True, eq=False)
 class Contents:
-    """The contents of one object, without those of the objects that its fields point to.
+    """The data in one object, without the data in the objects to which its fields point.
 
-    `state` changes whenever something is stored in the object or in another part of the same whole.
+    `state` changes whenever something is stored in the object, or in another part of the object to which it
+    belongs.
     """
 
     obj: Obj
@@ -24,7 +25,8 @@ class Contents:
     all: Nodes  # `nodes` and `summary`
     summarised: bool  # whether the object has a summary field of its own
     overwritten: bool  # whether this run has overwritten every field of a message
-    # values of the fields that need a further step: pointers, and constants with data, in the order of the fields
+    # values of the fields from which the search has to go on, in the order of the fields: pointers, and constants
+    # with data
     steps: tuple[Value, ...]
     constants: frozenset[int]  # positions in `steps` of values that are the same constant on all paths
     parts: tuple[Obj, ...]
@@ -33,7 +35,7 @@ class Contents:
     objects: dict[Obj, int]
 
     def alike(self, other: Contents) -> bool:
-        """Return whether a search finds the same here as in other contents of the same object."""
+        """Return whether a search finds the same data here as in other contents of the same object."""
         return (
             self.nodes == other.nodes
             and self.steps == other.steps

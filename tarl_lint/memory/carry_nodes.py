@@ -20,7 +20,7 @@ def settle(graph: Graph) -> None:
 
 
 def _feed(graph: Graph) -> None:
-    """Connect each cycle of carry nodes to its origin, so that the cycle has an entry."""
+    """Connect each cycle of carry nodes to its origin, so that data can enter the cycle."""
     circles: dict[int, list[int]] = {}
     for node, (_, origin) in graph.carried.items():
         circles.setdefault(origin, []).append(node)

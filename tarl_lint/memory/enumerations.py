@@ -85,7 +85,7 @@ def _public(ctx: Interpreter, cls: Obj) -> Iterator[tuple[str, Value]]:
 
 
 def with_value(ctx: Interpreter, cls: Obj, value: Value) -> Value | None:
-    """Return the marked member that `Class(value)` returns; None if no marked member has this constant."""
+    """Return the marked member that `Class(value)` returns; None if no marked member has this value."""
     if not value.fixed() or value.deps:
         return None
     ctx.store.look(cls)
@@ -105,7 +105,7 @@ def automatic(ctx: Interpreter, _: object) -> Value:
 
 
 def members(ctx: Interpreter, cls: Obj) -> list[tuple[str, Value]] | None:
-    """Return the names and values of an enumeration's members; None for other classes and if a member is unknown."""
+    """Return the names and values of an enumeration's members; None for other classes, or if a member is unknown."""
     if cls.kind != "class" or not enumerates(cls):
         return None
     ctx.store.look(cls)
@@ -132,7 +132,10 @@ def by_name(ctx: Interpreter, base: Value) -> Value | None:
 
 
 def enumerates(cls: Obj) -> bool:
-    """Return whether `Class[x]` may be a member of an enumeration; of other classes, it is the class itself."""
+    """Return whether `Class[x]` may be a member of an enumeration.
+
+    For other classes, `Class[x]` is the class itself.
+    """
     return any(name.endswith(("Enum", "Flag")) for name in _bases(cls))
 
 

@@ -15,10 +15,10 @@ Turns = tuple[tuple[ir.Loop, int], ...]  # loops, outer ones first, with the num
 
 @dataclass(slots=True, eq=False)
 class Attempt:
-    """A `try` whose body is running: what it handles, the states in which a handler can be entered, the exceptions.
+    """A running `try`: what it handles, the states in which a handler can be entered, and the exceptions.
 
-    For the `finally` of a `try`, which no exception, `return`, `break` or `continue` passes, `final` is set, and
-    `leaving` collects what has to continue after it.
+    `final` is set if no exception, `return`, `break` or `continue` can leave the `try` without its `finally`. In
+    this case, `leaving` collects everything that has to continue after the `finally`.
     """
 
     depth: int
@@ -44,7 +44,7 @@ class Attempt:
 
 @dataclass(slots=True, eq=False)
 class Escape:
-    """An exception that leaves a function: place, name, value, and the decision of the call that raised it.
+    """An exception that leaves a function: its place, name and value, and the decision of the call that raised it.
 
     `state` has the stores of the function before the exception.
     """
@@ -59,7 +59,10 @@ class Escape:
 
 @dataclass(slots=True, eq=False)
 class Leaving:
-    """What leaves a `try` with a `finally`: an exception, the value of a `return`, or a jump; and the state there."""
+    """Something that leaves a `try` with a `finally`, and the state there.
+
+    It is an exception, the value of a `return`, or a jump.
+    """
 
     state: dict[Key, Value]
     cause: Escape | Value | Literal["break", "continue"]
@@ -67,7 +70,7 @@ class Leaving:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Taken:
-    """Where a variable got its value: a statement, the objects that it may be, or of which it may be a part.
+    """The origin of a variable's value: the statement, and the objects that the value may be, or may be a part of.
 
     `field` is the attribute or index of the part; `of` is the variable that holds the objects.
     """
@@ -81,7 +84,8 @@ class Taken:
     frame: Frame | None = None  # the caller that passed the value, if the variable is a parameter
 
 
-# argument that is one of several objects, or a part of one: position or keyword, the objects, the attribute or index
+# an argument that is one of several objects, or a part of one of them. The tuple has the argument's position or
+# keyword, the objects, and the attribute or index of the part.
 Origin = tuple[int | str, Value, str | Value | None]
 
 
@@ -157,7 +161,7 @@ class Frame(Obj):
         self.turn: tuple[
             int, ...
         ] = ()  # numbers of the current elements of unrolled loops and comprehensions
-        # current iterations of the unrolled loops whose iterations decide about later ones
+        # current iterations of those unrolled loops in which an iteration decides about later iterations
         self.turns: Turns = ()
         self.called_in: Turns = ()  # the `turns` of the caller at the call
         self.rows = 1  # number of iterations of the unrolled loops around the current statement
@@ -174,15 +178,16 @@ class Frame(Obj):
         self.control: object = None
         # numbers of the conditions that are connected with the current `control` in the graph
         self.waypoints: set[tuple[int, Turns]] = set()
-        self.entered: object = None  # the caller's control dependence, once it is connected with this call
+        # the caller's control dependence, after it has been connected with this call
+        self.entered: object = None
         self.heads: dict[
             tuple[int, ...], dict[Key, Value]
-        ] = {}  # loop and iterations of outer loops → state at the loop's head in its last fixpoint
+        ] = {}  # loop and iterations of its outer loops → state at the loop's head in the last fixpoint of the loop
         self.captured = False
         self.told_apart: set[tuple[int, str]] = set()  # branches that have conditions of their own
-        # variable → those of its values that are one of several objects, or were parts of one
+        # variable → origins of those of its values that are one of several objects or a part of one of these
         self.taken: dict[Key, list[Taken]] = {}
-        # slot of a call → the sequences of which its argument `*sequence` is one
+        # slot of a call with an argument `*sequence` → the sequences that the argument may be
         self.spread: dict[int, Value] = {}
         self.returns: list[tuple[dict[Key, Value], Value]] = []
         self.jumps: list[tuple[int, dict[str, list[dict[Key, Value]]]]] = []
@@ -199,7 +204,7 @@ class Frame(Obj):
         self.recorded: object = None  # the last run of this frame, which a call with equal inputs can replay
         self.shared = False  # whether calls from several places share this frame, with joined arguments
         self.passed: tuple[list[Value], dict[str, Value]] | None = (
-            None  # joined arguments of all calls that share this frame
+            None  # arguments of all calls that share this frame, joined
         )
         self.yielded = BOTTOM
         self.arguments: list[Value] = []

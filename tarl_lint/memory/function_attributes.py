@@ -18,7 +18,7 @@ MAX_WRAPPERS: Final = 8  # maximum number of nested wrappers through which an at
 
 
 def attribute_of(name: str) -> str:
-    """Return the field of a function that holds an attribute; fields without brackets hold the defaults."""
+    """Return the field of a function that holds an attribute; other fields, without brackets, hold the defaults."""
     return f"<{name}>"
 
 

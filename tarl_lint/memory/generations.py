@@ -1,8 +1,8 @@
-"""Chains of instances, each made by a method of the one before (`position = position + step`), and of closures.
+"""Chains of instances, each made by a method of the previous one (`position = position + step`), and of closures.
 
-A method has a context for each receiver, and each context makes objects of its own. Without a limit, a callback that
-replaces an object by one that the object's method makes would make new abstract objects for ever. The same holds for
-closures that make closures, as in `self.state = self.state(msg)`.
+A method has a separate context for each receiver, and each context makes objects of its own. Suppose a callback
+replaces an object with a new one that a method of the object makes. Without a limit, the analysis would then make
+new abstract objects for ever. The same holds for closures that make closures, as in `self.state = self.state(msg)`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Chain = tuple[tuple[Hashable, Obj], ...]
 
 
 def last_of_line(ctx: Interpreter, site: Hashable, frame: Frame) -> Obj | None:
-    """Return the object that represents what a site makes now, if the chain of makers is too long; else None."""
+    """If the chain of makers is too long, return the object that represents all that the site makes now; else None."""
     alike = [obj for known, obj in _makers(ctx, frame) if known == site]
     if len(alike) < MAX_ALIKE:
         return None
@@ -57,7 +57,7 @@ def note_closure(ctx: Interpreter, closure: Obj, function: ir.Function, frame: F
 
 
 def too_many_closures(ctx: Interpreter, frame: Frame) -> bool:
-    """Return whether the calls of a frame may make closures for ever, so that they have to share their contexts."""
+    """Return whether the calls of a frame may make closures for ever; they then have to share their contexts."""
     running = _closures(ctx, frame)
     return len(running) > MAX_CLOSURES or len(set(running)) < len(running)
 

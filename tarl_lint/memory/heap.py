@@ -84,7 +84,7 @@ def item_field(constant: object) -> str:
 
 
 def content(ctx: Interpreter, obj: Obj) -> Value:
-    """Return the join of all elements and unknown fields of an object."""
+    """Return the join of all elements of an object and of its unknown fields."""
     own = ctx.store.get((obj, ANY))
     if own is not None:
         return own
@@ -117,9 +117,9 @@ def read_field(ctx: Interpreter, obj: Obj, name: str) -> Value:
 
 
 def renamed(ctx: Interpreter, obj: Obj, name: str) -> tuple[Obj, str]:
-    """Return the object that stores an attribute, and its name there.
+    """Return the object that stores an attribute, and the name of the attribute there.
 
-    A function's attributes are stored with its defaults.
+    A function's attributes are stored together with its defaults.
     """
     if obj.kind == "closure":
         return obj, attribute_of(name)
@@ -160,7 +160,7 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
 
 
 def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return an unset field of a library object, which is a part of it; BOTTOM for summary and pseudo-fields."""
+    """Return an unset field of a library object, which is part of the object; BOTTOM for summary and pseudo-fields."""
     if name == ANY or name.startswith("<"):
         return BOTTOM
     if obj.name == NAMESPACE:
@@ -175,7 +175,7 @@ def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:
 
 
 def shape(ctx: Interpreter, obj: Obj) -> Value | None:
-    """Return the data that decides the shape of an array, if its elements do not; None for other objects."""
+    """Return the data that decides the shape of an array without data in its elements; None for other objects."""
     return ctx.store.get((obj, SHAPE)) if obj.kind == "lib" else None
 
 
@@ -197,7 +197,7 @@ def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
 
 
 def through_class(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value | None:
-    """Return an attribute that a class or a base class defines, with functions bound to `obj`; None if none does."""
+    """Return an attribute that a class or base class defines, with its functions bound to `obj`; None if none does."""
     for owner in lineage(cls):
         value = ctx.store.get((owner, name))
         if value is not None:
@@ -230,7 +230,7 @@ def bind(ctx: Interpreter, value: Value, receiver: Obj, owner: Obj) -> Value:
 
 
 def _bound_partial(ctx: Interpreter, target: Obj, receiver: Obj, owner: Obj) -> Obj:
-    """Return a `partialmethod` bound to a receiver; a plain `partial` in a class is not bound."""
+    """Return a `partialmethod` bound to a receiver. A plain `partial` in a class stays unbound."""
     if not isinstance(target.info, tuple) or not target.info[3:]:
         return target
     function, plain, named, _ = target.info
@@ -240,7 +240,7 @@ def _bound_partial(ctx: Interpreter, target: Obj, receiver: Obj, owner: Obj) -> 
 
 
 def bind_class(ctx: Interpreter, value: Value, cls: Obj, owner: Obj | None = None) -> Value:
-    """Return a class's attribute with its class methods, which `owner` defines, bound to it."""
+    """Return an attribute of a class, with its class methods bound to the class. `owner` defines these methods."""
     if not any(_binding(o) == "classmethod" for o in value.pts):
         return value
     bound = [method(ctx, o, cls, owner or cls) if _binding(o) == "classmethod" else o for o in value.pts]
@@ -248,7 +248,7 @@ def bind_class(ctx: Interpreter, value: Value, cls: Obj, owner: Obj | None = Non
 
 
 def read_or_hold(ctx: Interpreter, base: Value, name: str) -> Value:
-    """Return an attribute; for an unknown object, also a method that makes a subscription or the like."""
+    """Return an attribute; for an unknown object, also a method that registers something, such as a subscription."""
     if base.pts or name not in ENDPOINT_METHODS:
         return read(ctx, base, name)
     return Value(base.deps, held_method(ctx, recency.intern(ctx, "lib", ("unknown",)), name).pts)
@@ -279,7 +279,7 @@ def _class_field(ctx: Interpreter, cls: Obj, name: str) -> Value:
 
 
 def bases(ctx: Interpreter, cls: Obj) -> Value:
-    """Return the sequence of a class and its base classes, over which a loop is executed element by element."""
+    """Return the sequence of a class and its base classes; a loop over it is executed element by element."""
     listed = recency.intern(ctx, "sequence", ("bases", cls.key), MEMBERS)
     for number, one in enumerate(lineage(cls)):
         ctx.store.put((listed, item_field(number)), pointer(one))
@@ -328,7 +328,7 @@ def read_any(ctx: Interpreter, obj: Obj) -> Value:
 
 
 def read(ctx: Interpreter, base: Value, name: str) -> Value:
-    """Return a field read through a pointer, as its carriers pass it on."""
+    """Return a field read through a pointer, after the carriers of the pointer have passed it on."""
     if len(base.pts) == 1:
         (obj,) = base.pts
         return arrive(ctx, read_field(ctx, obj, name), base.deps)
@@ -362,8 +362,8 @@ def elements(ctx: Interpreter, value: Value) -> Value:
 def attribute_names(ctx: Interpreter, obj: Obj) -> Value | None:
     """Return the names over which a loop over `vars(obj)` iterates; None if a loop over the object has other elements.
 
-    `vars(obj)` and `obj.__dict__` are represented by the object itself. Only an object whose class and base classes are
-    all analysed, and which has no attributes with computed names, certainly does not iterate in another way.
+    `vars(obj)` and `obj.__dict__` are represented by the object itself. If a class or base class of the object is
+    not analysed, or the object has attributes with computed names, it may iterate in another way.
     """
     cls = obj.info if obj.kind == "instance" and obj.name != MEMBER else None
     if not isinstance(cls, Obj) or any(_iterates(one.info) for one in lineage(cls)):
@@ -411,7 +411,7 @@ def _text_of(field: str) -> object:
 
 
 def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:
-    """Return a field's value as the carriers of the pointer pass it on."""
+    """Return a field's value after the carriers of the pointer have passed it on."""
     if not carriers:
         return value
     deps = ctx.graph.through(value.deps, carriers) | carriers

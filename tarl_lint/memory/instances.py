@@ -1,4 +1,4 @@
-"""Instances of classes that the program hands to a library, which may look them up: `app.query_one(MapView)`."""
+"""Instances of classes that the program passes to a library. The library may look them up: `app.query_one(MapView)`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LOOKS_UP: Final = re.compile(r"(?:query|find|get|resolve|look_?up|locate|fetch|t
 
 
 def note(ctx: Interpreter, obj: Obj, cls: Obj) -> None:
-    """Record a new instance if a library may look it up."""
+    """Record a new instance if a library may look up this instance."""
     for owner in lineage(cls):
         if owner in ctx.looked_up:
             _add(ctx, owner, obj)

@@ -107,6 +107,6 @@ def _former(ctx: Interpreter, key: Key, made: Made) -> Value | None:
 
 
 def _zero(value: Value) -> bool:
-    """Return whether a value equals a message field's default: zero, false or an empty string."""
+    """Return whether a value equals the default of a message field: zero, false or an empty string."""
     known, constant = value.constant()
     return known and constant is not None and not constant

@@ -1,4 +1,4 @@
-"""What the search for data reads of one object, kept until something is stored there."""
+"""The parts of one object that the search for data reads, kept until something is stored in the object."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tarl_lint.message_fields import FIELDS
 
 
 def contents(ctx: Interpreter, obj: Obj) -> Contents:
-    """Return the contents of an object that may hold data; `note` records what they depend on."""
+    """Return the contents of an object that may hold data. `note` records the facts on which the contents depend."""
     store = ctx.store
     whole = obj.outermost or obj
     state = (store.versions.get(whole, 0), whole.edition, store.waited, whole.defined)
@@ -38,7 +38,7 @@ def note(ctx: Interpreter, known: Contents) -> None:
 
 
 def _read(ctx: Interpreter, obj: Obj, state: State) -> Contents:
-    """Read the contents of an object, with reads of their own."""
+    """Read the contents of an object, and record the reads for this object alone."""
     store = ctx.store
     outer = store.reads
     reads = store.reads = ctx.graph.reads = Reads()
@@ -88,7 +88,7 @@ def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
 
 
 def defined(ctx: Interpreter, obj: Obj) -> str:
-    """Return the name of the definition of a message, which may be nested; empty if unknown."""
+    """Return the name of the definition of a message, which may be nested in another one; empty if unknown."""
     if obj.parent is None or not obj.whole.defined:
         return obj.whole.defined
     outer = FIELDS.get(defined(ctx, obj.parent), {})

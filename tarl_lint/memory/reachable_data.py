@@ -13,17 +13,17 @@ from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.recency import MAX_NESTING
 from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value, in_order
 
-# results with at most this number of visited objects are not cached, because computing them again is as fast as
-# checking a cached result
+# results for which at most this number of objects was visited are not cached, because computing such a result again
+# is as fast as checking a cached one
 FEW = 4
-# kinds of objects that are always searched; instances of some classes and HOLLOW objects are not
+# kinds of objects that are always searched; HOLLOW objects and instances of some classes are skipped
 PLAIN = frozenset(["lib", "sequence", "mapping", "message"])
 VISIT = 60  # visiting an object takes as long as looking up this number of values
 
 
 @dataclass(slots=True, eq=False)
 class Visit:
-    """State of one traversal: the nodes inside visited objects, and the objects with data of each points-to set."""
+    """State of one traversal: the nodes inside visited objects and, for each points-to set, the objects with data."""
 
     known: dict[Obj, Nodes] = field(default_factory=dict)
     read: list[Contents] = field(default_factory=list)  # contents of the visited objects
@@ -34,7 +34,7 @@ class Visit:
 def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
     """Return all nodes whose data is inside objects; the result is cached until something is stored.
 
-    Results for at most FEW objects are not cached until the same objects have led to more.
+    A result for at most FEW objects is not cached unless these objects have earlier led to more objects.
     """
     if len(objects) == 1:
         (obj,) = objects
@@ -43,7 +43,8 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
             return NONE
         if obj.kind in PLAIN and objects not in ctx.store.wide:
             own = contents(ctx, obj)
-            if not own.steps and not own.parts:  # as below, without the state of a search
+            # the same result as below, computed without the state of a search
+            if not own.steps and not own.parts:
                 note(ctx, own)
                 ctx.work.handled += VISIT
                 return own.all
@@ -74,7 +75,7 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
 
 
 def _searched(ctx: Interpreter, objects: frozenset[Obj], visit: Visit) -> Inside:
-    """Return the nodes inside objects, with all that they depend on."""
+    """Return the nodes inside objects, together with everything on which this result depends."""
     store, outer = ctx.store, ctx.store.reads
     reads = store.reads = ctx.graph.reads = Reads()
     grown, tick = ctx.graph.grown, store.tick
@@ -87,7 +88,7 @@ def _searched(ctx: Interpreter, objects: frozenset[Obj], visit: Visit) -> Inside
 
 
 def _reads(graph: Reads, read: Sequence[Contents], empty: Set[Obj]) -> Reads:
-    """Return the reads of a search that has read these contents; `graph` has what it read of the graph."""
+    """Return the reads of a search that read these contents; `graph` holds the reads of the value-flow graph."""
     reads = Reads(held=graph.held, facts=graph.facts)
     reads.keys.update(*[own.keys for own in read])
     reads.stored.update(*[own.stored for own in read])
@@ -98,7 +99,7 @@ def _reads(graph: Reads, read: Sequence[Contents], empty: Set[Obj]) -> Reads:
 
 
 def _valid(ctx: Interpreter, last: Inside) -> bool:
-    """Return whether a cached result is still valid: all objects that it was found in have the same data."""
+    """Return whether a cached result is still valid: all objects in which it was found have the same data."""
     store, graph = ctx.store, ctx.graph
     if last.tick == store.tick and last.grown == graph.grown:
         return True
@@ -131,10 +132,10 @@ def _all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit) -> Nodes:
 
 
 def _deep(ctx: Interpreter, obj: Obj, visit: Visit, depth: int, *, counted: bool = False) -> Nodes:
-    """Return the nodes inside one object; cycles are entered once.
+    """Return the nodes inside one object; a cycle is entered once.
 
-    With `counted`, the caller has added the summary field of the enclosing object, so the result lacks that field and
-    is not cached.
+    With `counted`, the caller has already added the summary field of the enclosing object. The result then lacks
+    this field and is not cached.
     """
     if obj.kind in HOLLOW or depth > MAX_NESTING:
         return NONE
@@ -167,7 +168,7 @@ def _deep(ctx: Interpreter, obj: Obj, visit: Visit, depth: int, *, counted: bool
 
 
 def _behind(ctx: Interpreter, value: Value, visit: Visit, depth: int) -> Nodes:
-    """Return the nodes inside the objects of a field, as the field's carriers pass them on."""
+    """Return the nodes inside the objects of a field, after the field's carriers have passed them on."""
     inner = _inside_all(ctx, value.pts, visit, depth)
     return ctx.graph.through(inner, value.deps) if inner else inner
 

@@ -18,8 +18,8 @@ Fact = tuple[Callable[[Any], object], object]  # (function, its argument)
 class Reads:
     """The reads of a running call, including those of nested calls.
 
-    A heap read counts only if the call has not stored to the key before. All other facts only grow, and are recorded
-    as they were at the first read.
+    A heap read counts only if the call has not stored to the key before. All other facts can only grow. The value
+    at the first read is recorded.
     """
 
     keys: set[Key] = field(default_factory=set)  # keys whose value was read
@@ -36,17 +36,17 @@ class Reads:
     unreached: set[int] = field(default_factory=set)
     holders: dict[Obj, int] = field(
         default_factory=dict
-    )  # object → number of keys that ever held a pointer to it
+    )  # object → number of keys that have ever held a pointer to the object
     held: dict[int, int] = field(
         default_factory=dict
-    )  # carrier → number of nodes that it has passed on inside objects
+    )  # carrier → number of nodes that the carrier has passed on inside objects
     arrivals: set[object] = field(
         default_factory=set
     )  # cached results whose `consulted` carriers are already in `held`
     facts: dict[Fact, object] = field(default_factory=dict)
     whole: bool = True  # whether the call ran to its end; False if a budget limit cut it short
     waits: bool = False
-    heard: int = 0  # number of keys whose values from other roots the first wait takes in
+    heard: int = 0  # number of keys for which the first wait takes in values from other roots
     own: frozenset[Key] = frozenset()  # keys that the call had stored by the first wait
     # key → value that the call took in from other roots at its waits
     admitted: dict[Key, Value] = field(default_factory=dict)
@@ -89,16 +89,17 @@ class Reads:
             self._add_rest(inner)
 
     def finish(self, keys: Set[Key], stored: Set[Key]) -> None:
-        """Drop what is needed only while the call runs; `taken` would keep the reads of earlier runs in memory.
+        """Drop everything that is needed only while the call runs.
 
-        `keys` and `stored` equal the sets with these names, and share the memory of a table that is kept anyway.
+        `keys` and `stored` equal the sets with these names. They share the memory of a table that is kept anyway.
+        `taken` is dropped because it would keep the reads of earlier runs in memory.
         """
         self.finished = keys, stored
         self.keys, self.stored = set(), set()
         self.taken, self.arrivals, self.written = {}, set(), set()
 
     def _add_rest(self, inner: Reads) -> None:
-        """Merge the reads that do not depend on the current path, which is needed only once."""
+        """Merge the reads that do not depend on the current path; this is needed only once."""
         self.unreached |= inner.unreached
         self.single |= inner.single
         complete(self.objects, inner.objects)
@@ -116,7 +117,10 @@ class Reads:
 
 
 def complete(mine: dict[T, U], theirs: Mapping[T, U]) -> None:
-    """Add missing entries. The time is proportional to the size of `theirs`, usually the smaller mapping."""
+    """Add the entries of `theirs` that are missing.
+
+    The time is proportional to the size of `theirs`, which is usually the smaller mapping.
+    """
     if not mine:
         mine.update(theirs)
     elif not theirs.keys() <= mine.keys():

@@ -30,7 +30,7 @@ def intern(ctx: Interpreter, kind: str, key: Hashable, name: str = "") -> Obj:
 
 
 def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
-    """Return the newest object of an allocation site; merge the formerly newest one into the older ones."""
+    """Return the newest object of an allocation site; merge the object that was newest before into the older ones."""
     statement = frame.statement
     key = (frame.id, statement.id if statement is not None else -1, slot, *frame.turn)
     obj = ctx.objects.get((kind, key))
@@ -44,7 +44,10 @@ def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
 
 
 def renew(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
-    """Make an object the newest one of its allocation site: keep the former one as an older one if it is in use."""
+    """Make an object the newest one of its allocation site.
+
+    If the object that was newest before is in use, it is kept among the older ones.
+    """
     if obj.kind == "lib":
         if obj.fields:
             _age(ctx, obj, frame)
@@ -59,7 +62,7 @@ def renew(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
 
 
 def single(ctx: Interpreter, obj: Obj) -> bool:
-    """Return whether an object represents one concrete object. If it ceases to, this root runs again."""
+    """Return whether an object represents a single concrete object. This root runs again as soon as that changes."""
     if obj.many:
         return False
     if obj.kind in CONTAINING:
@@ -72,7 +75,7 @@ def single(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def one_of_many(ctx: Interpreter, obj: Obj) -> None:
-    """Let an object stand for several objects, such as all of its allocation site if callbacks refer to it."""
+    """Let an object stand for several objects, for example for all objects of its site if callbacks refer to it."""
     if not obj.many:
         obj.many = True
         ctx.shared.several.add(obj)
@@ -80,7 +83,7 @@ def one_of_many(ctx: Interpreter, obj: Obj) -> None:
 
 
 def _age(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
-    """Make pointers to the formerly newest object point to the summary of the older ones."""
+    """Make pointers to the object that was newest before point to the summary of the older ones."""
     ctx.store.reads.holders.setdefault(obj, len(obj.holders))
     replaced = _replaced(frame) if obj.kind != "lib" else ()
     holders = [
@@ -112,7 +115,7 @@ def _age(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
 
 
 def _replaced(frame: Frame) -> tuple[str, ...]:
-    """Return the local variables that the current statement assigns the new object to."""
+    """Return the local variables to which the current statement assigns the new object."""
     s = frame.statement
     if not isinstance(s, ir.Assign) or not isinstance(s.value, MAKING):
         return ()

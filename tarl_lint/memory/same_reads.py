@@ -14,7 +14,7 @@ from tarl_lint.memory.values import ABSENT, DATA, Key, Obj, Value
 def unchanged(
     reads: Reads, found: Mapping[Key, Value | None], stored: Mapping[Key, bool], store: Store, graph: Graph
 ) -> bool:
-    """Return whether all recorded reads (with values `found`, flags `stored`) would have the same results now."""
+    """Return whether all recorded reads would give the same results now: the values `found` and the flags `stored`."""
     if not (reads.unreached.isdisjoint(graph.live) and reads.single.isdisjoint(store.shared.several)):
         return False
     current, waited = store.now, store.waited
@@ -41,7 +41,7 @@ def unchanged(
 
 
 def _as_it_was(obj: Obj, stamp: int, store: Store) -> bool:
-    """Return whether no change of an object since a stamp is visible in the current state.
+    """Return whether all changes of an object since a stamp are invisible in the current state.
 
     Fields that the call itself added are visible only if another run left them in the shared memory.
     """

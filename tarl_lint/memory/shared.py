@@ -1,4 +1,4 @@
-"""The stores of all roots: the values that each root leaves for the others, and the roots that have read them."""
+"""The stores of all roots: the values that each root leaves for other roots, and the roots that read these values."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BORN: Final = "<born>"  # pseudo-field that marks an existing object
 class Root:
     """A unit of the worklist: a module, callback, timer, thread or entry point.
 
-    With `once`, it never runs concurrently with itself.
+    If `once` is True, the root never runs concurrently with itself.
     """
 
     key: Hashable
@@ -31,7 +31,7 @@ class Root:
     heeds: set[Key] = field(default_factory=set)
 
     def generations(self) -> int:
-        """Return the number of ancestors, by `maker`, with the same function."""
+        """Return the number of ancestors with the same function; `maker` is the parent of a root."""
         count, maker = 0, self.maker
         while maker is not None:
             count += maker.function is self.function
@@ -51,12 +51,13 @@ class Shared:
     readers: dict[Key, set[Root]] = field(default_factory=dict)
     joiners: dict[Key, set[Root]] = field(default_factory=dict)  # key → roots that only joined its value
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
-    doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
+    # object → roots that found no data inside the object
+    doubters: dict[Obj, set[Root]] = field(default_factory=dict)
     # object → roots that have relied on the object being a single concrete one, in order
     certain: dict[Obj, dict[Root, None]] = field(default_factory=dict)
     several: set[Obj] = field(default_factory=set)  # objects that now stand for several concrete ones
     dirty: set[Root] = field(default_factory=set)
-    # key → the one tuple that all records of calls share for it; otherwise each read would store its own tuple
+    # key → the tuple that all records of calls share for the key; otherwise each read would store its own tuple
     one: dict[Key, Key] = field(default_factory=dict)
     loaded: int = 0  # number of objects that turned out to hold data
     edition: int = 0  # number of changes so far to a class, a `from … import *` or a `__dict__`
@@ -71,7 +72,7 @@ class Shared:
     def entry(self, key: Key, root: Root, *, joining: bool = False) -> Value | None:
         """Return the initial value of a key for a root: the join of the stores of all other roots.
 
-        With `joining`, stores of the root itself do not make it run again.
+        With `joining`, the root's own stores do not make the root run again.
         """
         if joining:
             self.joiners.setdefault(key, set()).add(root)
@@ -91,7 +92,7 @@ class Shared:
         return result
 
     def others(self, key: Key, root: Root) -> Value | None:
-        """Return the join of the stores that other roots may make while this one waits."""
+        """Return the join of the stores that other roots may make while this root waits."""
         result: Value | None = None
         for table in (self.ends, self.pauses):
             for owner, value in table.get(key, {}).items():
@@ -105,7 +106,7 @@ class Shared:
         self.watchers.setdefault(obj, set()).add(root)
 
     def load(self, obj: Obj, root: Root) -> None:
-        """Mark an object, and all that contain it, as holding data."""
+        """Mark an object, and all objects that contain it, as holding data."""
         pending = [obj]
         while pending:
             current = pending.pop()
@@ -130,14 +131,14 @@ class Shared:
     def _others(self, roots: set[Root] | None, root: Root) -> set[Root]:
         """Return the readers to notify of a root's change.
 
-        The root itself is one only if it can run concurrently with itself.
+        The root itself is among the readers only if it can run concurrently with itself.
         """
         if not roots:
             return NOBODY
         return roots - {root} if root.once else roots
 
     def leave(self, table: dict[Key, dict[Root, Value]], root: Root, key: Key, value: Value) -> None:
-        """Store a root's value in a table; mark its readers dirty if it changed."""
+        """Store a root's value in a table; if the value changed, mark the roots that read it as dirty."""
         owners = table.setdefault(key, {})
         before = owners.get(root)
         after = value if before is None else join(before, value)

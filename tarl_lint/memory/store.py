@@ -35,8 +35,8 @@ def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - the signature o
 class Store:
     """The state of one root's run: writes go to the top layer, reads fall through to the shared memory.
 
-    `now` is the union of all layers, so that a read takes one look-up. For each layer, `hidden` has the values that
-    its keys had before; None if unset.
+    `now` is the union of all layers, so that a read takes one look-up. For each layer, `hidden` maps the keys of
+    the layer to their earlier values; None if unset.
     """
 
     shared: Shared
@@ -48,11 +48,11 @@ class Store:
     exchanged: dict[Key, Value] = field(default_factory=dict)  # key → its value when this root last waited
     foreign: dict[Key, Value] = field(
         default_factory=dict
-    )  # key → the part of its value that other roots stored while this one waited
+    )  # key → the part of its value that other roots stored while this root waited
     now: Delta = field(default_factory=dict)
     hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
     insides: dict[object, Inside] = field(default_factory=dict)  # cached results of `deep`
-    # small sets of objects from which `deep` visits many objects
+    # sets of few objects from which `deep` visits many objects
     wide: set[frozenset[Obj]] = field(default_factory=set)
     tick: int = 0  # number of changes so far to the part of the state that is outside frames
     split: dict[frozenset[Obj], Split] = field(default_factory=dict)
@@ -127,8 +127,8 @@ class Store:
     def former(self, key: Key, made: Made) -> Value | None:
         """Return the current value of a key to which another path stores, for the join with the value of that path.
 
-        If this run creates the object only on other paths, every run creates its own. Then the run's own stores to the
-        object's keys do not make the root run again, as long as only joins read these keys. `made` caches the
+        If this run creates the object only on other paths, every run creates an object of its own. As long as only
+        joins read the object's keys, the run's own stores to them do not make the root run again. `made` caches the
         results of the method `made` for this join.
         """
         if key in self.now or self.waited or not self._made_elsewhere(key[0].outermost or key[0], made):
@@ -154,13 +154,13 @@ class Store:
         return BORN in whole.fields and not self.made(whole, made)
 
     def isolated(self, obj: Obj) -> bool:
-        """Return whether no store of another run is visible inside an object now."""
+        """Return whether an object currently contains only stores of this run."""
         return not self.waited and self._new(obj.outermost or obj)
 
     def _new(self, obj: Obj) -> bool:
-        """Return whether the current path allocated an object; no other run has then stored to its unset fields.
+        """Return whether the current path allocated an object; then other runs have not stored to its unset fields.
 
-        Allocation clears all fields that were ever stored, so all other fields are unset everywhere.
+        Allocation clears every field to which any run has stored, so all other fields are unset everywhere.
         """
         return obj.kind in CLEARED and (obj, BORN) in self.now
 
@@ -310,7 +310,7 @@ class Store:
         return merged
 
     def admit(self, key: Key, mine: Value, news: Value) -> Value:
-        """Return a value joined with the value of other roots; record the part that only the others stored."""
+        """Return a value joined with the value of other roots; record the part that only other roots stored."""
         both = join(mine, news)
         if both is not mine:
             theirs = Value(both.deps - mine.deps, both.pts - mine.pts, frozenset())
@@ -335,8 +335,8 @@ class Store:
     def heard(self) -> dict[Key, Value]:
         """Return the values that other roots may store at the keys in `heeds`; constant during this root's run.
 
-        Keys to which no other root stores are left out, so that adding one to `heeds` does not change the result. The
-        result is not modified later; if keys are added, the next result is another dictionary.
+        Keys to which only this root stores are left out, so that adding such a key to `heeds` does not change the
+        result. The result is not modified later; if keys are added, the next result is another dictionary.
         """
         if self.hearing is None or self.unheard:
             news = (

@@ -13,7 +13,8 @@ from tarl_lint.parameter_names import MARK, ParameterName
 def text_of_parameter(known: list[ParameterName] | None, name: str, default: Value) -> Consts:
     """Return the text that stands for a parameter; None if the default is not a string.
 
-    If `known` is None, the names of parameters are not followed, and the default remains as one possible text.
+    If `known` is None, the analysis does not follow the names of parameters, and the default remains as one
+    possible text.
     """
     if known is None:
         return with_default(default)
@@ -26,7 +27,7 @@ def text_of_parameter(known: list[ParameterName] | None, name: str, default: Val
 
 
 def with_default(default: Value) -> Consts:
-    """Return the strings of a value that only the robot gives, with a default; None if the default is not a string."""
+    """Return the strings of a value known only on the robot, with a default; None if the default is not a string."""
     if default.pts or not default.names():
         return None
     return frozenset([GIVEN, *(default.consts or ())])

@@ -7,7 +7,7 @@ from tarl_lint.memory import heap, recency
 from tarl_lint.memory.heap import ANY, GIVEN_KEYS, HOLLOW, KEYS, RENAMING, item_field
 from tarl_lint.memory.values import BOTTOM, MEMBER, Obj, Value, in_order, join
 
-# maximum number of possible keys of one store into a mapping; with more, the store may change any element
+# maximum number of possible keys of one store into a mapping; with more keys, the store may change any element
 MAX_KEYS = 8
 
 
@@ -73,7 +73,10 @@ def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> Non
 
 
 def _default_key(ctx: Interpreter, base: Value, index: Value) -> frozenset[str]:
-    """Return the default of a key that only the robot knows; record in the mappings that it stands for the key."""
+    """Return the default of a key that is known only on the robot.
+
+    Record in the mappings that this default stands for the key.
+    """
     defaults = index.default_keys()
     if len(defaults) != 1 or not base.pts or any(o.kind != "mapping" for o in base.pts):
         return frozenset()
@@ -84,7 +87,7 @@ def _default_key(ctx: Interpreter, base: Value, index: Value) -> frozenset[str]:
 
 
 def _write_some(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
-    """Store into one of several elements: an element under a known key of a mapping, or else any element."""
+    """Store into one of several elements: under a known key of a mapping, into that element; else into any element."""
     constants = index.item_keys() or ()
     known = sorted(constants, key=repr) if len(constants) <= MAX_KEYS else []
     mappings = frozenset(o for o in base.pts if o.kind == "mapping" and known)

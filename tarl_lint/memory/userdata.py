@@ -33,7 +33,7 @@ def rename(ctx: Interpreter, state: Obj, names: Iterable[tuple[str, str]]) -> No
 
 
 def seen_through(ctx: Interpreter, view: Obj, name: str) -> tuple[Obj, str]:
-    """Return the shared object of a state's field, and its name there."""
+    """Return the shared object that holds a state's field, and the name of the field there."""
     ctx.store.reads.look(view)
     names = view.info if isinstance(view.info, dict) else {}
     shared = next(iter(userdata(ctx).pts))

@@ -15,17 +15,18 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import Reads, complete
 from tarl_lint.memory.values import Branches, Nodes
 
-MAX_NODES = 12_000  # number of nodes of a program above which content arrives without carriers
+MAX_NODES = 12_000  # if a program has more nodes than this, content arrives without carriers
 MAX_EDGES = (
-    200_000  # number of data edges of a program after which only FEW dependencies of a value get edges
+    200_000  # after this number of data edges in a program, at most FEW dependencies of a value get edges
 )
 FEW = 8
 MANY = 16  # maximum number of separate nodes in a field with weak updates; more nodes are merged
 MANY_CARRIERS = 64  # the same limit for a field that holds pointers to objects with content
 MERGED = "merged"  # role of the merged node of a field
 NOTHING: Set[int] = frozenset()
-CARRIED = 5  # number of carriers, or of items passed on by carriers, that count as one graph operation
-MAX_CARRIED = 500  # product of the numbers of items and carriers above which content arrives without carriers
+CARRIED = 5  # this number of carriers, or of items that carriers pass on, counts as one graph operation
+# content arrives without carriers if the number of items times the number of carriers is greater than this
+MAX_CARRIED = 500
 
 
 @dataclass(slots=True)
@@ -62,12 +63,12 @@ class Graph:
     data: list[set[int]] = field(default_factory=list)
     control: list[set[int]] = field(default_factory=list)
     branches: list[Branches] = field(default_factory=list)
-    # node → (node of the value, conditions that selected it)
+    # node → (node of the value, conditions that selected this value)
     gates: dict[int, tuple[int, Branches]] = field(default_factory=dict)
     counts: dict[int, set[int]] = field(
         default_factory=dict
     )  # node of a container's length → dependencies of the elements
-    # node that stands for another node, but without its conditions → that other node
+    # copy of a node that lacks the conditions of the node → the node itself
     stands_for: dict[int, int] = field(default_factory=dict)
     held: dict[int, set[int]] = field(default_factory=dict)
     numbers: dict[Hashable, int] = field(default_factory=dict)
@@ -119,7 +120,7 @@ class Graph:
             if dep == node:
                 self.depend(
                     node, [branch[0] for branch in mine]
-                )  # a value that depends on itself is computed in a loop, so it also depends on the loop's condition
+                )  # a value that depends on itself is computed in a loop, so it depends on the loop's condition as well
                 continue
             if dep in edges:
                 continue
@@ -142,7 +143,10 @@ class Graph:
         return node
 
     def under(self, dep: int, decision: int, instead: Branches) -> int:
-        """Return a copy of a node that has other conditions instead of a decision, for readers to which it applies."""
+        """Return a copy of a node for readers to which other conditions apply.
+
+        The copy has these conditions in place of a decision of the node.
+        """
         branches = self.branches[dep]
         left = frozenset(branch for branch in branches if branch[0] != decision)
         if len(left) == len(branches):
@@ -156,7 +160,7 @@ class Graph:
     def meets(self, key: Hashable, deps: Nodes, *, carriers: bool) -> bool:
         """Return whether a field has too many values for separate nodes, or has a merged node already.
 
-        With `carriers`, the values are pointers, for which the limit is MANY_CARRIERS.
+        With `carriers`, the values are pointers, and the limit is MANY_CARRIERS.
         """
         return len(deps) > (MANY_CARRIERS if carriers else MANY) or self.numbers.get(("merged", key)) in deps
 
@@ -177,7 +181,7 @@ class Graph:
                 self._choose(dep, self.branches[dep] - mine, node)
 
     def _choose(self, dep: int, choice: Branches, node: int) -> None:
-        """Add a gate: `node` depends on the conditions that selected `dep`, beyond its own conditions."""
+        """Add a gate: besides its own conditions, `node` depends on the conditions that selected `dep`."""
         gate = self.node((dep, choice), self.places[dep], self.branches[node])
         self.gates[gate] = (dep, choice)
         self.depend(gate, [branch[0] for branch in choice])
@@ -192,7 +196,7 @@ class Graph:
                 self._lead(decision, node)
 
     def begin(self, node: int) -> None:
-        """Make a node live, and with it everything that depends on it, now or later."""
+        """Make a node live, and also everything that depends on the node, now or later."""
         pending = [node]
         while pending:
             current = pending.pop()
@@ -208,9 +212,10 @@ class Graph:
             self.begin(node)
 
     def through(self, content: Nodes, carriers: Nodes) -> Nodes:
-        """Return content as passed on through carriers of a pointer.
+        """Return content after carriers of a pointer have passed it on.
 
-        If the content was already inside when a carrier passed the object on, a carry node takes its place.
+        If the content was already inside the object when a carrier passed the object on, a carry node replaces the
+        content.
         """
         if not content or not carriers or len(content) * len(carriers) > MAX_CARRIED:
             return content
@@ -245,7 +250,7 @@ class Graph:
         return found or {item}
 
     def _consulting(self, find: Callable[[], Nodes]) -> Arrival:
-        """Call a function; return its result with the carriers that it consulted."""
+        """Call a function; return its result, and the carriers that the function consulted."""
         reads = self.reads
         outer = reads.held, reads.arrivals
         reads.held, reads.arrivals = {}, set()
@@ -254,7 +259,7 @@ class Graph:
         return found
 
     def _still(self, known: Arrival) -> bool:
-        """Return whether no carrier has passed on more since a result was computed."""
+        """Return whether every carrier has passed on the same nodes as when a result was computed."""
         if known.grown != self.grown:
             self.asked += len(known.consulted) // CARRIED
             if not self.as_passed(known.consulted):
@@ -277,7 +282,7 @@ class Graph:
         complete(self.reads.held, known.consulted)
 
     def _through(self, content: Nodes, carriers: Nodes) -> Nodes:
-        """Return content as passed on through carriers; create the necessary carry nodes."""
+        """Return content after carriers have passed it on; create the necessary carry nodes."""
         self.asked += len(carriers) // CARRIED
         self._consult(carriers)
         found: set[int] = set()
@@ -303,7 +308,7 @@ class Graph:
         return self.made > MAX_NODES
 
     def _consult(self, carriers: Nodes) -> None:
-        """Record a dependency on the number of nodes passed on by each carrier, and by the carriers of carriers."""
+        """Record a dependency on the number of nodes passed on by each carrier, and by the carriers of the carriers."""
         noted, held, carried = self.reads.held, self.held, self.carried
         for carrier in carriers:
             while carrier not in noted:
@@ -313,7 +318,7 @@ class Graph:
                     carrier = carried[carrier][1]
 
     def passed_by(self, carrier: int) -> int:
-        """Return the number of nodes inside the objects that a carrier passed on; it never decreases."""
+        """Return the number of nodes inside the objects that a carrier passed on. This number never decreases."""
         return len(self.held.get(carrier, NOTHING))
 
     def free(self, node: int) -> bool:
@@ -321,7 +326,7 @@ class Graph:
         return not self.control[node]
 
     def _first(self, carrier: int) -> int:
-        """Return the first carrier of a chain. Content that it did not hold has not come along this chain."""
+        """Return the first carrier of a chain. Only content that this carrier held can have come along the chain."""
         while carrier in self.carried:
             carrier = self.carried[carrier][1]
         return carrier
@@ -344,7 +349,7 @@ class Graph:
         self.ways_through.clear()
 
     def _by(self, carrier: int, item: int) -> Nodes | set[int]:
-        """Return an item as passed on by one carrier; empty if it was not inside the object at that time."""
+        """Return an item as passed on by one carrier; empty if the item was not yet inside the object at that time."""
         parts = self.carried.get(carrier)
         if parts is None:
             return {self._carry(carrier, item)} if item in self.held.get(carrier, ()) else set()

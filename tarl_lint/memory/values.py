@@ -15,7 +15,7 @@ Consts = frozenset[object] | None  # None if the constants are unknown
 Branches = frozenset[tuple[int, str]]
 
 NONE: Nodes = frozenset()
-# constants of a value that is certainly an object: no constant is possible, not even None
+# constants of a value that is certainly an object: such a value cannot be a constant, and in particular not None
 NO_CONSTANTS: frozenset[object] = frozenset()
 BY_CLASS: Final = "by its class"  # `info` of an instance of a library class, usually a message
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
@@ -24,7 +24,7 @@ NUMBER: Final = attrgetter("number")
 MAX_CONSTS = 4
 MAX_TEXTS = 64  # maximum number of string constants of a value; enough for a table of topic names
 MAX_DEPTH = 6  # maximum nesting depth of embedded objects
-# maximum depth to which nested elements are tracked separately; a larger one would create exponentially many objects
+# maximum depth to which nested elements are tracked separately; the number of objects grows exponentially with it
 MAX_ELEMENTS = 2
 MAX_CELLS = 16  # maximum number of nested elements tracked separately in a library object, such as a matrix
 DATA: Final = "<data>"  # entry of `Obj.changes`: the object received its first data
@@ -69,7 +69,7 @@ class Obj:
         self.elements: int = parent.elements + 1 if parent is not None and name.startswith("[") else 0
         self.many: bool = parent.many if parent is not None else False
         # field → objects that were stored there last, in the order of the first stores; `holders` and `inside` of
-        # these objects are up to date, so storing them again changes nothing
+        # these objects are up to date, so storing the same objects again changes nothing
         self.fields: dict[str, frozenset[Obj]] = {}
         self.subs: dict[str, Obj] = {}
         self.holders: dict[tuple[Obj, str], None] = {}  # keys that ever held a pointer to this object
@@ -89,7 +89,7 @@ class Obj:
         self.inside: dict[Obj, None] = {}
 
     def sub(self, name: str) -> Obj:
-        """Return the object embedded under a field; beyond MAX_DEPTH, the object itself stands for its parts."""
+        """Return the object embedded under a field; at depth MAX_DEPTH, the object itself also stands for its parts."""
         if self.depth >= MAX_DEPTH or (self.elements >= MAX_ELEMENTS and name.startswith("[")):
             return self
         found = self.subs.get(name)
@@ -212,40 +212,40 @@ class Value:
         return self.constant()[0]
 
     def keys(self) -> Consts:
-        """Return its constants; None if it may be anything else, such as a string that the launch determines."""
+        """Return the constants of a value; None if others are possible, such as a string that the launch determines."""
         return None if self.consts and any(type(c) is Symbolic for c in self.consts) else self.consts
 
     def item_keys(self) -> Consts:
-        """Return its constants, classes and members as indices; None if it may be anything else."""
+        """Return the constants, classes and members that a value may be as an index; None if others are possible."""
         if not self.pts:
             return self.keys()
         known = all(o.kind == "class" or o.name == MEMBER for o in self.pts)
         return frozenset(ClassKey(o.key) for o in self.pts) if known else None
 
     def default_keys(self) -> frozenset[str]:
-        """Return the defaults of a text that only the robot knows; empty for other values."""
+        """Return the defaults of a text that is known only on the robot; empty for other values."""
         replaceable = not self.pts and self.keys() is None and self.replaceable()
         return frozenset(self.names()) if replaceable else frozenset()
 
     def consts_in(self, other: Value) -> bool:
-        """Return whether the constants of this value are a subset of another's."""
+        """Return whether each constant of this value is also a constant of another value."""
         return other.consts is None or (self.consts is not None and self.consts <= other.consts)
 
     def texts(self) -> tuple[str, ...]:
-        """Return its possible strings, sorted; empty if it may be anything else."""
+        """Return the possible strings of a value, sorted; empty if it may be anything else."""
         return self.names() if self.keys() is not None else ()
 
     def names(self) -> tuple[str, ...]:
-        """Return its possible strings, sorted, including those that the launch of the node determines.
+        """Return the possible strings of a value, sorted, including those that the launch of the node determines.
 
-        A string that only the robot gives is left out; the other strings are then defaults.
+        A string that is known only on the robot is left out; the other strings are then defaults.
         """
         if self.consts is None or not all(isinstance(c, str) for c in self.consts):
             return ()
         return tuple(sorted(str(c) for c in self.consts if GIVEN not in str(c)))
 
     def replaceable(self) -> bool:
-        """Return whether another string that only the robot gives may take the place of the known ones."""
+        """Return whether the actual string is known only on the robot, and may be different from the known strings."""
         return self.consts is not None and any(isinstance(c, str) and GIVEN in c for c in self.consts)
 
 
@@ -260,7 +260,7 @@ ABSENT = Value(consts=frozenset(["<absent>"]))  # value of an unset field of a n
 
 
 def join(a: Value, b: Value) -> Value:
-    """Return the join of two values; `a` itself if it covers `b`."""
+    """Return the join of two values; this is `a` itself if `a` covers `b`."""
     if a is b or b is BOTTOM:
         return a
     if a is BOTTOM:
@@ -299,7 +299,7 @@ def pointer(obj: Obj, deps: Nodes = NONE) -> Value:
 
 
 def const(value: object) -> Value:
-    """Return a value of one constant; unknown if the constant is not hashable."""
+    """Return a value of one constant; the value is unknown if the constant is not hashable."""
     try:
         return Value(consts=frozenset([value]))
     except TypeError:
@@ -308,7 +308,7 @@ def const(value: object) -> Value:
 
 @dataclass(slots=True, eq=False)
 class ClassInfo:
-    """A class of the analysed files. `opaque` if a base class is not among them."""
+    """A class of the analysed files. It is `opaque` if one of its base classes is not among the analysed files."""
 
     name: str
     qualname: str
@@ -318,12 +318,13 @@ class ClassInfo:
     module: str = ""
     # names with an annotation in the body: the fields, if the class is a dataclass
     fields: tuple[str, ...] = ()
-    metaclass: Obj | None = None  # the analysed class that makes this class and those that inherit from it
+    # the analysed metaclass of this class and of the classes that inherit from it
+    metaclass: Obj | None = None
     named: bool = False  # whether the class is a named tuple, whose fields are also elements
 
     @property
     def opaque(self) -> bool:
-        """Return whether code outside the files can access its instances' attributes and call its methods."""
+        """Return whether code outside the files can access attributes and call methods of the class's instances."""
         inherited = any(isinstance(b.info, ClassInfo) and b.info.opaque for b in self.bases)
         return inherited or any(not _plain(e) for e in self.external)
 
@@ -349,7 +350,7 @@ def function_of(target: Obj) -> ir.Function | None:
 
 
 def _plain(base: str) -> bool:
-    """Return whether a library class calls no methods of subclasses, such as exceptions and containers."""
+    """Return whether a library's class calls no methods of its subclasses. Examples are exceptions and containers."""
     return base in PLAIN_BASES or base.startswith("builtins.")
 
 

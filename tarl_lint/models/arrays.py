@@ -26,7 +26,8 @@ def computed(
 ) -> Value | None:
     """Return the new array that an arithmetic operator makes of an array; None if no operand is one.
 
-    The result counts as made without data even if the operands hold data: a library may fill it as well.
+    The result counts as made without data even if the operands hold data, because a library may fill the result as
+    well.
     """
     if expr.operator not in ARITHMETIC:
         return None

@@ -1,4 +1,4 @@
-"""Models of py_trees: composites and decorators, whose children run in an order that statuses decide."""
+"""Models of py_trees: composites and decorators. The statuses of their children decide the order of execution."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SUCCESS, FAILURE, RUNNING = "SUCCESS", "FAILURE", "RUNNING"
 STATUSES: Final = frozenset([SUCCESS, FAILURE, RUNNING])
 PLACES: Final = ("py_trees.composites", "py_trees")
 CHAINS: Final[Mapping[str, str]] = {"Sequence": SUCCESS, "Selector": FAILURE, "Chooser": FAILURE}
-# decorator → the statuses that it replaces
+# decorator → the statuses of its child that the decorator replaces
 RENAMES: Final[Mapping[str, Mapping[str, str]]] = {
     "Inverter": {SUCCESS: FAILURE, FAILURE: SUCCESS},
     "FailureIsRunning": {FAILURE: RUNNING},
@@ -34,7 +34,7 @@ RENAMES: Final[Mapping[str, Mapping[str, str]]] = {
 }
 COMPOSITES: Final = tuple(f"{place}.{name}" for place in PLACES for name in (*CHAINS, "Parallel"))
 DECORATORS: Final = tuple(f"py_trees.decorators.{name}" for name in RENAMES)
-# behaviours of the library with one status
+# behaviours of the library that always have the same status
 CONSTANT: Final[Mapping[str, str]] = {"Success": SUCCESS, "Failure": FAILURE, "Running": RUNNING}
 CONSTANTS: Final = tuple(f"py_trees.behaviours.{name}" for name in CONSTANT)
 COMPARISON: Final = "py_trees.common.ComparisonExpression"
@@ -69,7 +69,7 @@ def decorator(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _made(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the new object of a library's class, which keeps no data of its children."""
+    """Return the new object of a class of a library. The object keeps no data of its children."""
     return pointer(recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot)))
 
 
@@ -112,7 +112,7 @@ def add(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
 
 
 def _kind(target: Obj) -> str | None:
-    """Return the composite from which the class of an instance inherits; None for other objects."""
+    """Return the name of the composite from which the class of an instance inherits; None for other objects."""
     if (
         target.kind != "instance"
         or not isinstance(target.info, Obj)
@@ -124,7 +124,7 @@ def _kind(target: Obj) -> str | None:
 
 
 def inherit(ctx: Interpreter, target: Obj, it: Invocation) -> None:
-    """Note the children that an instance passes to the constructor of a composite from which it inherits."""
+    """Note the children that an instance passes to the constructor of its base class, if this is a composite."""
     kind = _kind(target)
     if kind is not None:
         group = parts.group_of(ctx, target, _new_group(kind))

@@ -21,7 +21,7 @@ from tarl_lint.trees import walk
 
 # maximum depth to which nested mappings and sequences, such as the constraints of a solver, are searched for callables
 MAX_INSIDE: Final = 3
-# number of slots for the callables of one call; they differ from the slots of the calls in the code
+# number of slots for the callables of one call; these slots differ from the slots of calls in the code
 KEPT_APART: Final = 500
 INSIDE: Final = ("sequence", "mapping")  # kinds of objects in which callables are searched
 # attribute of a handler in which libraries store the server that made the handler
@@ -60,7 +60,7 @@ def _nested(ctx: Interpreter, values: Iterable[Value]) -> list[Obj]:
 
 
 def notify(ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-    """Let an object of a library call its observers, which it gets now, with the data that it has or will get.
+    """Let an object of a library call the observers that it gets now, with the data that it has or gets later.
 
     The object itself represents this data.
     """
@@ -156,9 +156,9 @@ def returned(
 
 
 def _opaque(ctx: Interpreter, arguments: Arguments, base: Value, called: Set[Obj] = frozenset()) -> Value:
-    """Return a value that a library may pass: data of all its arguments, and any message or object among them.
+    """Return a value that a library may pass to a callable: data of all arguments, and any message or object in them.
 
-    An instance that the library calls is left out, since it is the callee and not an argument.
+    If the library calls an instance, this instance is left out, since it is the callee and not an argument.
     """
     plain, named = arguments
     objects: set[Obj] = set()
@@ -196,7 +196,7 @@ def hold(ctx: Interpreter, objects: Iterable[Obj], targets: Sequence[Obj]) -> No
 
 
 def held_by(ctx: Interpreter, base: Value) -> list[Obj]:
-    """Return the callables that were passed to library objects earlier, or that a library's decorator replaced."""
+    """Return the callables that were passed to library objects earlier, or that a decorator of a library replaced."""
     found = [v for o in base.pts if o.kind == "lib" and (v := ctx.store.get((o, HELD))) is not None]
     return in_order(frozenset(o for v in found for o in v.pts) | (base.pts & ctx.handed_over))
 

@@ -1,4 +1,4 @@
-"""The command line of a launched node: `sys.argv`, and the lists that a program makes of it.
+"""The command line of a launched node: `sys.argv`, and the lists that a program makes from it.
 
 The command-line arguments are constants, so topic names among them are known. In lists that the program makes
 by selecting or grouping arguments, each element is tracked separately.
@@ -29,7 +29,11 @@ def own_arguments(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def counted(ctx: Interpreter, it: Invocation) -> Value:
-    """Return `range(...)`: its numbers one by one if few, and if known to matter or in a run for a launch file."""
+    """Return `range(...)`.
+
+    Its numbers are listed one by one if they are few, and if they are known to matter or the run is for a launch
+    file.
+    """
     each = ctx.launching or sizes.counts(ctx, it.frame)
     found = [value.constant()[1] for value in it.arguments[0] if each]
     given = [one for one in found if isinstance(one, int)]

@@ -40,7 +40,7 @@ STREAMS = frozenset(["stdin", "stdout", "stderr"])
 IN_MEMORY = "io."  # beginning of the names of the classes of streams in memory
 # beginnings of the names of library classes whose objects record the name of their class
 NAMED = (IN_MEMORY, "subprocess.Popen", "pexpect.spawn")
-APPENDED = "<appended>"  # field of a list: its length before the first subscriber was appended
+APPENDED = "<appended>"  # field of a list: the length of the list before the first subscriber was appended
 MOVING = frozenset(
     ["insert", "appendleft", "extendleft", "sort"]
 )  # methods that move the elements of a sequence
@@ -90,7 +90,7 @@ def mutate(
 
 
 def _append(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
-    """Append an element at its own index if the index is known and matters."""
+    """Append an element; if the index is known and matters, the element is stored at its own index."""
     place = _next_place(ctx, base, plain, frame)
     if place is not None:
         updates.write_item(ctx, base, const(place), through_statement(ctx, plain[0], frame, call))
@@ -114,9 +114,9 @@ def _extend(
 def _prepare(
     ctx: Interpreter, base: Value, name: str, news: Sequence[Value], frame: Frame, call: ir.Call
 ) -> None:
-    """Let the elements of sequences be at other places; let the length of sets depend on added elements.
+    """Prepare containers for a new element: elements of sequences may move, and the length of a set depends on it.
 
-    An element that equals another one does not count in a set.
+    A set ignores an added element that equals another element.
     """
     decided = removal.decision(ctx, frame, call.slot, counts=base.deps) if name in MOVING else None
     added = frozenset[int]().union(*(_compared(ctx, value) for value in news)) if name == "add" else NONE
@@ -128,7 +128,10 @@ def _prepare(
 
 
 def _compared(ctx: Interpreter, value: Value) -> Nodes:
-    """Return the data that decides whether an element equals others; an instance without `__eq__` equals none."""
+    """Return the data that decides whether an element equals another one.
+
+    An instance without `__eq__` equals no other element.
+    """
     own = frozenset(o for o in value.pts if o.kind == "instance" and not _equals(ctx, o))
     return ctx.use(Value(value.deps, value.pts - own))
 
@@ -150,7 +153,7 @@ def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> No
 
 
 def _next_place(ctx: Interpreter, base: Value, values: list[Value], frame: Frame) -> int | None:
-    """Return the list index of the element that this iteration of an unrolled loop appends; None if it is not known."""
+    """Return the list index at which this iteration of an unrolled loop appends an element; None if it is not known."""
     if len(values) != 1 or frame.statement not in frame.steps:
         return None
     known = sizes.unpacked(ctx, base)
@@ -173,9 +176,10 @@ def _subscribers(values: list[Value]) -> bool:
 
 
 def _append_subscriber(ctx: Interpreter, base: Value, subscriber: Value, frame: Frame, call: ir.Call) -> None:
-    """Append a subscriber at its own index, since a synchroniser passes one message for each, in this order.
+    """Append a subscriber at its own index.
 
-    If an earlier `append` was conditional, this subscriber may also have the index of that one, or a later index.
+    The index matters, since a synchroniser passes one message for each subscriber, in this order. If an earlier
+    `append` was conditional, this subscriber may also have the index of that one, or a later index.
     """
     known = sizes.unpacked(ctx, base)
     if known is None or len(known) >= sizes.MAX_KNOWN or any(v.pts & subscriber.pts for v in known):
@@ -203,14 +207,14 @@ def flag(ctx: Interpreter, it: Invocation) -> None:
 
 
 def _transmit(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
-    """Write to a port, file or socket, which stores the data but does not return it when read."""
+    """Write to a port, file or socket. The object stores the data, but a read from it does not return this data."""
     news = through_statement(ctx, join_all(plain), frame, call) if plain else BOTTOM
     for obj in base.objects if news is not BOTTOM else ():
         updates.weaken(ctx, obj, SENT, news)
 
 
 def received(ctx: Interpreter, base: Value, arguments: Arguments) -> Nodes:
-    """Return the dependencies of a read from a port, file or socket; the data written to it is not among them."""
+    """Return the dependencies of a read from a port, file or socket. Data written to the object is left out."""
     deps = base.deps | call_contexts.all_used(ctx, arguments)
     for obj in base.objects:
         deps |= heap.content(ctx, obj).deps
@@ -258,7 +262,7 @@ def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: F
 def through_statement(
     ctx: Interpreter, value: Value, frame: Frame, call: ir.Call, number: Hashable = 0
 ) -> Value:
-    """Pass a value that a call stores through a node of the calling statement."""
+    """Pass a value through a node of the calling statement, because a call stores the value."""
     if frame.statement is None:
         return value
     return ctx.carry(value, ctx.node(frame, ("stored", call.slot, number), "call"))
@@ -277,7 +281,7 @@ def _read_get(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _from_queue(ctx: Interpreter, it: Invocation) -> Value:
-    """Return an element of a queue, for which the call waits, or an entry of a mapping."""
+    """Return an element of a queue, or an entry of a mapping. For a queue, the call waits for the element."""
     if not it.base.pts or any(o.kind != "sequence" for o in it.base.pts):
         return _read_get(ctx, it)
     if any(it.arguments):
@@ -308,7 +312,7 @@ def _take_out(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _removed(ctx: Interpreter, it: Invocation) -> Value:
-    """Remove an element by its value; the remaining ones depend on the value. `discard` may find none."""
+    """Remove an element by its value. The remaining elements depend on the value. `discard` may find no element."""
     decides = call_contexts.all_used(ctx, it.arguments) | ctx.use(elements_of_any(ctx, it.base))
     counts = it.base.deps | (decides if it.name == "discard" else NONE)
     decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=counts)
@@ -352,7 +356,7 @@ def elements_of_any(ctx: Interpreter, base: Value) -> Value:
 
 
 def _known_entries(ctx: Interpreter, it: Invocation) -> Sequence[tuple[Value, Value]] | None:
-    """Return the keys and values of a mapping in order, if they are certain: parameters or the body of a class."""
+    """Return the keys and values of a mapping in order, if they are certain: for parameters, or the body of a class."""
     told = launched.entries(ctx, it.base)
     return told if told is not None else rows.attributes(ctx, it.base)
 
@@ -453,7 +457,7 @@ def counted_elements(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def made_of(ctx: Interpreter, value: Value) -> Nodes:
-    """Return the dependencies of elements, without the contents of analysed objects."""
+    """Return the dependencies of elements, without the contents of objects of the analysed classes."""
     found = elements_of_any(ctx, value)
     return ctx.use(Value(found.deps, frozenset(o for o in found.pts if o.kind != "instance")))
 
@@ -469,7 +473,7 @@ def new_queue(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def new_pipe(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the two ends of a pipe or channel. One object represents both: what is sent comes out again."""
+    """Return the two ends of a pipe or channel. One object represents both ends: data that is sent comes out again."""
     end = new_queue(ctx, it)
     obj = recency.allocate(ctx, "sequence", it.frame, ("ends", it.call.slot))
     for number in range(2):
@@ -478,7 +482,7 @@ def new_pipe(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def is_device(obj: Obj) -> bool:
-    """Return whether reading from a library object returns data other than what was written to it."""
+    """Return whether a read from a library object returns data other than the data written to it."""
     return obj.kind == "lib" and not obj.name.startswith(IN_MEMORY) and obj.name not in PROCESSES
 
 

@@ -16,7 +16,10 @@ _GIVEN, _REST = item_field(0), item_field(1)
 
 
 def entered(ctx: Interpreter, manager: Value) -> tuple[Value, Value]:
-    """Return what `with` binds, and the functions that run after its body; other managers return themselves."""
+    """Return the value that `with` binds, and the functions that run after its body.
+
+    For other managers, the value is the manager itself.
+    """
     if not manager.pts or any(o.kind != "sequence" for o in manager.pts):
         return manager, BOTTOM
     value, rest = BOTTOM, BOTTOM
@@ -49,7 +52,7 @@ def _rest(ctx: Interpreter, obj: Obj) -> Value | None:
 
 
 def put_on_stack(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what `stack.enter_context(manager)` returns; what runs after the body is kept in the stack."""
+    """Return the result of `stack.enter_context(manager)`; the stack keeps the functions that run after the body."""
     value, rest = entered(ctx, it.arguments[0][0] if it.arguments[0] else UNKNOWN)
     for obj in it.base.objects if rest.pts else ():
         before = ctx.store.get((obj, LEAVE)) or BOTTOM
@@ -64,7 +67,7 @@ def kept_on_stack(ctx: Interpreter, stack: Value) -> Value:
 
 
 def leave(ctx: Interpreter, rest: Value, frame: Frame, pos: ir.Pos, number: int) -> None:
-    """Run the part of generators after their `yield`."""
+    """Run the part of each generator that follows its `yield`."""
     if rest.pts:
         call = ir.Call(ir.Const(None, pos), (), (), pos, dunder_methods.slot(LEAVE, pos) - number)
         ctx.ops.call_value(ctx, rest, ([], {}), frame, call)

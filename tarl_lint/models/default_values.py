@@ -11,12 +11,13 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.symbolic_names import with_default
 from tarl_lint.memory.values import Value, pointer
 
-MAX_ENTRIES: Final = 64  # maximum number of entries of a default that are copied, over all of its levels
+# maximum number of entries that are copied from a default, over all levels of nesting
+MAX_ENTRIES: Final = 64
 CONTAINERS: Final = frozenset(["sequence", "mapping"])
 
 
 def replaceable(ctx: Interpreter, default: Value, frame: Frame, slot: Hashable) -> Value | None:
-    """Return a copy of a list or mapping whose texts are defaults, since only the robot knows the actual texts.
+    """Return a copy of a list or mapping in which all texts are defaults: the actual texts are known only on the robot.
 
     Numbers in the copy are unknown. Return None for other values, and for empty and large containers.
     """

@@ -1,8 +1,9 @@
 """Drawings of matplotlib: whatever is drawn into a part of a figure is also in the figure and in its image.
 
-Axes, lines and canvases refer to their figure, and the functions of `pyplot` to the current one. All of them are
-therefore one object, even where a program has several figures. Programs that are run have one object each, because
-they are separate processes; the drawings of other modules are one object that all programs share.
+Axes, lines and canvases refer to their figure, and the functions of `pyplot` to the current one. One object
+therefore represents all of them, even if a program has several figures. Each program that is run has its own
+object, because programs are separate processes. Drawings of other modules are represented by one object that all
+programs share.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ DRAWS: Final = re.compile(
 )  # names of functions that draw
 OTHER_WINDOWS: Final = frozenset(
     ["cv2", "PIL", "open3d", "pygame", "tkinter", "turtle"]
-)  # draw without matplotlib
+)  # functions that draw without matplotlib
 RUN: Final = "__main__"  # a file that is run as a program contains this text
 
 
@@ -64,7 +65,7 @@ def _of_program(ctx: Interpreter) -> frozenset[Obj]:
 def drawn_into(
     ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Value | None:
-    """Return the drawing after a call of a method of one of its parts; None for other objects."""
+    """Return the drawing after a call of a method of a part of the drawing; None for other objects."""
     if not base.pts or not all(map(is_drawing, base.pts)):
         return None
     return _changed(ctx, Value(base.deps, _wholes(base.pts)), arguments, frame, call)
@@ -73,8 +74,8 @@ def drawn_into(
 def pass_to_function(ctx: Interpreter, it: Invocation, *, unused: bool) -> None:
     """Draw data that a library's function draws into the axes that it gets, or into the current figure.
 
-    Examples are `show(image, ax=axes)` and `vis_image(image)`. A function that gets no axes draws if its name says so,
-    its result is unused and the module imports `pyplot`.
+    Examples are `show(image, ax=axes)` and `vis_image(image)`. A function that gets no axes is assumed to draw if
+    its name says so, its result is unused, and the module imports `pyplot`.
     """
     given = [*it.arguments[0], *it.arguments[1].values()]
     wholes = _wholes(o for v in given for o in v.pts if is_drawing(o))
@@ -99,7 +100,7 @@ def _wholes(parts: Iterable[Obj]) -> frozenset[Obj]:
 
 
 def _changed(ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-    """Draw the arguments, and store the drawing into buffers that are written."""
+    """Draw the arguments; if the call writes into buffers, store the drawing into these."""
     inside = ctx.use(Value(pts=base.pts))
     if isinstance(call.function, ir.Attribute) and call.function.name in SAVING:
         for value, expr in zip(arguments[0][:1], call.arguments[:1], strict=False):

@@ -23,7 +23,7 @@ def tree(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def subelement(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a new element, which is part of its parent."""
+    """Return a new element as a part of its parent."""
     plain, named = it.arguments
     made = ctx.ops.generic(ctx, it.name, (plain[1:], named), it.frame, it.call)
     if plain and made.pts:

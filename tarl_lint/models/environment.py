@@ -1,6 +1,6 @@
 """Texts of the environment and the command line, with their defaults.
 
-A default is the text used unless the robot gives another one, so topics named by it are known.
+A default is the text that is used if the robot gives no other text, so topics with this name are known.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ ADDING = "add_argument"
 
 
 def variable(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a variable of the environment: any text, or the default."""
+    """Return the value of a variable of the environment: any text, or the default."""
     made = ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
     plain, named = it.arguments
     default = plain[1] if len(plain) > 1 else named.get("default", BOTTOM)

@@ -15,7 +15,7 @@ from tarl_lint.models import arrays, containers, sizes
 
 
 def fill(ctx: Interpreter, it: Invocation, *, dropped: bool) -> None:
-    """Let a library call fill its arguments; `dropped` says that its result is not used.
+    """Let a library call fill its arguments; `dropped` means that the result of the call is not used.
 
     Empty lists have no other purpose in such a call: they receive the data of all arguments. Arrays that the program
     made without data receive the data of the other arguments, unless the name says that the call only uses them.
@@ -37,7 +37,7 @@ def fill(ctx: Interpreter, it: Invocation, *, dropped: bool) -> None:
 
 
 def pass_on(ctx: Interpreter, it: Invocation) -> None:
-    """Let an object that writes into a stream in memory, such as a `ZipFile`, pass on what its method gets."""
+    """Let an object that writes into a stream in memory, such as a `ZipFile`, pass on the data that its method gets."""
     streams = join_all(held for obj in it.base.objects if (held := ctx.store.get((obj, STREAM))) is not None)
     if streams.pts and not reads(it.name):
         news = Value(call_contexts.all_used(ctx, it.arguments))
@@ -83,7 +83,7 @@ def _is_stream(value: Value) -> bool:
 
 
 def stream_itself(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the stream of `csv.writer(stream)`: what the writer gets is in the stream."""
+    """Return the stream of `csv.writer(stream)`: data that the writer gets is in the stream."""
     given = it.arguments[0]
     if given and _is_stream(given[0]):
         return given[0]

@@ -1,6 +1,6 @@
 """Numbers that are fixed when a node starts: read from a file or the environment, or computed from constants.
 
-Flows do not need them. A thorough run records them, so that a repair can change them as it changes constants.
+Flows do not need these numbers. A thorough run records them, so that a repair can change them like constants.
 """
 
 from __future__ import annotations

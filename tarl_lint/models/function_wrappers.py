@@ -1,4 +1,4 @@
-"""Models of `functools.wraps` and `functools.update_wrapper`: a wrapper shows the attributes of its function."""
+"""Models of `functools.wraps` and `functools.update_wrapper`: a wrapper has the attributes of its function."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def wraps(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def update_wrapper(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the wrapper, whose other attributes are those of the wrapped function."""
+    """Return the wrapper; attributes that it does not set itself are those of the wrapped function."""
     wrapper, wrapped = it.argument((0, "wrapper")), it.argument((1, "wrapped"))
     functions = frozenset(o for o in wrapped.pts if o.kind in ("closure", "bound"))
     if functions and any(o.kind == "closure" for o in wrapper.pts):

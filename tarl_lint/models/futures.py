@@ -37,7 +37,10 @@ def _result(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _is_done(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `done()`, which depends on the conditions of setting the result, not on the result."""
+    """Return the value of `done()`.
+
+    It depends on the conditions under which the result is set, but not on the result.
+    """
     node = ctx.node(it.frame, ("done", it.call.slot), "call")
     deps = it.base.deps
     for obj in it.base.objects:

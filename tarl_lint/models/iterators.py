@@ -61,7 +61,7 @@ def zipped_elements(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _numbers(it: Invocation, count: int) -> list[Value] | None:
-    """Return the numbers of the elements of `enumerate`; None if the first one is not known."""
+    """Return the numbers that `enumerate` gives to its elements; None if the first number is not known."""
     plain, named = it.arguments
     known, first = plain[1].constant() if len(plain) > 1 else named.get("start", const(0)).constant()
     return [const(first + n) for n in range(count)] if known and isinstance(first, int) else None
@@ -100,7 +100,7 @@ def rows_of(ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation) -
 def rows_in_any_order(
     ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation, length: Nodes
 ) -> Value:
-    """Return a sequence of tuples of which neither the order nor the presence of each is certain."""
+    """Return a sequence of tuples; neither their order nor the presence of each tuple is certain."""
     obj = recency.allocate(ctx, "sequence", it.frame, ("pairs", it.call.slot))
     for number, row in enumerate(rows):
         pair = recency.allocate(ctx, "sequence", it.frame, ("pair", it.call.slot, number))
@@ -166,7 +166,7 @@ def gate(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> Node
 
 
 def next_element(ctx: Interpreter, it: Invocation) -> Value:
-    """Return an element of an iterator; with a default, whether there is one decides."""
+    """Return an element of an iterator. If the call has a default, whether there is an element decides the result."""
     plain = it.arguments[0]
     element = heap.elements(ctx, plain[0])
     if len(plain) == 1:
@@ -176,7 +176,7 @@ def next_element(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def asked(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `bool(x)`, `any(xs)` or `all(xs)`; whether an object exists is not data."""
+    """Return the value of `bool(x)`, `any(xs)` or `all(xs)`. Whether an object exists does not count as data."""
     if not it.arguments[0]:
         return UNKNOWN
     value = it.arguments[0][0]

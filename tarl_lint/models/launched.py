@@ -25,7 +25,7 @@ _NOTHING: Final = object()
 
 
 def value_of(ctx: Interpreter, name: str) -> object:
-    """Return the value that the launch gives a parameter; DEFAULT if it gives none, ELSEWHERE if that is unknown."""
+    """Return the value that the launch gives a parameter; DEFAULT if it gives none, ELSEWHERE if it is unknown."""
     if name in ctx.fixed:
         given = ctx.fixed[name]
         return list(given) if isinstance(given, tuple) else given
@@ -89,7 +89,7 @@ def entries(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | None:
 
 
 def entry(ctx: Interpreter, base: Value, key: Value) -> Value | None:
-    """Return the entry of a mapping that the launch gives; None if it has no such entry, or for other objects."""
+    """Return the entry of a mapping that the launch gives; None for other objects, and if there is no such entry."""
     known, constant = key.constant()
     obj = next(iter(base.pts)) if len(base.pts) == 1 else None
     if not known or obj is None or obj.kind != "mapping" or obj.name != GIVEN:

@@ -92,7 +92,10 @@ def call_library(
 
 
 def _configured(ctx: Interpreter, qualified: str) -> Fact | None:
-    """Apply the settings to a call of a function; a call of a source with a callback subscribes."""
+    """Apply the settings to a call of a function.
+
+    If the settings declare the function as a source, a call with a callback subscribes.
+    """
     if ctx.config.wrappers and (fact := facts(ctx.config.wrappers).get(qualified)):
         return fact
     if qualified not in ctx.config.sources:
@@ -113,7 +116,7 @@ def named_by_settings(ctx: Interpreter, target: Obj) -> str:
 
 
 def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-    """Make the result depend on all arguments; store into the argument that the catalog lists as written."""
+    """Make the result depend on all arguments; store into the argument that is written according to the catalog."""
     name = qualified.rpartition(".")[2]
     if (raises := fails(name)) is not None:
         ctx.ops.may_fail(ctx, call_contexts.all_used(ctx, arguments), raises, frame)
@@ -156,9 +159,9 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
 
 
 def _name_class(ctx: Interpreter, qualified: str, made: Value, arguments: Arguments) -> None:
-    """Store the class of an object if it matters: for settings on methods, arrays that are filled, ports, files.
+    """Store the class of an object if it matters: for settings on methods, arrays that are filled, ports, and files.
 
-    A server of markers also keeps the first text among its arguments, its namespace.
+    For a server of markers, also store the first text among the arguments, which is the server's namespace.
     """
     markers = qualified in catalog.MARKER_SERVERS or qualified in catalog.MARKER_MENUS
     if not (
@@ -181,7 +184,7 @@ def _name_class(ctx: Interpreter, qualified: str, made: Value, arguments: Argume
 def _has_fields(qualified: str) -> bool:
     """Return whether keyword arguments become fields of the new object.
 
-    The keyword arguments of a process do not: `stdout` of a process is a stream.
+    For a process, they do not: `stdout` of a process is a stream.
     """
     return qualified.rpartition(".")[2][:1].isupper() and qualified not in containers.PROCESSES
 

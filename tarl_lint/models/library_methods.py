@@ -49,7 +49,7 @@ from tarl_lint.models.strings import TEXT_METHODS
 
 # methods of events and conditions, without arguments
 SIGNALS: Final = {"wait": waiting.wait_for_flag, "notify": containers.flag, "notify_all": containers.flag}
-# method of base classes that are not analysed → kinds of objects of which it is called
+# method of base classes that are not analysed → kinds of objects on which it is called
 OF_BASE: Final = {
     **dict.fromkeys(("__new__", "__init__"), ("super", "class")),
     "__setattr__": ("super", "class", "instance"),
@@ -135,7 +135,7 @@ def _call_method(
 
 
 def _wait(ctx: Interpreter, it: Invocation) -> None:
-    """Wait for other threads, or wake one up."""
+    """Wait for other threads, or wake up another thread."""
     if it.name in catalog.WAITING_METHODS and not it.base.consts:
         ctx.ops.wait(ctx, it.frame)
     if it.name in SIGNALS and not any(it.arguments) and any(o.kind == "lib" for o in it.base.pts):
@@ -230,7 +230,7 @@ def _of_text(
 
 
 def _fields(ctx: Interpreter, base: Value, name: str) -> Nodes:
-    """Return the data in the fields of instances if a library's base class defines a method that returns them all."""
+    """Return the data in the fields of instances, if a library's base class has a method that returns all fields."""
     found = NONE
     for obj in base.objects if returns_all(name) else ():
         if obj.kind == "instance":
@@ -264,7 +264,7 @@ def _loaded(ctx: Interpreter, made: Value, it: Invocation) -> Value:
 def _given(
     ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Nodes:
-    """Return the data in the results of a library object's callables, since the object's methods may call them."""
+    """Return the data in the results of a library object's callables, because the object's methods may call these."""
     new = callables.answering(ctx, arguments) if name not in SIGNALLING else []
     if keeps_callables(name):
         callables.hold(ctx, base.pts, new)
@@ -293,5 +293,5 @@ def _built_by_base(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
 
 
 def changeable(obj: Obj) -> bool:
-    """Return whether an object's library methods may change it. The library methods of a node do not."""
+    """Return whether an object's library methods may change it. Library methods of a node do not change the node."""
     return obj.kind == "lib" and not (isinstance(obj.key, tuple) and obj.key[:1] == ("inherited",))

@@ -29,7 +29,7 @@ DESCRIBING: Final = ("levelname", "levelno", "name", "lineno", "pathname", "func
 
 
 def named_logger(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the logger with this name, which is the same in all files; the root logger without a name."""
+    """Return the logger with this name; without a name, the root logger. All files share the logger of a name."""
     given = it.arguments[0][:1]
     texts = given[0].texts() if given else ("",)
     return pointer(_logger(ctx, texts[0] if len(texts) == 1 else "?"))
@@ -40,7 +40,7 @@ def _logger(ctx: Interpreter, name: str) -> Obj:
 
 
 def call(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
-    """Call a method of a logger, or one that sets the level of a handler; None for other methods and objects."""
+    """Call a method of a logger, or the method that sets a handler's level; None for other methods and objects."""
     plain = it.arguments[0]
     if it.name == "setLevel" and plain and target.kind == "instance":
         note_level(ctx, target, it.arguments)
@@ -97,7 +97,7 @@ def _held(ctx: Interpreter, logger: Obj) -> list[Obj]:
 
 
 def _ignores(ctx: Interpreter, handler: Obj, method: str) -> bool:
-    """Return whether the level of a handler is certainly above that of a method."""
+    """Return whether the level of a handler is certainly above the level with which a method logs."""
     held = ctx.store.get((handler, LEVEL))
     least = [o.name.removeprefix("logging.") for o in held.pts] if held is not None else []
     level = METHODS[method]

@@ -1,6 +1,6 @@
 """Lists of objects of the analysed classes: their order is known as long as each object is appended once.
 
-The order matters if a loop calls the objects, and an earlier one decides whether later ones are called.
+The order matters if a loop calls the objects, and an earlier object decides whether later objects are called.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def asked(ctx: Interpreter, elements: Sequence[Value]) -> bool:
 
 
 def without_empty(ctx: Interpreter, source: Value) -> Value:
-    """Return a value without empty lists and tuples if it may also be a full one, as in `children or []`."""
+    """Return a value without empty lists and tuples if it may also be a list with elements, as in `children or []`."""
     if len(source.pts) < 2 or any(o.kind != "sequence" for o in source.pts):
         return source
     full = frozenset(o for o in source.pts if not sizes.is_empty(ctx, pointer(o)))

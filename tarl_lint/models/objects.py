@@ -55,7 +55,7 @@ def type_of(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared
 
 
 def parent(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `super()` or `super(cls, self)`: the object or class, with look-ups after a class."""
+    """Return the value of `super()` or `super(cls, self)`: the object or class; look-ups begin after a class."""
     receiver = it.frame
     while receiver.owner is None and receiver.outer is not None:
         receiver = receiver.outer
@@ -75,7 +75,7 @@ def parent(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return the value of an unset field, also of `super()` and of parameters."""
+    """Return the value of an unset field; this includes fields of `super()` and of parameters."""
     if obj.kind == "super" and isinstance(obj.info, tuple):
         owner, this = obj.info
         cls = this.info if this.kind == "instance" else this

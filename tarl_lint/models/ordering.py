@@ -15,16 +15,18 @@ from tarl_lint.models.iterators import gate, listed, pairs
 
 # kinds of objects that consist of the compared values
 COMPARED = frozenset(["sequence", "mapping", "instance"])
-# name of the pair of a key and its value; keys differ, so comparisons do not reach the values
+# name of a pair of a key and its value; comparisons of such pairs never use the values, because all keys are
+# different
 ENTRY = "entry"
-UNORDERED = "<unordered>"  # field of a sorted list: its elements without the values that decided their order
+UNORDERED = "<unordered>"  # field of a sorted list: the elements, without the values that decided the order
 
 
 def ordered(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
     """Return elements that a call chooses or sorts; the compared values decide the place of each element.
 
-    What it compares are the results of `key=`, or else the data inside elements that are containers or instances. The
-    results are not data of the elements, just as the condition of an `if` is not data of what it chooses.
+    The call compares the results of `key=`. Without `key=`, it compares the data inside elements that are
+    containers or instances. The results of `key=` are not data of the elements, just as the condition of an `if` is
+    not data of the value that it chooses.
     """
     key = it.arguments[1].get("key")
     if key is None or key.consts:
@@ -37,7 +39,7 @@ def ordered(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
 
 
 def _key(ctx: Interpreter, key: Value, elements: Value, it: Invocation) -> Value:
-    """Return what a key function returns for an element."""
+    """Return the result of a key function for an element."""
     if not elements.deps | elements.pts | key.pts:
         return UNKNOWN
     return calls.call_value(ctx, key, ([elements], {}), it.frame, it.call)
@@ -49,7 +51,7 @@ def _decided(ctx: Interpreter, elements: Value, compared: Nodes, it: Invocation)
 
 
 def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
-    """Return one of the arguments' elements, chosen by `key=` or by itself; with a default, whether there is one."""
+    """Return one element of the arguments, chosen by `key=` or by itself, or possibly the default, if there is one."""
     plain, named = it.arguments
     several = [*plain, named["*"]] if "*" in named and plain else plain
     values = [heap.elements(ctx, plain[0])] if len(several) == 1 else several
@@ -75,7 +77,7 @@ def first_elements(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def grouped(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the pairs of `itertools.groupby`: what the key function returns, and the elements that it selects."""
+    """Return the pairs of `itertools.groupby`: a result of the key function, and the elements with this result."""
     plain, named = it.arguments
     if not plain:
         return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
@@ -84,7 +86,7 @@ def grouped(ctx: Interpreter, it: Invocation) -> Value:
     found = element if key.consts else _key(ctx, key, element, it)
     compared = ctx.use(found)
     if (unordered := _unordered(ctx, plain[0], element)) is not None:
-        # a list that is sorted for the groups: its order does not decide how many there are
+        # the list is sorted only for grouping, so its order does not decide the number of groups
         again = replace(it, call=it.call.inner())
         compared = ctx.use(unordered if key.consts else _key(ctx, key, unordered, again))
     group = listed(ctx, _decided(ctx, element, compared, it), length | compared, it)
@@ -92,10 +94,10 @@ def grouped(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _unordered(ctx: Interpreter, value: Value, element: Value) -> Value | None:
-    """Return the elements of sorted lists without what decided their order.
+    """Return the elements of sorted lists without the values that decided their order.
 
-    None if other lists are among them, or if something was added to a list later: then `element` has more data than the
-    node of the decision that each `sorted` adds.
+    Return None if other lists are among them, or if something was added to a list later. In the second case,
+    `element` has more data than the node of the decision that each `sorted` adds.
     """
     held = [ctx.store.get((o, UNORDERED)) for o in value.objects]
     known = [heap.arrive(ctx, one, value.deps) for one in held if one is not None]

@@ -1,4 +1,4 @@
-"""States of machines and behaviours of trees: the outcome of one decides whether others run."""
+"""States of machines and behaviours of trees: the outcome of one of them decides whether others run."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _decision(ctx: Interpreter, obj: Obj, what: str, frame: Frame, outcomes: Set
 def run_by_others(
     ctx: Interpreter, obj: Obj, closure: Obj, external: Set[str]
 ) -> tuple[Sequence[int], Part | None]:
-    """Return the decisions whether a framework calls a method, and what receives the method's result."""
+    """Return the decisions whether a framework calls a method, and the object that receives the method's result."""
     packages = {name.partition(".")[0] for name in external}
     state = catalog.STATES in packages and closure.name == catalog.RUNS_STATE
     behaviour = not packages.isdisjoint(BEHAVIOURS) and closure.name in (UPDATES, STARTS, ENDS)
@@ -49,12 +49,12 @@ def run_by_others(
 
 
 def group_of(ctx: Interpreter, obj: Obj, made: Group[Obj]) -> Group[Obj]:
-    """Return the group that an object is; a new one if it is none so far."""
+    """Return the group of an object; if the object has no group yet, make one."""
     return ctx.groups.setdefault(obj, made)
 
 
 def connect(ctx: Interpreter) -> bool:
-    """Make parts depend on the outcomes of others that lead to them. Return whether any dependence is new."""
+    """Make parts depend on the outcomes of other parts that lead to them. Return whether any dependence is new."""
     if not ctx.groups:
         return False
     new = _represented(ctx)
@@ -66,7 +66,7 @@ def connect(ctx: Interpreter) -> bool:
 
 
 def _represented(ctx: Interpreter) -> bool:
-    """Let objects whose method ran stand for others of their class, of which too many exist to run all."""
+    """Let objects whose method ran stand for the other objects of their class, if there are too many to run all."""
     ran: dict[Obj, Part] = {}
     for part in ctx.parts.values():
         if part.answers and part.method is not None:
@@ -113,7 +113,7 @@ def _depend(ctx: Interpreter, one: Dependence[Obj]) -> bool:
 
 
 def _several(answers: Iterable[tuple[int, frozenset[str] | None]], led: Set[str] | None = None) -> list[int]:
-    """Return the nodes of the answers if they differ: in their outcomes, or in whether these are among `led`."""
+    """Return the nodes of the answers if the answers differ: in their outcomes, or in whether these are in `led`."""
     given = dict(answers)
     kinds: set[object] = set()
     for outcomes in given.values():
@@ -124,7 +124,7 @@ def _several(answers: Iterable[tuple[int, frozenset[str] | None]], led: Set[str]
 
 
 def _inside(ctx: Interpreter, group: Obj) -> list[Part]:
-    """Return the parts in a group and in its groups."""
+    """Return the parts in a group, including those in its inner groups."""
     found: dict[Obj, None] = {}
     pending = [group]
     while pending:

@@ -210,7 +210,7 @@ def copy_of(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Val
 
 
 def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
-    """Return a new object of the kind that all copied objects have in common."""
+    """Return a new object of the kind to which all copied objects belong."""
     classes = {o.info for o in value.pts if o.kind == "instance"}
     if len(classes) == 1 and all(o.kind == "instance" for o in value.pts):
         cls = classes.pop()
@@ -272,7 +272,7 @@ def new_mapping(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def several_mappings(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `ChainMap(first, second)`: an entry may be one of any of the mappings."""
+    """Return the value of `ChainMap(first, second)`: each entry may come from any of the mappings."""
     return join_all(it.arguments[0]) if it.arguments[0] else new_mapping(ctx, it)
 
 
@@ -334,7 +334,7 @@ _MISSING: Final = ir.Call(ir.Const(None, (0, 0, 0, 0)), (), (), (0, 0, 0, 0), -1
 
 
 def _fields(cls: Obj) -> Iterator[tuple[Obj, str]]:
-    """Yield the fields of a class and of those it inherits from, in the order of the constructor."""
+    """Yield the fields of a class and of its base classes, in the order of the constructor's parameters."""
     seen: set[str] = set()
     made = any(isinstance(o.info, ClassInfo) and not set(o.info.external) <= PLAIN for o in lineage(cls))
     for owner in reversed(lineage(cls)):
@@ -346,7 +346,7 @@ def _fields(cls: Obj) -> Iterator[tuple[Obj, str]]:
 
 
 def _decorated(info: ClassInfo) -> bool:
-    """Return whether a class has a decorator, as dataclasses do; annotations of other classes are not fields."""
+    """Return whether a class has a decorator, like a dataclass. Annotations in a class without one are not fields."""
     return info.statement is None or bool(info.statement.decorators)
 
 

@@ -26,7 +26,7 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
     if not names and plain and not it.call.arguments:
         return plain[
             0
-        ]  # `reduce(getattr, parts, message)` returns a part of the message; storing there fills it
+        ]  # `reduce(getattr, parts, message)` returns a part of the message; storing into it fills the message
     if not names and len(it.call.arguments) > 1:
         return _method_by_beginning(ctx, it) or ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
     if len(plain) > 2 and names and all(type_queries.lacks(ctx, plain[0], name) for name in names):
@@ -108,7 +108,10 @@ def members(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _fulfils(ctx: Interpreter, predicate: Value, value: Value, it: Invocation, number: int) -> bool:
-    """Return whether a member may be selected: by a predicate of `inspect` if it is a method, else by its result."""
+    """Return whether a predicate may select a member.
+
+    For a predicate of `inspect`, the member must be a method; any other predicate is called.
+    """
     if any(o.kind == "ext" for o in predicate.pts):
         return any(o.kind in CALLABLE for o in value.pts)
     found = calls.call_value(ctx, predicate, ([value], {}), it.frame, it.call.inner(number))
@@ -138,7 +141,7 @@ def _listed(ctx: Interpreter, values: Sequence[Value], it: Invocation) -> Value:
 
 
 def partial_method(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a `functools.partialmethod`: a partial that a look-up through an instance binds to the instance."""
+    """Return a `functools.partialmethod`: a partial that is bound to an instance when it is looked up through it."""
     plain, named = it.arguments
     if not plain:
         return UNKNOWN

@@ -1,4 +1,4 @@
-"""Remove and reorder elements of containers: the remaining ones depend on the conditions of a removal."""
+"""Remove and reorder elements of containers: the remaining elements depend on the conditions of a removal."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CONTAINERS = frozenset(["sequence", "mapping"])
 
 @dataclass(frozen=True)
 class Decision:
-    """The nodes that decide what is left in a container and how many elements are left; empty if no data decides."""
+    """The nodes that decide which elements are left in a container, and how many; empty if no data decides."""
 
     left: Nodes
     length: Nodes
@@ -28,7 +28,7 @@ class Decision:
 def decision(
     ctx: Interpreter, frame: Frame, slot: Hashable, decides: Nodes = NONE, *, counts: Nodes = NONE
 ) -> Decision:
-    """Return the nodes that decide a removal: its conditions, and `decides`; the length also depends on `counts`."""
+    """Return the nodes that decide a removal: its conditions and `decides`. The length also depends on `counts`."""
     left = ctx.node(frame, ("moved", slot), "call")
     ctx.graph.flow(decides | counts, left)
     length = ctx.node(frame, ("taken", slot), "call")
@@ -40,7 +40,7 @@ UNDECIDED: Final = Decision(NONE, NONE)
 
 
 def take(ctx: Interpreter, base: Value, index: Value | None, decided: Decision) -> None:
-    """Remove the element with this index or key; the last one of a sequence if None."""
+    """Remove the element with this index or key; if it is None, remove the last element of a sequence."""
     for obj in base.objects:
         if obj.kind == "mapping":
             _take_key(ctx, base, obj, index, decided)
@@ -89,7 +89,7 @@ def reverse(ctx: Interpreter, base: Value, decided: Decision) -> None:
 
 
 def scatter(ctx: Interpreter, obj: Obj, decided: Decision = UNDECIDED, *, shorter: bool = True) -> None:
-    """Let every element be at any place, since an unknown one was removed or inserted."""
+    """Let every element be at any place, because an unknown element was removed or inserted."""
     ctx.store.look(obj)
     fields = [name for name in list(obj.fields) if name.startswith("[")]
     stored = {name: value for name in fields if (value := ctx.store.get((obj, name))) is not None}
@@ -120,7 +120,7 @@ def empty(ctx: Interpreter, base: Value, decided: Decision) -> None:
 
 
 def attribute(ctx: Interpreter, base: Value, name: str, decided: Decision) -> None:
-    """Delete an attribute: a default in the class, if there is one, is visible again."""
+    """Delete an attribute. If the class has a default for the attribute, this default is visible again."""
     for obj in base.objects:
         if obj.kind != "instance":
             continue

@@ -1,4 +1,4 @@
-"""Rows: the possible elements of a container, over which a loop is unrolled although their order is unknown."""
+"""Rows: the possible elements of a container; a loop over them is unrolled although their order is unknown."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CONTAINERS = frozenset(["sequence", "mapping"])
 
 
 def of(ctx: Interpreter, source: Value) -> list[Value]:
-    """Return the different elements that iteration over containers may yield; [] if they are unknown or too many."""
+    """Return the different elements that iteration over containers may yield; [] if they are unknown, or too many."""
     if not source.pts or any(o.kind not in CONTAINERS for o in source.pts):
         return []
     return parts(heap.elements(ctx, source))
@@ -33,7 +33,7 @@ def hold_classes(ctx: Interpreter, source: Value) -> bool:
 
 
 def parts(value: Value) -> list[Value]:
-    """Return a value as its different objects and constants; [] if it is not known, or has fewer than two of them."""
+    """Return the different objects and constants that a value may be; [] if they are not known or fewer than two."""
     constants = value.keys()
     if not 1 < len(value.pts) + len(constants or ()) <= MAX_ROWS or (constants is None and not value.pts):
         return []
@@ -45,7 +45,7 @@ def parts(value: Value) -> list[Value]:
 
 
 def entries(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | None:
-    """Return the keys and values of mappings whose keys are known constants; None if they are not, or too many."""
+    """Return the keys and values of mappings whose keys are known constants; None for unknown or too many keys."""
     found: list[tuple[Value, Value]] = []
     for obj in base.objects:
         own = _entries_of(ctx, obj)

@@ -69,7 +69,8 @@ def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], fram
 def grown(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
     """Return the container after `a += b` or `a |= b`.
 
-    One node of the statement passes on all elements, and another one the length; all containers share these two nodes.
+    One node of the statement passes on all elements, and another node passes on the length. All containers share
+    these two nodes.
     """
     first, second = values
     tables = frozenset(o for o in first.pts if o.kind == "mapping" and expr.operator == "|=")
@@ -85,9 +86,9 @@ def grown(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Fram
 
 
 def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: Frame) -> Value:
-    """Return `base[a:b]`: a new sequence for sequences, the elements' value for other objects.
+    """Return `base[a:b]`: for a sequence, a new sequence; for other objects, the value of their elements.
 
-    The elements are tracked separately if those of the base and the bounds are known.
+    The elements are tracked separately if the elements of the base and the bounds are known.
     """
     bounds = [ctx.ops.evaluate(ctx, part, frame) for part in index.parts]
     extra = NONE
@@ -111,7 +112,7 @@ def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: F
 
 
 def _between(ctx: Interpreter, base: Value, index: ir.Slice, bounds: list[Value]) -> list[Value] | None:
-    """Return the elements that a slice selects; None if those of the base or the bounds are not known.
+    """Return the elements that a slice selects; None if the elements of the base, or the bounds, are not known.
 
     In a known command line, only constants count as known.
     """
@@ -152,7 +153,7 @@ def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:
 
 
 def counted(ctx: Interpreter, source: ir.Expr, frame: Frame, *, each: bool) -> Value:
-    """Evaluate what a loop iterates over; if `each`, the numbers of a `range` and the length of a list are known."""
+    """Evaluate the object over which a loop iterates. If `each` is True, numbers of a `range` and lengths are known."""
     outside, ctx.counting = ctx.counting, frame.statement if each else ctx.counting
     value = ctx.ops.evaluate(ctx, source, frame)
     ctx.counting = outside
@@ -172,7 +173,8 @@ def is_empty(ctx: Interpreter, value: Value) -> bool:
 def absorb(ctx: Interpreter, obj: Obj, value: Value, expr: ir.Expr | None = None) -> None:
     """Copy the elements of all objects of a value into an object.
 
-    If `expr` is a dict literal, each of its constant keys is certainly there, so its value replaces the previous one.
+    If `expr` is a dict literal, each of its constant keys is certainly present, so the value of the key replaces
+    the previous value.
     """
     certain = frozenset[str]()
     if isinstance(expr, ir.MappingDisplay) and len(value.pts) == 1 and recency.single(ctx, obj):
@@ -210,7 +212,7 @@ def empty(ctx: Interpreter, obj: Obj) -> None:
 
 
 def length(ctx: Interpreter, value: Value) -> Nodes:
-    """Return the nodes on which a value's length depends; the elements of analysed containers are not among them."""
+    """Return the nodes on which a value's length depends. The elements of analysed containers are left out."""
     deps = value.deps
     for obj in value.objects:
         if sized(ctx, obj):
@@ -229,7 +231,7 @@ def length(ctx: Interpreter, value: Value) -> Nodes:
 
 
 def sized(ctx: Interpreter, obj: Obj) -> bool:
-    """Return whether an object is a container or array, whose length is independent of its elements' data."""
+    """Return whether an object is a container or array. The data of its elements does not influence its length."""
     if obj.kind in ("sequence", "mapping"):
         return True
     ctx.store.reads.look(obj)
@@ -250,7 +252,7 @@ def placed(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
 
 
 def lengthen(ctx: Interpreter, obj: Obj, value: Value) -> None:
-    """Make an object's length depend on the length of a value whose elements it gets."""
+    """Make an object's length depend on the length of a value; the object gets the elements of this value."""
     longer = length(ctx, value)
     if longer:
         decide_length(ctx, obj, longer)

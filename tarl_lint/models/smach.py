@@ -1,4 +1,4 @@
-"""Models of smach's state machines: states added by calls, and the order in which outcomes let them run."""
+"""Models of smach's state machines: states that calls add, and the order in which their outcomes let them run."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ CONNECTOR: Final = "connector_outcome"
 
 
 def new_machine(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a new container of states, whose `outcomes` are those of its machine."""
+    """Return a new container of states; `outcomes` are the outcomes of its machine."""
     made = ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
     for obj in made.objects:
         _describe(ctx, obj, it.name, it)

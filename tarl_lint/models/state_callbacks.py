@@ -12,12 +12,12 @@ from tarl_lint.models import parts
 from tarl_lint.models.ros import subscriptions
 from tarl_lint.models.smach import LATER
 
-# keywords of the functions whose result is the outcome of the state
+# keywords for functions whose result is the outcome of the state
 ENDING: Final = frozenset(["cb", "cond_cb", "result_cb", "response_cb"])
 
 
 def state_by_callbacks(ctx: Interpreter, it: Invocation) -> Value:
-    """Create a state from functions, which get the shared userdata; the result of some of them is its outcome."""
+    """Create a state from functions that get the shared userdata. For some, the result is the state's outcome."""
     state = recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
     part = parts.part_of(ctx, state, it.frame)
     plain, named = it.arguments

@@ -37,7 +37,7 @@ MAX_TEXT: Final = 300
 
 
 def text_of(ctx: Interpreter, base: Value, name: str, arguments: Arguments) -> Consts:
-    """Return the results of a string method on constants; None if an argument is unknown."""
+    """Return the results of a string method on constants; None if one of the constants or arguments is unknown."""
     plain, named = arguments
     return _made(
         ctx,
@@ -89,7 +89,10 @@ def _keys(ctx: Interpreter, value: Value, frame: Frame, call: ir.Call) -> Value:
 
 
 def _made(ctx: Interpreter, function: Callable[..., object], values: Sequence[Value]) -> Consts:
-    """Return the results of a function for all combinations of constants; the first one of each must be a string."""
+    """Return the results of a function for all combinations of constants.
+
+    The first constant of each combination must be a string.
+    """
     ways = [_known(ctx, v) for v in values]
     if not all(ways) or math.prod(len(w) for w in ways) > MAX_TEXTS:
         return None
@@ -110,7 +113,7 @@ def _flat(ways: Sequence[Any]) -> Iterator[Any]:
 
 
 def _known(ctx: Interpreter, value: Value) -> list[Any]:
-    """Return the possible constants of a value, or the possible lists of them; empty if not all are known."""
+    """Return the possible constants of a value, or the lists that it may be; empty if some of them are unknown."""
     if value.consts and not value.pts:
         return sorted(value.consts, key=str)
     parts = [_known(ctx, e) for e in sizes.unpacked(ctx, value) or ()]

@@ -34,7 +34,7 @@ NOT_CALLABLE = frozenset(["sequence", "mapping", "message", "publisher"])
 
 
 def is_instance(ctx: Interpreter, it: Invocation) -> Value:
-    """Return whether an object is an instance of analysed classes, or a message of types; else unknown."""
+    """Return whether an object is an instance of analysed classes, or a message of given types; else unknown."""
     given = it.arguments[0]
     if len(given) != 2:
         return UNKNOWN
@@ -56,7 +56,7 @@ def is_instance(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _of_classes(value: Value, classes: frozenset[Obj]) -> Value:
-    """Return whether instances of analysed classes are instances of others."""
+    """Return whether instances of some analysed classes are instances of other classes."""
     if value.consts != NO_CONSTANTS or not value.pts or any(o.kind != "instance" for o in value.pts):
         return UNKNOWN
     kinds = [o.info for o in value.pts if isinstance(o.info, Obj)]

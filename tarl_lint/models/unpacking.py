@@ -46,7 +46,7 @@ def _gone_over(ctx: Interpreter, value: Value, frame: Frame, call: ir.Call) -> V
 def parts(
     ctx: Interpreter, value: Value, count: int, starred: int | None, frame: Frame, slot: str
 ) -> list[Value]:
-    """Return the values of several targets; the starred one gets a sequence."""
+    """Return the values of several targets of an assignment; a target with a star gets a sequence."""
     if any(o.kind == "instance" and _iterator(ctx, o) is not BOTTOM for o in value.pts):
         given = iterated(ctx, value, ir.Const(None, frame.function.pos), frame)
         value = listed_parts(ctx, given, frame, slot)

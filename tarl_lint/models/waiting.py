@@ -1,7 +1,7 @@
 """Calls that need what other code provides: an element of a queue, or an event that is set.
 
-The conditions under which the other code runs decide what follows a call that waits. If the call raises an exception
-instead, they decide whether its handler runs.
+The code after a call that waits depends on the conditions under which the other code runs. If the call raises an
+exception instead of waiting, these conditions decide whether the handler runs.
 """
 
 from __future__ import annotations
@@ -51,5 +51,5 @@ def wait_for_flag(ctx: Interpreter, it: Invocation) -> None:
 
 
 def _got(ctx: Interpreter, containers: frozenset[Obj], it: Invocation) -> Nodes:
-    """Return the node that decides whether a call gets an element; empty if no data decides it."""
+    """Return the node that decides whether a call gets an element; empty if no data decides this."""
     return operators.chosen(ctx, containers, it.frame, ("got", it.call.slot))

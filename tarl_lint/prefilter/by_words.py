@@ -48,8 +48,8 @@ def groups(modules: Sequence[M], config: Config, *, clients: bool = False) -> li
     A group includes everything that its modules import. With `clients`, clients of services and actions subscribe
     and publish too.
 
-    Relevant modules are those that subscribe or publish, the modules that import them, and everything that these
-    import. Within a group, a module comes after its imports, as far as import cycles allow. A module that several
+    Relevant modules are those that subscribe or publish, the modules that import these, and all imports of relevant
+    modules. Within a group, a module comes after its imports, as far as import cycles allow. A module that several
     programs import may be in several groups.
     """
     start = list(mentioning(modules, config, clients=clients))
@@ -85,7 +85,7 @@ def reached(start: Iterable[M], others: Sequence[M]) -> list[M]:
 
 
 def mentioning(modules: Iterable[M], config: Config, *, clients: bool = False) -> Iterator[M]:
-    """Yield the modules whose words suggest that they subscribe or publish; no other module does."""
+    """Yield the modules whose words suggest that they subscribe or publish. Any other module does neither."""
     has_word = endpoint_words(config, clients=clients)
     return (m for m in modules if has_word(m.text))
 

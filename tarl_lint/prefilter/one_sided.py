@@ -1,7 +1,7 @@
 """Find groups of modules that only subscribe or only publish, by words and syntax; most of them need not be run.
 
-A flow needs both. Each hazard rule decides whether it can find nothing in such a group (`ruled_out`); a group that an
-enabled rule does not rule out is run like any other.
+A flow needs both. The function `ruled_out` of a hazard rule returns whether such a group contains nothing that the
+rule reports. If an enabled rule does not rule out a group, the group is run like any other.
 """
 
 from __future__ import annotations
@@ -118,5 +118,5 @@ def _root(expr: ast.expr) -> str:
 
 
 def _ruled_out(rule: Rule, side: Side) -> bool:
-    """Return whether a rule excludes the group; a rule without `ruled_out` never does."""
+    """Return whether a rule excludes the group; a rule without `ruled_out` excludes none."""
     return hasattr(rule, "ruled_out") and rule.ruled_out(side)

@@ -1,8 +1,8 @@
 """Split a group of modules into programs, which run in separate processes.
 
-A program is a file that is run, with its imports. Since programs run in separate processes, no value reaches one from
-another through a module that both import. Programs are analysed separately, even after an edit. Programs are
-analysed together only if a flow may begin or end in a common module. The flow is then reported once, with the
+A program is a file that is run, with its imports. Since programs run in separate processes, no value reaches one
+from another through a module that both import. Programs are therefore analysed separately, even after an edit. They
+are analysed together only if a flow may begin or end in a common module. The flow is then reported once, with the
 statements of all programs.
 """
 
@@ -31,8 +31,8 @@ def programs(
     """Return the modules of each program, in the order of the group. A module may be part of several programs.
 
     `endpoints` are the paths of the modules that may subscribe or publish. Programs stay together if they share one
-    of these paths. Programs that share any module also stay together if one of them loads modules by name or
-    is not clearly a program.
+    of these paths. Programs with a common module also stay together if one of them loads modules by name, or is not
+    clearly a program.
     """
     imported = {module.path for one in group for module in imports[one.path]}
     runs = [_reached(one, imports) for one in group if one.path not in imported]

@@ -21,7 +21,7 @@ class Origin:
     value: bool | int | float | None
     path: str
     pos: ir.Pos
-    setting: str = ""  # key of the value in the file from which it was loaded; "" if it was not loaded
+    setting: str = ""  # if the value was loaded from a file, its key in this file; else ""
 
 
 class Origins:
@@ -36,7 +36,7 @@ class Origins:
                 self.topics[message] = frozenset(t.lstrip("/") for t in record.topics)
 
     def of(self, expr: ir.Expr, value: Value | None) -> frozenset[Origin]:
-        """Return the origins of an expression's possible constants; empty if it may be anything else."""
+        """Return the origins of an expression's possible constants; empty if the expression may be anything else."""
         if isinstance(expr, ir.Const):
             if isinstance(expr.value, (bool, int, float)):
                 return frozenset([Origin(expr.value, "", expr.pos)])
@@ -53,7 +53,7 @@ class Origins:
         return frozenset(found) if found is not None else frozenset()
 
     def _loaded(self, value: Value) -> frozenset[Origin]:
-        """Return the origin of a value loaded from a file; empty for a table, of which only parts are used."""
+        """Return the origin of a value loaded from a file; empty for a table, since only parts of a table are used."""
         settings = self.machine.settings
         if len(value.pts) != 1:
             return frozenset()
@@ -65,7 +65,7 @@ class Origins:
         return frozenset([Origin(None, path, pos, "" if key.isdigit() else key)])
 
     def entries(self, value: Value | None, index: Value | None) -> frozenset[Origin]:
-        """Return the origins of a table's numbers if a computed index selects one of them; empty otherwise."""
+        """Return the origins of a table's numbers if a computed index selects one of these numbers; empty otherwise."""
         if value is None or index is None or value.pts:
             return frozenset()
         found = self._trace(value.deps - self.machine.use(index), set())
@@ -88,7 +88,7 @@ class Origins:
                 found.add(Origin(value if isinstance(value, (bool, int, float)) else None, path, pos))
                 continue
             if node in self.graph.parameters and not self.graph.data[node]:
-                continue  # a text that selects a constant, as in `RECIPES[fruit]`
+                continue  # the node is a text that selects a constant, as in `RECIPES[fruit]`
             if node in self.graph.copies or node in self.graph.carried:
                 inner = self._trace(self.graph.data[node], seen)
                 if inner is None:
@@ -96,12 +96,12 @@ class Origins:
                 found |= inner
             elif node not in self.graph.held and not self._settled(
                 node
-            ):  # a node that only passes on an object has no constant
+            ):  # a node that passes on an object and nothing else has no constant
                 return None
         return found
 
     def _settled(self, node: int) -> bool:
-        """Return whether no message reaches a node, and it is None or a choice between constants."""
+        """Return whether a node is None or a choice between constants, and is not reached by messages."""
         place = self.graph.places[node]
         if self.graph.data[node] or node in self.graph.live:
             return False
@@ -159,7 +159,7 @@ class Holding:
                 self._fields(machine, name, value)
 
     def _fields(self, machine: Linker, name: str, value: Value) -> None:
-        """Read the fields of a stored message that the node wrote; they may no longer be the topic's values."""
+        """Read the fields of a stored message that the node wrote. They may no longer have the values of the topic."""
         pending: list[tuple[str, Value]] = [("", value)]
         while pending:
             path, current = pending.pop()

@@ -53,7 +53,7 @@ class Constants(Protocol):
     """Interface of a query for the constants of an expression."""
 
     def of(self, expr: ir.Expr, value: Value | None) -> Collection[Constant]:
-        """Return the origins of an expression's constants; empty if it is not constant."""
+        """Return the origins of an expression's constants; empty if the expression is not constant."""
         ...
 
     def entries(self, value: Value | None, index: Value | None) -> object:
@@ -100,7 +100,7 @@ def constructions(statement: ir.Stmt) -> list[ir.Call]:
 
 
 def _all(expressions: Iterable[ir.Expr]) -> Iterator[ir.Expr]:
-    """Yield the expressions that a value is made of, outermost first."""
+    """Yield the parts of which a value is made, outermost first."""
     for expr in expressions:
         yield expr
         if isinstance(expr, ir.Call):

@@ -20,8 +20,8 @@ from tarl_lint.queries.operands import constructions, fills_an_object, sets_timi
 
 FILLED: Final = frozenset(
     ["lib", "sequence", "mapping"]
-)  # kinds of objects that a set-up fills with constants
-# kind of the objects that a set-up instantiates from the program's own classes
+)  # kinds of objects that code fills with constants when it sets up a node
+# kind of the objects of the program's own classes that code makes when it sets up a node
 MADE: Final = frozenset(["instance"])
 
 
@@ -101,7 +101,7 @@ class Prober:
         return tuple(sorted(found.values(), key=lambda o: o.span))
 
     def _places(self, origins: Collection[Origin]) -> tuple[Span, ...]:
-        """Return where constants are defined, in order; empty if one of them has no place in a file."""
+        """Return the places where constants are defined, in order; empty if one of them has no place in a file."""
         if not all(origin.path for origin in origins):
             return ()
         return tuple(sorted({self.texts[one.path].stretch(one.pos) for one in origins}))
@@ -125,7 +125,7 @@ class Prober:
         return self._columns[key]
 
     def _timing(self, frame: Frame, statement: ir.Stmt) -> SiteId | None:
-        """Add a site for a statement that waits or sets a rate, in a file on a flow."""
+        """Add a site for a statement in a file on a flow, if the statement waits or sets a rate."""
         path = frame.program.path
         if path not in self._files or not sets_timing(statement):
             return None
@@ -139,7 +139,7 @@ class Prober:
         return site
 
     def _call(self, frame: Frame, statement: ir.Stmt) -> SiteId | None:
-        """Add a site for a statement that may fill an object with constants, in a file on a flow."""
+        """Add a site for a statement in a file on a flow, if the statement may fill an object with constants."""
         path = frame.program.path
         if path not in self._files or not fills_an_object(statement):
             return None
@@ -189,7 +189,7 @@ class Prober:
                 seen.enter(expr.function, self._called(expr.function, seen))
 
     def _called(self, function: ir.Attribute, seen: Seen) -> Value:
-        """Return the attribute that a call calls, such as `self.pid` in `self.pid(error)`; the engine looks it up."""
+        """Return the attribute that a call calls, such as `self.pid` in `self.pid(error)`. The engine looks it up."""
         base = seen.values.get(function.base.pos, BOTTOM)
         found = (self.machine.store.get((one, function.name)) for one in base.objects)
         return join_all([value for value in found if value is not None])

@@ -27,7 +27,7 @@ SETTINGS: Final = ("setup.py", "setup.cfg", "pyproject.toml")
 NAMING: Final = (
     "package.xml",
     "CMakeLists.txt",
-)  # files that name the plugin descriptions, which may have any name
+)  # files that list the plugin descriptions; a plugin description may have any name
 LARGEST: Final = 500_000  # maximum size of a description (bytes)
 NAMED: Final = re.compile(r"(?<![\w./])(\w+(?:\.\w+)*)[.:](\w+)(?![\w./])")
 XML: Final = re.compile(r"[\w./-]+\.xml\b")
@@ -41,7 +41,7 @@ class Declarations:
         self._named: dict[str, dict[str, set[str]]] = {}
 
     def of(self, path: str, module: str) -> tuple[str, ...]:
-        """Return the names in a module that the module's package declares as entry points."""
+        """Return those names in a module that the package of the module declares as entry points."""
         package = self._package(os.path.dirname(path))
         if not package:
             return ()

@@ -31,13 +31,13 @@ _CPP_NODE = (
     b"RCLCPP_COMPONENTS_REGISTER_NODE",
 )
 _LAUNCH = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml")
-_ENOUGH = 200_000  # number of bytes to read of a file that is only counted
+_ENOUGH = 200_000  # number of bytes that are read from a file that is only counted
 
 
 class SourceFile(NamedTuple):
     """A file to analyse: its place, its displayed path, its dotted name, whether it is `__init__.py`.
 
-    `started` are the entry points in the file that the file's package declares.
+    `started` are the entry points in this file that its package declares.
     """
 
     path: Path
@@ -187,7 +187,7 @@ class _Walk:
 
 
 def _below(directory: str, entry: os.DirEntry[str]) -> str:
-    """Return the real path of an entry that is not a link, in a directory reached without links."""
+    """Return the real path of an entry that is not a link and lies in a directory that was reached without links."""
     return f"{directory.rstrip('/')}/{entry.name}"
 
 

@@ -48,7 +48,7 @@ class Ignore:
     patterns: tuple[Pattern, ...]
 
     def verdict(self, path: str, *, is_directory: bool) -> bool | None:
-        """Return whether an absolute path is excluded; None if no pattern matches. The last match wins."""
+        """Return whether an absolute path is excluded; None if no pattern matches. The last matching pattern counts."""
         prefix = self.directory.rstrip("/") + "/"
         if not path.startswith(prefix):
             return None

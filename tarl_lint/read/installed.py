@@ -1,6 +1,7 @@
-"""Find the sources of the installed packages in the settings; they are read from a virtual environment, never imported.
+"""Find the sources of the installed packages in the settings; they are read from a virtual environment.
 
-Only `pyvenv.cfg`, site-packages and lines with paths in `.pth` files are read; lines with code are ignored.
+Nothing is imported. Only `pyvenv.cfg`, site-packages and lines with paths in `.pth` files are read; lines with code
+are ignored.
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ from tarl_lint.read.source import Script
 from tarl_lint.run.cache import Report
 from tarl_lint.settings.config import Config
 
-MOST_FILES: Final = 5_000  # maximum number of files read of one package
+MOST_FILES: Final = 5_000  # maximum number of files that are read from one package
 SITES: Final = ("lib/python3*/site-packages", "lib64/python3*/site-packages", "Lib/site-packages")
 SYSTEM_SITES: Final = (*SITES, "lib/python3/dist-packages", "lib/python3*/dist-packages")
 
 
 @dataclass(frozen=True)
 class Followed:
-    """The analysed files of installed packages, the packages' versions, and messages for missing packages."""
+    """The analysed files of installed packages, the versions of these packages, and messages for missing packages."""
 
     scripts: tuple[Script, ...] = ()
     packages: tuple[str, ...] = ()  # names with versions, such as "robot_base 1.4.0"

@@ -78,7 +78,7 @@ def _manifest_name(directory: Path) -> str:
 
 
 def _package_dirs(directory: Path) -> dict[str, str]:
-    """Return the `package_dir` that setup.cfg and setup.py in a directory declare, as directory → package."""
+    """Return the `package_dir` that setup.cfg and setup.py declare in a directory, as directory → package."""
     if not any("package_dir" in _read(directory / name) for name in ("setup.cfg", "setup.py")):
         return {}
     from tarl_lint.workspace.setup_files import setup

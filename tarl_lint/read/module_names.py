@@ -57,9 +57,9 @@ class Index(Generic[M]):
             self._by_name.setdefault(module.name, []).append(module)
 
     def find(self, name: str, importer: Named) -> M | None:
-        """Return the module that `importer` imports; of several with that name, the one with the longest common path.
+        """Return the module that `importer` imports; of several with this name, the one with the longest common path.
 
-        Packages in the catalog are never resolved to source files, even if these are among the files.
+        Names of packages in the catalog never refer to source files, even if these are among the files.
         """
         candidates = self._by_name.get(name) or self._beside(name, importer)
         if not candidates or name.partition(".")[0] in LIBRARIES:

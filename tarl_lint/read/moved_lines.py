@@ -22,7 +22,7 @@ class DifferenceError(Exception):
 
 
 def moved_lines(old: str, new: str, reading: Reading) -> Mapping[int, int] | None:
-    """Return the lines of a new text, from 1, at which the analysed lines are; None if the analysis must run again.
+    """Return the lines of a new text, from 1, at which the analysed lines are; None if the file must be analysed again.
 
     These lines have the same characters and the same order as before.
     """
@@ -46,7 +46,10 @@ def moved_lines(old: str, new: str, reading: Reading) -> Mapping[int, int] | Non
 
 
 class _Comparison:
-    """Walks two trees at once and pairs their lines. Raises DifferenceError at the first difference that was read."""
+    """Walks two trees at once and pairs their lines.
+
+    Raises DifferenceError at the first difference in a part that was read.
+    """
 
     def __init__(self, old: list[str], new: list[str], reading: Reading) -> None:
         self.lines: dict[int, int] = {}
@@ -131,7 +134,7 @@ def _tree(text: str) -> ast.Module | None:
 
 
 def _qualnames(tree: ast.Module) -> Counter[str]:
-    """Return how many functions and classes have each qualified name, which begins with a dot."""
+    """Return the number of functions and classes for each qualified name; the names begin with a dot."""
     found: Counter[str] = Counter()
     pending: list[tuple[ast.AST, str]] = [(tree, "")]
     while pending:

@@ -29,7 +29,7 @@ class Module:
     tree: ast.Module
     is_package: bool = False
     started: tuple[str, ...] = ()  # entry points declared by the package
-    # whether the file is part of an installed package, of which nothing is started or reported
+    # whether the file belongs to an installed package; nothing in such a package is started or reported
     installed: bool = False
 
     def answer(self, question: Callable[[str], bool]) -> bool:
@@ -68,7 +68,7 @@ class Script:
 
 @dataclass(frozen=True)
 class SourceError:
-    """The reason why a file cannot be analysed: a sentence and a line, from 1. `bug` marks an internal error."""
+    """The reason why a file cannot be analysed: a sentence and a line (from 1). `bug` marks an internal error."""
 
     path: str
     line: int

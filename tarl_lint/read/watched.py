@@ -1,8 +1,8 @@
-"""Modules that record which function bodies an analysis reads, and which answers about the text it gets.
+"""Modules that record which function bodies an analysis reads, and its questions about the text with their answers.
 
-A run that has read neither a function's body nor the whole text does not depend on that body. Reads are recorded where
-they happen, so the reads of new code are recorded, too. Looking up statements for a report is not recorded, since a
-report only shows what the analysis has read.
+If a run has read neither a function's body nor the whole text, the run does not depend on this body. Reads are
+recorded where they happen, so the reads of new code are recorded, too. Looking up statements for a report is not
+recorded, since a report only shows what the analysis has read.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Place = tuple[int, int]  # line and column of a definition, as `ast` counts them
 
 
 class Body(list[ast.stmt]):
-    """A function's statements; `read` is set once anything reads them."""
+    """A function's statements; `read` is set once any code reads the statements."""
 
     read = False
 
@@ -51,9 +51,9 @@ class Body(list[ast.stmt]):
 
 @dataclass(frozen=True)
 class Reading:
-    """The parts of one file that an analysis did not read, and its questions about the text, with the answers.
+    """The parts of one file that an analysis did not read, and its questions about the text with their answers.
 
-    `unread` are the functions whose bodies were not read. `whole` says that the whole text was read.
+    `unread` are the functions whose bodies were not read. `whole` means that the analysis read the whole text.
     """
 
     unread: frozenset[Place]
@@ -63,7 +63,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Watched(Module):
-    """A module that records what is read of it."""
+    """A module that records which of its parts are read."""
 
     answers: list[tuple[Question, bool]] = field(default_factory=list)
     # a list with one entry for each use of the complete text
@@ -82,7 +82,7 @@ class Watched(Module):
         return known
 
     def reading(self) -> Reading:
-        """Return what was read of the module since watching began."""
+        """Return the parts of the module that were read since watching began."""
         unread = frozenset(
             (function.lineno, function.col_offset)
             for function in _functions(self.tree.body)
@@ -113,7 +113,7 @@ def unwatched(body: Sequence[ast.stmt]) -> Sequence[ast.stmt]:
 
 
 def _functions(body: Sequence[ast.stmt]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
-    """Yield the functions defined by statements, also by nested ones, without recording the read."""
+    """Yield the functions that statements define, also nested statements, without recording the read."""
     pending = [*body]
     while pending:
         node = pending.pop()

@@ -34,7 +34,7 @@ _NEW: Final = 'shape=box, style="rounded,filled", fillcolor="#fee2e2", color="#d
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the graph, the same text for the same flows."""
+    """Yield the graph; equal flows give equal text."""
     for text in _graph(picture(result)):
         yield ((text, ""),)
 

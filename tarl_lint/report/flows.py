@@ -107,7 +107,7 @@ def taint_list(flow: Flow, view: View) -> Iterator[Line]:
 
 
 def shown_steps(flow: Flow, view: View) -> Sequence[Step]:
-    """Return the steps to show: of a long list the registration and the shortest chain, otherwise all steps."""
+    """Return the steps to show: for a long list, the registration and the shortest chain; otherwise all steps."""
     if view.all_steps or len(flow.steps) <= _LONG or not flow.chain:
         return flow.steps
     registration = [step for step in flow.steps if step.role == "register"]

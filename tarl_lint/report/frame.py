@@ -8,7 +8,9 @@ from tarl_lint.model import Span
 from tarl_lint.report.line import Line, Style, View, columns, crop, tabs
 
 BEFORE = 2  # number of lines of context above a span
-TALL = 6  # number of lines; of a longer span, only the first lines and the last one are shown
+# maximum number of lines of a span that are shown; if a span is longer, only its first lines and its last line are
+# shown
+TALL = 6
 
 
 def frame(source: Sequence[str], span: Span, style: Style, view: View) -> Iterator[Line]:
@@ -31,7 +33,7 @@ def lines_of(text: str) -> list[str]:
 
 
 def _numbers(source: Sequence[str], span: Span) -> list[int]:
-    """Return the line numbers to show: some context without leading blank lines, then the span or part of it."""
+    """Return the line numbers to show: some lines before the span, without leading blank lines, then the span."""
     before = list(range(max(1, span.line - BEFORE), span.line))
     while before and not source[before[0] - 1].strip():
         before.pop(0)

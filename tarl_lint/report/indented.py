@@ -1,6 +1,6 @@
 """Indented JSON, identical to that of `json.dumps(value, indent=1)` but written several times as fast.
 
-Python's own encoder uses generators if it has to indent, which took longer than the analysis on large reports.
+Python's own encoder uses generators if it has to indent. On large reports, this took longer than the analysis.
 """
 
 from __future__ import annotations

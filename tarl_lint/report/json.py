@@ -18,9 +18,10 @@ OfStep = Callable[[Step], object]
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the document, indented and in ASCII, which no terminal or pipe can alter.
+    """Yield the document, indented and in ASCII, so that terminals and pipes cannot alter it.
 
-    Each finding is a line of its own here: the text of a large report is several times as large as its findings.
+    Each finding is yielded as one piece, because the text of a large report is several times as large as its
+    findings.
     """
     known: dict[Step, Written] = {}  # a cache, because flows share most of their steps
 

@@ -17,7 +17,7 @@ _CLASSES: Final = (
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the graph, the same text for the same flows."""
+    """Yield the graph; equal flows give equal text."""
     for text in _graph(picture(result)):
         yield ((text, ""),)
 
@@ -47,6 +47,6 @@ def _edges(part: Part, name: str, numbers: dict[str, str]) -> Iterator[str]:
 
 
 def quoted(text: str) -> str:
-    """Return a string quoted, so that nothing in it is read as syntax or markup."""
+    """Return a string quoted, so that Mermaid reads none of its characters as syntax or markup."""
     escaped = text.replace("#", "#35;").replace('"', "#quot;").replace("<", "#lt;").replace(">", "#gt;")
     return '"' + escaped.replace("`", "#96;").replace("\n", "<br/>") + '"'

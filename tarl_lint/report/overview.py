@@ -17,7 +17,7 @@ _ALTERNATIVES: Final = 4
 
 
 def overview(flows: Sequence[Flow], view: View) -> Iterator[Line]:
-    """Yield published topics with the topics whose data they carry and those used only in conditions."""
+    """Yield the published topics, each with the topics whose data it carries and the topics used only in conditions."""
     if len({flow.sink.span for flow in flows}) < MANY:
         return
     yield (("Published topics, and the topics that reach them:", "strong"),)
@@ -48,7 +48,7 @@ def _topic(name: str, flows: Sequence[Flow], margin: int, view: View) -> Iterato
 
 
 def _few(topics: Sequence[str]) -> str:
-    """Return the possible topics of one call, abbreviated if there are many."""
+    """Return the possible topics of one call; a long list is abbreviated."""
     if len(topics) <= _ALTERNATIVES:
         return topic_text(topics)
     return f"{topic_text(topics[: _ALTERNATIVES - 1])} or {len(topics) - _ALTERNATIVES + 1} others"

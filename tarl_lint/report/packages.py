@@ -32,10 +32,10 @@ class Group:
 
 
 def grouped(findings: Sequence[Finding]) -> tuple[Group, ...]:
-    """Return the findings by package, sorted by name; code that is not run on the robot comes last."""
+    """Return the findings by package, sorted by name. Packages whose code is not run on the robot come last."""
     aside = tuple(f for f in findings if _ASIDE.search(f.span.path))
     if len(aside) == len(findings):
-        aside = ()  # if all findings are in code such as examples and tests, group these by package
+        aside = ()  # if all findings are in code such as examples and tests, group the findings by package
     by_package: dict[str, list[Finding]] = {}
     for finding in findings:
         if finding not in aside:

@@ -233,7 +233,7 @@ def _step(step: Step) -> dict[str, Any]:
 
 
 def location(span: Span, end: Source | Sink | None = None) -> dict[str, Any]:
-    """Return the place of a span, with the function of an end of a flow."""
+    """Return the place of a span; for an end of a flow, with the name of its function."""
     region = {
         "startLine": span.line,
         "startColumn": span.column,

@@ -15,7 +15,7 @@ from tarl_lint.report.line import Line, View, one_line
 from tarl_lint.run.runner import UNREADABLE, Result
 from tarl_lint.suppress import XML, YAML, Suppression
 
-_CLASSES: Final = 5  # maximum number of classes from outside the analysed files that are named individually
+_CLASSES: Final = 5  # maximum number of classes outside the analysed files that the report names individually
 _SHOWN: Final = 20  # maximum number of vanished findings that are named individually
 
 
@@ -254,7 +254,7 @@ def statistics(result: Result) -> Iterator[Line]:
 
 
 def counts_of_findings(result: Result) -> list[tuple[str, int]]:
-    """Return rows for `counted`: the findings of each rule, the unreadable files, and what was silenced or accepted."""
+    """Return rows for `counted`: findings of each rule, unreadable files, and silenced and accepted findings."""
     return [
         *sorted(Counter(f.code for f in result.findings).items()),
         (UNREADABLE, len(result.errors)),
@@ -273,7 +273,7 @@ def counted(rows: Sequence[tuple[str, int]]) -> Iterator[Line]:
 
 
 def _reach(flows: Sequence[Flow]) -> list[tuple[str, int]]:
-    """Return (topic, number of publish calls that it reaches), largest number first."""
+    """Return pairs of a topic and the number of publish calls that it reaches, largest number first."""
     pairs = {(topic_text(flow.source.topics), flow.sink.id, flow.sink.span) for flow in flows}
     counts = Counter(topic for topic, *_ in pairs)
     return sorted(counts.items(), key=lambda item: (-item[1], item[0]))

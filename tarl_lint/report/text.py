@@ -57,7 +57,7 @@ def errors(result: Result) -> Iterator[Line]:
 
 
 def _findings(result: Result, view: View) -> Iterator[Line]:
-    """Yield the findings of each package; of many flows, only the first ones and the number of the others."""
+    """Yield the findings of each package. Of many flows, yield only the first ones, and the number of the others."""
     if not result.new:
         return
     from tarl_lint.report.packages import grouped

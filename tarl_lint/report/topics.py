@@ -27,7 +27,7 @@ class Topic:
 class Part:
     """Publish calls of one file that the same topics reach in the same way (`kind`).
 
-    One box thus represents many flows, and every path through a box is a flow.
+    A box therefore represents many flows, and every path through the box is a flow.
     """
 
     path: str
@@ -56,7 +56,7 @@ class Picture:
 
 
 def picture(result: Result) -> Picture:
-    """Return the diagram of all flows of a run, including accepted ones; with a baseline, new ones are marked."""
+    """Return the diagram of all flows of a run, including accepted flows; with a baseline, new flows are marked."""
     flows = [(f, f.flow) for f in result.findings if f.flow]
     marked = result.baseline is not None
     parts = sorted(_parts(flows, _names(flows), marked=marked), key=lambda p: (p.path, p.label, p.inputs))
@@ -68,7 +68,10 @@ def picture(result: Result) -> Picture:
 
 
 def _names(flows: Sequence[tuple[Finding, Flow]]) -> Mapping[str, Topic]:
-    """Return the topics by key. Different spellings of a topic get one label, with a slash if any of them has one."""
+    """Return the topics by key.
+
+    Different spellings of a topic get one label, which has a slash if any spelling has a slash.
+    """
     every = {topic for _, flow in flows for end in (flow.source, flow.sink) for topic in _topics(end)}
     return {topic.key: topic for topic in sorted(every, reverse=True)}
 
@@ -92,7 +95,7 @@ def _parts(
 
 
 class _Likeness(NamedTuple):
-    """The key that publish calls in the same box have in common."""
+    """The properties that all publish calls in one box have in common."""
 
     path: str
     owner: str

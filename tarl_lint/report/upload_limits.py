@@ -1,7 +1,8 @@
 """GitHub's limits for SARIF files, and how to reduce a large report to them.
 
-Limits for uploads to code scanning, as documented in 2026: 10 MB after compression by gzip. 25,000 results in a run,
-of which the 5,000 most severe are shown. 10,000 locations of thread flows in a result, of which 1,000 are shown.
+Uploads to code scanning have these limits, as documented in 2026: 10 MB after compression by gzip; 25,000 results
+in a run, of which the 5,000 most severe are shown; and 10,000 locations of thread flows in a result, of which 1,000
+are shown.
 """
 
 from __future__ import annotations

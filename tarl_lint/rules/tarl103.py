@@ -51,7 +51,7 @@ def own_response(flow: Flow) -> bool:
     source, sink = flow.source, flow.sink
     if on_topic(source.api) or not sink.api.startswith(f"{source.api}."):
         return False
-    # If the names are unknown, two servers of one type are distinguished by their request handlers.
+    # If the names of two servers of one type are unknown, the servers are distinguished by their request handlers.
     handled = source.topics or source.callback.rpartition(".")[2] == sink.qualname.rpartition(".")[2]
     return bool(handled) and (source.topics, source.type) == (sink.topics, sink.type)
 

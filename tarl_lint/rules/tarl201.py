@@ -159,7 +159,7 @@ VALID: Final = (
 def ruled_out(side: Side) -> bool:
     """Return whether the group certainly has no state that is guarded in only some places.
 
-    This is so if the group creates no lock, or if each state is guarded at all of its uses or at none of them.
+    This is so if the group creates no lock. It is also so if each state is guarded at all of its uses, or at none.
     """
     return not any(map(MADE.search, side.texts)) or always_or_never_guarded(side.modules)
 

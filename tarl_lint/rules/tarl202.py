@@ -6,7 +6,8 @@ bounded result (`sin`, `atan2`), or a comparison that replaces values that are t
 infinity, jumps or invalid values, and the command follows them. Clamp the value at the reported line, where it is
 computed.
 
-A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound the value.
+A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound the value
+from above.
 
 The rule treats messages such as `LaserScan`, `Odometry` and `Imu` as sensor data. A plain number is sensor data if the
 name of its topic says so (`/range`, `/cte`). The rule does not report values of other messages, such as commands, goals
@@ -167,7 +168,7 @@ ASKED_FOR: Final = re.compile(
 
 
 def ruled_out(side: Side) -> bool:  # noqa: ARG001 - shared signature
-    """Return True: a command that follows a sensor is a flow, and the group has none."""
+    """Return True: a command that follows a sensor is a flow, and a one-sided group has no flow."""
     return True
 
 

@@ -105,7 +105,7 @@ def ruled_out(side: Side) -> bool:
 
 
 def _handed_on(tree: ast.Module) -> Iterator[str]:
-    """Yield the names that are used other than in calls, and the strings, which may name a method."""
+    """Yield the names that are used elsewhere than in calls, and the strings, because a string may name a method."""
     called = {id(n.func) for n in walk(tree) if isinstance(n, ast.Call)}
     for node in walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
@@ -147,7 +147,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _callbacks(evidence: Evidence, records: Sequence[SourceRecord]) -> list[tuple[Function, str]]:
-    """Return the callbacks of the subscriptions at one line, with their files; empty if one of them is unknown."""
+    """Return the callbacks of the subscriptions at one line, with their files; empty if one callback is unknown."""
     found: list[tuple[Function, str]] = []
     if records[0].kind != "topic" or "ubscri" not in records[0].api:
         return found  # the rule is about subscriptions: a service handler is allowed to ignore its request
@@ -161,20 +161,20 @@ def _callbacks(evidence: Evidence, records: Sequence[SourceRecord]) -> list[tupl
 
 
 def _meant(function: Function) -> bool:
-    """Return whether a function declares that it ignores its messages, or that subclasses override it."""
+    """Return whether a function declares that it ignores its messages, or is meant to be overridden by subclasses."""
     ignored = any(p.name.startswith("_") for p in function.parameters)
     return ignored or bool(function.decorators) or isinstance(function.node, ast.Lambda)
 
 
 def acting(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
-    """Return whether a function cannot be reported: it declares that it is idle, acts, or returns a value."""
+    """Return whether a function cannot be reported: because it declares that it is idle, acts, or returns a value."""
     if node.decorator_list or any(a.arg.startswith("_") for a in node.args.args):
         return True
     return any(_acts(p) or _returns(p) for statement in node.body for p in walk(statement))
 
 
 def _kept(function: Function, path: str, evidence: Evidence) -> set[str] | None:
-    """Return the attributes (`self.x`) and globals that a callback stores to; None if it does anything else."""
+    """Return the attributes (`self.x`) and globals in which a callback stores values; None if it does anything else."""
     node = function.node
     if isinstance(node, ast.Lambda):
         return None
@@ -219,7 +219,7 @@ def _attribute(target: ast.expr, receiver: str) -> str | None:
 
 
 def _unread(names: set[str], functions: list[tuple[Function, str]], evidence: Evidence) -> bool:
-    """Return whether nothing reads the values stored under the names."""
+    """Return whether no code reads the values stored under the names."""
     own = [function.node for function, _ in functions]
     for name in names:
         plain, attribute = name.removeprefix("self."), name.startswith("self.")

@@ -82,7 +82,7 @@ def ruled_out(side: Side) -> bool:
 
 
 def _all_publish(module: Module, text: str) -> bool:
-    """Return whether every publisher is stored under a name of its own that is used to publish."""
+    """Return whether every publisher is stored under its own name, and this name is used to publish."""
     if not any(maker in text for maker in PUBLISHER_MAKERS):
         return True
     mentioned, names = 0, list[str]()
@@ -118,7 +118,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _may_publish(path: str, pos: Pos, evidence: Evidence) -> bool:
-    """Return whether any code could publish with the publisher that a call creates."""
+    """Return whether any code could use the publisher that a call creates in order to publish."""
     outline = evidence.outline(path)
     call = outline.call(pos)
     statement = outline.parents.get(call) if call is not None else None
@@ -140,7 +140,7 @@ def _may_publish(path: str, pos: Pos, evidence: Evidence) -> bool:
 
 
 def _target_read(target: ast.expr, path: str, pos: Pos, evidence: Evidence) -> bool:
-    """Return whether the publisher stored in a target is used for more than queries about it."""
+    """Return whether code uses the publisher stored in a target, other than to ask for its properties."""
     outline = evidence.outline(path)
     if isinstance(target, ast.Attribute):
         reads = evidence.reads(target.attr, attribute=True)
@@ -164,7 +164,7 @@ def _declared(function: ast.AST, name: str) -> bool:
 
 
 def _harmless(read: Read, path: str, pos: Pos, evidence: Evidence) -> bool:
-    """Return whether a use neither publishes nor passes the publisher on."""
+    """Return whether a use of a publisher neither publishes nor passes the publisher on."""
     outer = read.around[0]
     if isinstance(outer, ast.Attribute):
         called = read.around[1]
@@ -179,7 +179,7 @@ def _harmless(read: Read, path: str, pos: Pos, evidence: Evidence) -> bool:
 
 
 def _others(read: Read, call: ast.Call, path: str, pos: Pos, evidence: Evidence) -> bool:
-    """Return whether a publish call on the same name uses only other publishers than this one."""
+    """Return whether a publish call on the same name uses only publishers other than this one."""
     place = (call.lineno, call.col_offset, call.end_lineno or 0, call.end_col_offset or 0)
     records = [one for one in evidence.machine.sinks.values() if (one.path, one.pos) == (read.path, place)]
     if not records or read.path != path or any((path, pos) in one.publishers for one in records):
@@ -192,7 +192,7 @@ def _others(read: Read, call: ast.Call, path: str, pos: Pos, evidence: Evidence)
 
 
 def _related(one: ast.AST | None, other: ast.AST | None) -> bool:
-    """Return whether one class may inherit from the other: directly, or through a base that is not analysed."""
+    """Return whether one class may inherit from the other, directly or through a base class that is not analysed."""
     if not isinstance(one, ast.ClassDef) or not isinstance(other, ast.ClassDef):
         return False
     return any(

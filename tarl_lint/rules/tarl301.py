@@ -1,10 +1,10 @@
 """TARL301: a subscription has no publisher, and a publisher with a similar name has no subscriber.
 
 The two ends were probably meant to be connected. Their message types are equal, and their names differ only by a
-namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error but does not move. In
-this way, the keyboard teleoperation of the Kobuki lost its effect (https://github.com/aliasrobotics/RVD/issues/581). A
-robot also stands still if it is launched in a namespace but its code publishes on `/cmd_vel`
-(https://github.com/UoY-RoboStar/AURO/issues/5).
+namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error but does not move.
+In this way, the keyboard teleoperation of the Kobuki lost its effect
+(https://github.com/aliasrobotics/RVD/issues/581). A robot also stands still if the launch file starts it in a
+namespace but its code publishes on `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
 
 Two names are also similar in these cases:
 
@@ -14,8 +14,9 @@ Two names are also similar in these cases:
 - The words have the same meaning (`/gripper/state` and `/gripper/status`).
 - Both names are private to the same node (`~finished` and `~finish`).
 
-A launch file may also rename a node. The code calls the node `elevator` and its topic `~floor`, the launch file calls
-the node `lift`: then the topic is `/lift/floor`, and a subscription to `/elevator/floor` has no publisher.
+A launch file may also rename a node. Suppose that the code calls a node `elevator` and one of its topics `~floor`,
+and the launch file calls this node `lift`. Then the topic is `/lift/floor`, and a subscription to `/elevator/floor`
+has no publisher.
 
 Two names are not similar if they differ in a word of one or two letters (`wheel_fl` and `wheel_fr`). Names with fewer
 than five letters are similar only if two letters are exchanged (`/sacn` and `/scan`).
@@ -33,9 +34,9 @@ tarl-lint knows the types of well-known packages, and a C++ program of the works
 name.
 
 A sensor driver is recognised by its package, or by a word such as `lidar` or `gps` in its name. An unknown sensor
-driver is disregarded unless it may also use one of the two names. It may use a name that it mentions, a name that is
-private to it, and a name such as `/rear/scan` or `/points_raw`, whose last part is typical of sensor drivers.
-`/obstacles` is not such a name.
+driver matters only if it may also use one of the two names. There are three kinds of names that it may use: a name
+that it mentions, a name that is private to it, and a name whose last part is typical of sensor drivers.
+`/rear/scan` and `/points_raw` are typical; `/obstacles` is not.
 
 The rule reports nothing if no publisher has a similar name, because sensors, simulators and teleoperation are often
 started elsewhere. Of 23 topics without a similar publisher, in launch files that are known completely, only one was a
@@ -160,7 +161,7 @@ VALID: Final = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each subscription that differs from a publisher only in the name of the topic."""
+    """Yield a hazard for each subscription that matches a publisher in everything but the name of the topic."""
     published, subscribed = (
         {name for name, _, _ in system.named(role)} for role in ("publishes", "subscribes")
     )
@@ -187,7 +188,7 @@ def findings(system: System) -> Iterator[Finding]:
 
 
 def _passed_on(who: Instance, system: System) -> str:
-    """Return the type of the messages that a relay passes on: that of the publishers of its input; "" if unknown."""
+    """Return the type of the messages that a relay passes on: the type of its input's publishers; "" if unknown."""
     heard = (
         {name for name, _ in who.ends("subscribes")} if who.interface is None and who.known.through else set()
     )

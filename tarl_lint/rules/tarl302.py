@@ -165,7 +165,7 @@ _ROLES: Final[tuple[tuple[Role, Role, str, str], ...]] = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each subscription or client whose type no other end of its topic or service has."""
+    """Yield a hazard for each subscription or client whose type differs from all other ends of its topic or service."""
     for role, opposite, does, others_do in _ROLES:
         for name, who, end in system.named(role):
             others = {

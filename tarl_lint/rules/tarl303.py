@@ -164,7 +164,7 @@ def findings(system: System) -> Iterator[Finding]:
 
 
 def _refused(offered: Endpoint, asked: Endpoint) -> Iterator[tuple[str, str]]:
-    """Yield each policy that the subscription asks for, with the one that the publisher offers instead."""
+    """Yield each policy that the subscription requests, with the weaker policy that the publisher offers."""
     if offered.qos is None or asked.qos is None:
         return
     if asked.qos.reliable is True and offered.qos.reliable is False:

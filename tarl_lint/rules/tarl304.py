@@ -9,8 +9,8 @@ Names are similar under the conditions of TARL301. Two names in the same namespa
 offer a service of this type, so not with `Trigger`. Actions are compared in the same way as services.
 
 If some nodes are unknown or a launch file is missing, the rule reports only misspelt names that no unknown node
-mentions. An unknown sensor driver is disregarded unless it may offer the type under one of the two names: a laser
-driver may offer a `Trigger` named `start_motor`, but none named `release`.
+mentions. An unknown sensor driver matters only if it may offer the type under one of the two names. A laser driver
+may offer a `Trigger` named `start_motor`, but not one named `release`.
 
 The rule reports nothing if no server has a similar name, because the server may be started elsewhere; servers of
 drivers and controllers usually are. The report of `--launch` lists such services under "No server here" and such
@@ -88,7 +88,7 @@ _ROLES: Final[tuple[tuple[Role, Role, str, str], ...]] = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each client whose service or action differs from that of a server only in its name."""
+    """Yield a hazard for each client whose service or action has the same type as a server's but a different name."""
     for client, server, calls, offers in _ROLES:
         served, called = ({name for name, _, _ in system.named(role)} for role in (server, client))
         lonely = [Lonely(*one) for one in system.ends(server) if one[0] not in called]

@@ -5,12 +5,12 @@ multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: the 
 control published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
 
 The rule covers commands such as `Twist` and `JointTrajectory`, and numbers on topics such as `wheel/command` or
-`left_thrust`. Each of the two nodes must compute its commands from a subscribed topic, or publish them in a timer or
-loop, as a patrol by the clock does. Of programs without source, the rule knows common ones such as `teleop_twist_joy`,
-`move_base` and `twist_mux`; at least one of the two nodes must have source.
+`left_thrust`. Each of the two nodes must compute its commands from a subscribed topic, or publish them in a timer
+or loop, as in a patrol that follows the clock. The rule also knows common programs that have no source in the
+workspace, such as `teleop_twist_joy`, `move_base` and `twist_mux`. At least one of the two nodes must have source.
 
-The rule does not cover nodes that only stop the robot, nor nodes that publish once. It does not cover nodes that are
-started under a condition known only on the robot, because one of them may replace the other.
+The rule does not cover nodes that only stop the robot, nor nodes that publish once. It does not cover nodes that
+are started under a condition known only on the robot, because two such nodes may be alternatives.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ def _of_known_programs(system: System) -> Iterator[tuple[str, Instance, Endpoint
     """Yield the commands of programs that are known without source, such as teleoperation and multiplexers."""
     for topic, instance, end in system.named("publishes"):
         known = instance.interface is None and not instance.node.condition and end.span == place_of(instance)
-        # a bridge in both directions publishes what others publish
+        # a bridge that works in both directions publishes the messages of other nodes
         both = any(name == topic for name, _ in instance.named("subscribes"))
         if known and not both and is_command(end.type, (topic,)):
             yield topic, instance, end

@@ -9,13 +9,13 @@ in a namespace therefore gets no value of this section. The rule reports the sec
 gives the node the same parameters. A section without `ros__parameters` is reported as well. If the launch file renames
 a node, a section with the name that the node has in its code is also reported.
 
-The rule reports a parameter only if it could read the program of the node with all its imports, and only if the program
-states the names of all its parameters. The names may be literals, entries of tables and lists, arguments of functions,
-fields of classes, or parameters of dynamic_reconfigure in the workspace's `.cfg` files. A program may also compose a
-name from parts that are known at each call, as in `get_param("~%s/%s" % (group, key))` in a helper or `f"tray{n}.tare"`
-in a loop over `range(4)`. If some parts of a composed name are unknown, the rule accepts every name that the words and
-digits of the program can form. If a group sets a parameter for all its nodes, the rule reports the parameter only if
-none of the nodes has it.
+The rule reports a parameter only if it could read the program of the node with all its imports, and only if the
+program states the names of all its parameters. The names may be literals, entries of tables and lists, arguments of
+functions, fields of classes, or parameters of dynamic_reconfigure in the workspace's `.cfg` files. A program may
+also compose a name from parts that are known at each call, as in `get_param("~%s/%s" % (group, key))` in a helper
+or `f"tray{n}.tare"` in a loop over `range(4)`. If some parts of a composed name are unknown, the rule accepts every
+name that can be formed from words and digits in the program. If a group sets a parameter for all its nodes, the
+rule reports the parameter only if none of the nodes has it.
 
 In ROS 1, a launch file may set private parameters of a node by their full names, outside the node. The rule reports
 such a parameter if the same file sets another parameter that the node has, or if the node has a parameter with a
@@ -207,10 +207,10 @@ def findings(system: System) -> Iterator[Finding]:
 
 
 def _above(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each parameter of ROS 1 that is set outside the nodes, below the name of one of them.
+    """Yield a hazard for each parameter of ROS 1 that is set outside the nodes, below the name of a node.
 
-    Controllers and other nodes may read parameters there. So the node must have another parameter of the same setting,
-    or one with a similar name.
+    Controllers and other nodes may read parameters there. The hazard is therefore reported only if the node has
+    another parameter of the same setting, or a parameter with a similar name.
     """
     readers = [one for one in system.instances if one.interface is not None]
     for setting in system.settings:
@@ -256,9 +256,9 @@ def _untitled(setting: Setting, instances: list[Instance]) -> Iterator[Finding]:
 
 
 def _beside(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each parameter of ROS 1 in a namespace that a node there reads only as its own.
+    """Yield a hazard for each parameter of ROS 1 in a namespace that a node there reads only as a private parameter.
 
-    No other node of the system may read it, so all programs must be read.
+    No other node of the system may read the parameter, so all programs must have been read.
     """
     if system.ros2 or any(one.interface is None and not one.silent for one in system.instances):
         return
@@ -280,7 +280,8 @@ def _beside(system: System) -> Iterator[Finding]:
 def _elsewhere(setting: Setting, instances: list[Instance], system: System) -> Iterator[Finding]:
     """Yield a hazard for each section without a namespace that has the name of a node in a namespace.
 
-    If a launch file gives a node another name than its code, the section may have the name in the code.
+    If a launch file gives a node a name different from the name in the code, the section may have the name in the
+    code.
     """
     named = list(sections(_parsed(setting)))
     for pattern, values in named:
@@ -356,10 +357,10 @@ def _misspelt(name: str, instances: Iterable[Instance]) -> bool:
 
 
 def _given(setting: Setting, instances: list[Instance]) -> Iterator[tuple[str, tuple[Instance, ...], bool]]:
-    """Yield the parameters in a setting, each with the nodes that it is meant for.
+    """Yield the parameters in a setting, each with the nodes for which it is meant.
 
-    The last part says whether it is certainly meant for them: a section for all nodes may be meant for nodes of other
-    launch files.
+    The last item of each tuple says whether the parameter is certainly meant for these nodes: a section for all
+    nodes may be meant for nodes of other launch files.
     """
     above = setting.name.lstrip("~").strip("/")
     if setting.yaml is None or above:

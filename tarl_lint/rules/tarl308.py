@@ -7,10 +7,10 @@ robot ignored all velocity commands (https://github.com/aliasrobotics/RVD/issues
 A remapping from `/cmd_vel` also matches nothing if the node uses `cmd_vel` in the namespace `/robot`, where the topic
 is `/robot/cmd_vel`.
 
-The rule reports a remapping only if it could read all nodes to which the remapping applies, with all their imports. The
-names of their topics must be constant. No other string of the nodes may equal the remapped name or end with it. The
-private name `~path` and the longer name `front/path` do not use the name `path`. If a group has a remapping, the rule
-reports it only if it matches nothing in any node of the group.
+The rule reports a remapping only if it could read all nodes to which the remapping applies, with all their imports.
+The names of their topics must be constant. No other string of the nodes may equal the remapped name or end with it.
+The private name `~path` and the longer name `front/path` do not use the name `path`. If a group has a remapping,
+the rule reports the remapping only if it matches nothing in any node of the group.
 """
 
 from __future__ import annotations
@@ -184,7 +184,7 @@ _PARTS: Final = ("goal", "cancel", "status", "feedback", "result")  # topics of 
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each remapping that matches nothing in any node that has it."""
+    """Yield a hazard for each remapping that matches nothing in any of the nodes to which it applies."""
     carriers: dict[tuple[str, str, str], list[Instance]] = {}
     for instance in system.instances:
         for number, (old, new) in enumerate(instance.node.remaps):
@@ -199,7 +199,7 @@ def findings(system: System) -> Iterator[Finding]:
 
 
 def _used_instead(instance: Instance, old: str) -> str:
-    """Return the end of the message: the name that was probably meant, or else the names that the node uses."""
+    """Return the last part of the message: the name that was probably meant, or else the names that the node uses."""
     used = sorted({name for role in get_args(Role) for _, end in instance.ends(role) for name in end.names})
     own, namespace = instance.name.rpartition("/")[2], instance.node.namespace
     near = [name for name in used if _last(name) == _last(old)]
@@ -232,7 +232,7 @@ def _unmatched(instance: Instance, old: str) -> bool:
     words = frozenset[str]()
     if instance.interface is not None:
         words = instance.interface.words - instance.interface.private_words - names
-    # the end of a name may be put below a namespace; a longer name is another one
+    # the last part of a name may be placed below a namespace; a longer name is a different name
     whole = resolved(old, namespace, own)
     said = any(whole.endswith(f"/{word.strip('/')}") for word in words if word.strip("/"))
     return not said and whole not in used

@@ -118,7 +118,7 @@ VALID: Final = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each use of an absent field, only once if several nodes run the same program."""
+    """Yield a hazard for each use of an absent field; once if several nodes run the same program."""
     from difflib import get_close_matches  # slow to import; reports import every rule
 
     known = {**KNOWN_FIELDS, **system.messages}
@@ -138,7 +138,7 @@ def findings(system: System) -> Iterator[Finding]:
 
 
 def _fields(misfit: Misfit, known: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """Return the fields of a message type, in the release of ROS in which it lacks the field."""
+    """Return the fields of a message type in the release of ROS in which the type lacks the field."""
     releases = (known, *(BY_RELEASE[one] for one in sorted(BY_RELEASE)))
     given = [one[misfit.type] for one in releases if misfit.type in one]
     fields = next((one for one in given if misfit.field not in one), {})

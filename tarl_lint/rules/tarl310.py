@@ -6,9 +6,9 @@ example, the launch files of a perception stack could not be started with one co
 nodes were named `to_pose_array` (https://github.com/strands-project/strands_perception_people/issues/212).
 
 The rule compares full names, including the namespace. Two nodes named `$(anon view)` in one file also get the same
-name. The rule does not cover nodes that an event starts, nor nodes without source that have no name in the launch file.
-It does not cover nodes that are started under a condition known only on the robot, because one of them may replace the
-other.
+name. The rule does not cover nodes that an event starts. It also does not cover nodes without source if the launch
+file gives them no name. It does not cover nodes that are started under a condition known only on the robot, because
+two such nodes may be alternatives.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ VALID: Final = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each node that has the name of an earlier one."""
+    """Yield a hazard for each node that has the same name as an earlier node."""
     if system.file.is_dir():
         return  # the system combines several launch files, which need not run together
     first: dict[tuple[str, str], Instance] = {}

@@ -1,8 +1,8 @@
 """Cache of results by content, settings and version. A problem with the cache never fails a run.
 
-One file contains the entries of the last run on the same paths with the same settings. The first line of the
-file is the digest of the rest, so a damaged file is not read. The file is written under another name and then
-renamed, so concurrent runs only replace each other's file.
+One file contains the entries of the last run on the same paths with the same settings. The first line of the file
+is the digest of the rest, so a damaged file is not read. The file is written under another name and then renamed.
+If several runs write at the same time, the last one replaces the file of the others.
 """
 
 from __future__ import annotations
@@ -44,7 +44,8 @@ AFTERWARDS: Final = frozenset(
 class Report:
     """The results for a group of files: findings without fingerprints, and files that could not be analysed.
 
-    `cut` are the programs that exhausted their budget, `ended` the classes outside the files at which flows ended.
+    `cut` are the programs that exhausted their budget. `ended` are the classes outside the files at which flows
+    ended.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -84,7 +85,7 @@ class Cache:
         )
 
     def put(self, key: str, report: Report) -> None:
-        """Store a report, unless it contains an internal error: the next version may not have that error.
+        """Store a report, unless it contains an internal error, because the next version may no longer have this error.
 
         Without a file, nothing is stored, since no later run can read it.
         """
@@ -101,10 +102,10 @@ class Cache:
         return frozenset()
 
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
-        """Keep what the analysis has read to make a report, if the cache `adapts` reports."""
+        """Keep the parts that the analysis has read to make a report, if the cache `adapts` reports."""
 
     def entry(self, key: str) -> Any:
-        """Return what is stored under a key; None if there is nothing."""
+        """Return the entry stored under a key; None if there is none."""
         found = self._reports.get(key)
         if found is not None:
             self._used[key] = found
@@ -153,7 +154,7 @@ class Cache:
 
 
 def opened(paths: Sequence[Path], config: Config, of: str = "", spare: int = 0) -> Cache:
-    """Return the cache of runs on these paths with these settings; `of` names a separate kind of entries."""
+    """Return the cache of runs on these paths with these settings; `of` selects another kind of entries."""
     settings = [f"{f.name}={getattr(config, f.name)!r}" for f in fields(config) if f.name not in AFTERWARDS]
     places = [os.path.abspath(p) for p in paths]  # noqa: PTH100 - paths stay strings, and need not exist
     here = os.getcwd()  # noqa: PTH109

@@ -17,7 +17,7 @@ from tarl_lint.run.gc_paused import without_collection
 from tarl_lint.run.progress import Tell, silent
 from tarl_lint.settings.config import Config
 
-# number of lines to analyse below which starting processes takes longer than it saves
+# if there are fewer lines to analyse, starting processes takes more time than it saves
 MANY_LINES: Final = 30_000
 
 
@@ -46,10 +46,10 @@ def examine(
     tell: Tell = silent,
     partly: Partly | None = None,
 ) -> Report:
-    """Return the findings in the files, which do not depend on the number of processes (None: chosen by the size).
+    """Return the findings in the files. They do not depend on the number of processes (None: chosen by the size).
 
-    `partly` gets the report so far after 1, 2, 4, … of several analyses. With `partly`, programs that are run from an
-    edited file come first, then small ones before large ones.
+    If there are several analyses, `partly` gets the report so far after 1, 2, 4, … of them. With `partly`, programs
+    that are run from an edited file come first, then small programs before large ones.
     """
     digests = {
         s.path: digest([s.path, s.name, str((s.is_package, s.installed)), *s.started, s.text])
@@ -97,7 +97,7 @@ def _tasks(scripts: Sequence[Script], config: Config) -> list[Task]:
 
 @dataclass(frozen=True)
 class _Progressive:
-    """Reports what has been found while programs are still to be analysed."""
+    """Reports the findings so far while other programs are still to be analysed."""
 
     partly: Partly
     edited: frozenset[str]
@@ -107,7 +107,7 @@ class _Progressive:
         return task.scripts[-1].path not in self.edited, task.lines
 
     def tell(self, tasks: Sequence[Task], found: Sequence[Report | None], done: int) -> None:
-        """Report what has been found so far, only after 1, 2, 4, … analyses, since each report takes time."""
+        """Report the findings so far. This happens only after 1, 2, 4, … analyses, since each report takes time."""
         pending = [task for task, report in zip(tasks, found, strict=True) if report is None]
         if not pending or done & (done - 1):
             return
@@ -140,7 +140,7 @@ def _reports(
 
 
 def _known(task: Task, key: str, cache: Cache) -> Report | None:
-    """Return the report of a task if it is cached, or if the report for earlier texts of its files is still valid."""
+    """Return the report of a task if it is cached, or if a report for earlier texts of its files is still valid."""
     report = cache.report(key)
     if report is None and task.analyse:
         report = cache.adapted(task.scripts)
@@ -185,7 +185,7 @@ def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell, cache
 
 
 class _Parsed:
-    """Parses files; a file of several tasks is parsed once."""
+    """Parses files; a file that belongs to several tasks is parsed once."""
 
     def __init__(self, tasks: Sequence[Task] = ()) -> None:
         self._left = Counter(script.path for task in tasks for script in task.scripts)
@@ -208,9 +208,9 @@ def perform(
     shared: _Parsed | None = None,
     readings: dict[str, Reading] | None = None,
 ) -> Report:
-    """Parse and analyse the files of a task. A file on which the analysis crashes becomes an error entry.
+    """Parse and analyse the files of a task. If the analysis crashes on a file, the file becomes an error entry.
 
-    With `readings`, what the analysis has read of each file is stored there.
+    With `readings`, the parts that the analysis has read of each file are stored there.
     """
     with without_collection():
         parse = (shared or _Parsed()).module

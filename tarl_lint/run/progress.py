@@ -21,7 +21,7 @@ def silent(_text: str) -> None:
 
 @contextmanager
 def paused(tell: Tell) -> Iterator[None]:
-    """Stop the progress thread for a while, since a process with threads cannot be forked safely."""
+    """Stop the progress thread while the process forks, since a process with threads cannot be forked safely."""
     owner = getattr(tell, "__self__", None)
     if not isinstance(owner, Progress):
         yield

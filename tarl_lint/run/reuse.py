@@ -1,6 +1,6 @@
 """Reuse reports in an editor session: a report remains valid if its analysis did not read the edited code.
 
-An edit of comments, of blank lines, or of functions that a program does not use only moves lines.
+Some edits only move lines: edits of comments, of blank lines, or of functions that a program does not use.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Moves = Mapping[str, Mapping[int, int]]  # file → line before the edit → lin
 
 
 class LineLostError(Exception):
-    """The new place of a line of a report is not known."""
+    """It is not known where a line of a report is after an edit."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Analyses:
         self._last: dict[str, tuple[_Analysis, ...]] = {}
 
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
-        """Keep a report, and what its analysis has read of each file, unless a file could not be analysed."""
+        """Keep a report, and the parts that its analysis has read of each file, unless a file could not be analysed."""
         if readings and not report.errors and two_sided([s.text for s in scripts], self._config):
             made, path = _Analysis(tuple(scripts), readings, report), scripts[-1].path
             self._last[path] = (made, *self._last.get(path, ()))[:KEPT_ANALYSES]
@@ -104,7 +104,7 @@ def _sink(sink: Sink, moves: Moves) -> Sink:
 
 
 def _named(end: Source | Sink, span: Span) -> str:
-    """Return the identity of a source or sink; without a known topic, it contains the line."""
+    """Return the identity of a source or sink. If it has no known topic, the identity contains the line."""
     start = f"{end.module}:{end.qualname or '<module>'}:line "
     before = f"{start}{end.span.line}"
     if end.topics or span == end.span or not end.id.startswith(before):

@@ -1,6 +1,6 @@
 """One run: discover files, parse and analyse them, silence findings, subtract the baseline.
 
-A file that fails is an error entry.
+A file that cannot be processed becomes an error entry.
 """
 
 from __future__ import annotations
@@ -54,14 +54,15 @@ class Statistics:
 class Result:
     """The result of a run, from which all reports are made.
 
-    `findings` are sorted by place and have a fingerprint and a status; `silenced` are those silenced by comments.
-    `found` are the findings in the form of a baseline. `vanished` and `kept` are the other entries of the baseline.
-    `unmatched` are messages about settings without effect. `followed` are the installed packages that were analysed.
-    `ended` are the classes outside the files at which flows ended. `texts` maps paths to the texts of the files.
-    `has_endpoints` is false if no file contains a word used to subscribe or publish. `left_out` counts findings
-    disabled by `per-file-ignores`, `off_by_default` those of rules that are off by default. Unless `names_errors`, text
-    reports count unreadable files without listing them. `kinds` are the kinds of flows that were requested,
-    `reports_hazards` and `follows_clients` tell whether hazards and clients were. Codes in `failing` fail the run.
+    `findings` are sorted by place and have a fingerprint and a status; `silenced` are the findings that comments
+    silence. `found` are the findings in the form of a baseline. `vanished` and `kept` are the other entries of the
+    baseline. `unmatched` are messages about settings without effect. `followed` are the installed packages that
+    were analysed. `ended` are the classes outside the files at which flows ended. `texts` maps paths to the texts
+    of the files. `has_endpoints` is false if no file contains a word used to subscribe or publish. `left_out` is
+    the number of findings that `per-file-ignores` disables. `off_by_default` is the number of findings of rules
+    that are off by default. If `names_errors` is False, text reports give the number of unreadable files without
+    listing them. `kinds` are the kinds of flows that were requested. `reports_hazards` and `follows_clients` say
+    whether hazards and clients were requested. Codes in `failing` fail the run.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -189,7 +190,7 @@ def _result(report: Report, files: _Files, config: Config) -> Result:
 
 
 def _in_vain(comment: Suppression, config: Config) -> bool:
-    """Return whether all rules that a comment may silence are enabled.
+    """Return whether all rules are enabled that a comment may silence.
 
     A comment without a code silences the default rules. Rules of architecture need `--launch`.
     """
@@ -273,7 +274,7 @@ def _accepted(options: Options, config: Config) -> Baseline:
 
 
 class _Identities:
-    """Computes the fingerprints of findings; they depend on the ROS package and the place of the baseline."""
+    """Computes the fingerprints of findings. They depend on the ROS package and on the place of the baseline."""
 
     def __init__(self, files: Sequence[SourceFile], config: Config) -> None:
         self._files = {file.shown: file for file in files}
@@ -312,9 +313,9 @@ def _home(config: Config) -> Path:
 def _judge(
     files: Sequence[SourceFile], errors: Sequence[SourceError], config: Config, unasked: Set[str]
 ) -> Callable[[Accepted], bool]:
-    """Return a function that tells whether this run can judge that an accepted finding is gone.
+    """Return a function that returns whether an accepted finding is gone, as far as this run can judge.
 
-    `unasked` are the fingerprints of findings of rules that are off by default; older baselines contain such
+    `unasked` are the fingerprints of findings of rules that are off by default. Older baselines contain such
     findings.
     """
     home = _home(config)
@@ -330,7 +331,8 @@ def _judge(
 
     def judged(entry: Accepted) -> bool:
         if entry.fingerprint.code.startswith(ARCHITECTURE):
-            return False  # findings of TARL3 rules occur only in runs with --launch, so this run cannot tell
+            # findings of TARL3 rules occur only in runs with --launch, so this run cannot judge them
+            return False
         asked = config.enabled(entry.fingerprint.code) and entry.fingerprint.digest() not in unasked
         return asked and all(map(settled, entry.files))
 

@@ -1,9 +1,9 @@
 """Worker processes. A worker cannot import linted files, and Ctrl-C ends it silently.
 
-Workers are forked if possible: a fork already has the modules and the `sys.path` of this process, so it need not import
-anything. A spawned worker has the working directory on its import path before any code of tarl-lint runs. On Windows,
-which cannot fork, `PYTHONSAFEPATH` prevents this (Python 3.11). Forking is safe only with a single thread; if the
-calling program has more, no workers are used.
+Workers are forked if possible: a fork already has the modules and the `sys.path` of this process, so it does not
+import anything again. A spawned worker has the working directory on its import path before any code of tarl-lint
+runs. On Windows, which cannot fork, `PYTHONSAFEPATH` prevents this (Python 3.11). Forking is safe only with a
+single thread; if the calling program has more, no workers are used.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ MOMENT = 1.0  # maximum time to wait for the management thread of an ended pool 
 def in_processes(
     perform: Callable[[Work], Answer], work: Sequence[Work], sizes: Sequence[int], workers: int, tell: Tell
 ) -> list[Answer] | None:
-    """Return the answers in the order of the work; None if no process can be started safely.
+    """Return the answers in the order of the work; None if processes cannot be started safely.
 
-    The largest tasks start first, so that no large one runs alone at the end.
+    The largest tasks start first, so that no large task runs alone at the end.
     """
     order = sorted(range(len(work)), key=lambda number: -sizes[number])
     with paused(tell):
@@ -71,9 +71,9 @@ def _ending(pool: ProcessPoolExecutor) -> Iterator[None]:
 def _end(pool: ProcessPoolExecutor) -> None:
     """End a pool and its processes without waiting for tasks, and give its own thread a moment to end.
 
-    A process that did not get the Ctrl-C would continue its task, and the interpreter would wait for it. If the thread
-    closes its pipe while the interpreter ends, Python 3.11 writes to the closed pipe and prints a traceback. The thread
-    ends at once unless a task is still running.
+    A process that did not receive the Ctrl-C would continue its task, and the interpreter would wait for this
+    process. If the thread closes its pipe while the interpreter ends, Python 3.11 writes to the closed pipe and
+    prints a traceback. The thread ends at once unless a task is still running.
     """
     thread = getattr(pool, "_executor_manager_thread", None)
     processes = dict(getattr(pool, "_processes", None) or {})
@@ -95,7 +95,7 @@ def _context() -> BaseContext | None:
 
 @contextmanager
 def _safe_path() -> Iterator[None]:
-    """Make Python processes started meanwhile omit the working directory from their path."""
+    """Let Python processes that are started meanwhile omit the working directory from their import path."""
     before = os.environ.get("PYTHONSAFEPATH")
     os.environ["PYTHONSAFEPATH"] = "1"
     try:

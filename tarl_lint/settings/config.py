@@ -55,15 +55,14 @@ class Config:
 
     `select`, `extend_select` and `ignore` contain rule codes or prefixes (`TARL1`); an empty `select` means all
     rules. A rule that is off by default is enabled only by its full code. `exclude` contains patterns as in
-    .gitignore. These patterns and a named baseline are relative to `root`. `per_file_ignores` contains such patterns
-    with the codes that are disabled in matching files. `sources`, `sinks` and `sanitizers` are qualified names
-    (`robot.bus.listen`); results of sanitizers are not tainted. `wrappers` are functions that subscribe, publish or
-    wait like a function of ROS. `remaps` are pairs of topic names: the name in the code, and the name at launch. With
-    `tf2`, look-ups of transforms are also sources; with `clients`, requests to services and goals of actions are also
-    sinks, and responses, results and feedback sources; with `arrivals`, it is also a decision whether a message has
-    arrived. `follow_installed` names packages in the
-    virtual environment `python` that are also analysed. `origins` maps each key to its origin: "default", "command
-    line" or the settings file.
+    .gitignore. These patterns and a named baseline are relative to `root`. `per_file_ignores` contains such
+    patterns with the codes that are disabled in matching files. `sources`, `sinks` and `sanitizers` are qualified
+    names (`robot.bus.listen`); results of sanitizers are not tainted. `wrappers` are functions that subscribe,
+    publish or wait like a function of ROS. `remaps` are pairs of topic names: the name in the code, and the name at
+    launch. With `tf2`, look-ups of transforms are also sources. With `clients`, requests to services and goals of
+    actions are also sinks, and responses, results and feedback are also sources. With `arrivals`, whether a message
+    has arrived also counts as a decision. `follow_installed` names packages in the virtual environment `python`
+    that are also analysed. `origins` maps each key to its origin: "default", "command line" or the settings file.
     """
 
     root: Path | None = None
@@ -95,7 +94,7 @@ class Config:
 
     @cached_property
     def launched(self) -> dict[str, str]:
-        """Return topic name in the code, without leading slash → name at launch."""
+        """Return a mapping: topic name in the code, without leading slash → topic name at launch."""
         return {old.lstrip("/"): new for old, new in self.remaps}
 
     def enabled(self, code: str) -> bool:
@@ -124,7 +123,7 @@ def resolve(options: Options) -> Config:
         return typed if typed is not None else table.get(key, default)
 
     def extended(key: str, added: tuple[str, ...], typed: Any = None) -> Any:
-        """Return the value that `choose` returns, extended by an --extend option."""
+        """Return the value that `choose` returns, plus the values of an --extend option."""
         chosen = choose(key, typed, ())
         if added:
             before = origins[key]
@@ -156,11 +155,12 @@ def resolve(options: Options) -> Config:
 
 
 def describing(paths: Sequence[Path], root: Path | None) -> Config:
-    """Return the settings that describe the code at the paths, not what a report shows of it, for use by a program.
+    """Return those settings that describe the code at the paths, for a program that uses the analysis.
 
-    These are sources, sinks, sanitizers, wrappers, `tf2` and `clients`. `tf2` and `clients` are on unless the settings
-    file says otherwise: a program that runs the code can observe that a look-up of a transform depends on messages, and
-    a goal or a request moves a robot as a message does. Raises ConfigError.
+    These are sources, sinks, sanitizers, wrappers, `tf2` and `clients`. Settings for reports are left out. `tf2`
+    and `clients` are on unless the settings file turns them off. The reason is that a program that runs the code
+    can observe how the look-up of a transform depends on messages, and that a goal or a request moves a robot as a
+    message does. Raises ConfigError.
     """
     file = find_settings(common_directory(paths))
     table = read_settings(file, required=False) if file else {}
@@ -182,7 +182,7 @@ def _baseline(options: Options, root: Path, named: Path | str | None) -> Path | 
     path = named if isinstance(named, Path) else root / (named or BASELINE_NAME)
     if (
         isinstance(named, str) and path.exists() and not path.is_file()
-    ):  # opening a named pipe, which may be in someone else's repository, would block
+    ):  # opening a named pipe would block, and a foreign repository may contain one
         raise ConfigError(f"The baseline {shown(path)} of the settings is not a regular file: name another.")
     return path if named is not None or options.write_baseline or path.is_file() else None
 

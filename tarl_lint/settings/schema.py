@@ -15,9 +15,9 @@ FAIL_ON: Final[tuple[FailOn, ...]] = get_args(FailOn)
 
 @dataclass(frozen=True)
 class Wrapper:
-    """A function that does the same as the ROS function `like`. The other fields say where its arguments are.
+    """A function that does the same as the ROS function `like`. The other fields give the places of its arguments.
 
-    A number is a position, a string a keyword; None means the same place as in `like`.
+    A number is a position, and a string is a keyword. None means the same place as in `like`.
     """
 
     name: str
@@ -41,7 +41,7 @@ def _patterns(value: Any) -> tuple[str, ...] | None:
 
 
 def check_pattern(pattern: str) -> str:
-    """Return a pattern. Raises ValueError for a pattern with backslashes, which would match nothing."""
+    """Return a pattern. Raises ValueError for a pattern with backslashes, because it would match nothing."""
     if re.search(r"\\(\w|$)", pattern):
         meant = pattern.replace("\\", "/")
         raise ValueError(f"{pattern!r} has backslashes: write it with slashes, as in .gitignore: {meant!r}.")

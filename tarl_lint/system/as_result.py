@@ -17,10 +17,11 @@ from tarl_lint.system.model import System
 
 
 def as_result(systems: Sequence[System], config: Config, vanished: tuple[Accepted, ...] = ()) -> Result:
-    """Return the hazards of all systems, each once, and what could not be read.
+    """Return the hazards of all systems, each once, and the files that could not be read.
 
-    `vanished` are the entries of the baseline that the systems no longer have. Flows are not part of the result: those
-    of each program are findings of a run without launch files, and those across nodes have no single place.
+    `vanished` are the entries of the baseline that are no longer found in the systems. Flows are not part of the
+    result. Flows of a single program are findings of a run without launch files, and flows across nodes have no
+    single place.
     """
     findings = _each_once(systems)
     files = {shown(one.file) for one in systems if not one.file.is_dir()}
@@ -60,7 +61,7 @@ def _errors(systems: Iterable[System]) -> Iterator[SourceError]:
 
 
 def _each_once(systems: Iterable[System]) -> tuple[Finding, ...]:
-    """Return the findings of all systems, sorted. A finding is new if it is new in one of them."""
+    """Return the findings of all systems, sorted. A finding is new if it is new in one of the systems."""
     found: dict[Finding, Finding] = {}
     for finding in (one for system in systems for one in system.findings):
         known = found.setdefault(replace(finding, status="new"), finding)

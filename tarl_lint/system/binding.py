@@ -1,4 +1,4 @@
-"""Give a program the parameters of one launched node, so that topic names that contain parameters become known."""
+"""Give a program the parameters of one launched node, which determine topic names that contain parameters."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ DEEPEST = 8  # maximum nesting of parameters whose defaults contain other parame
 
 
 def parameter_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapping[str, Any]:
-    """Return the parameters that a launch file gives a node, by absolute name. ROS 2 names keep their dots."""
+    """Return the parameters that a launch file gives a node, by absolute name. Names of ROS 2 keep their dots."""
     found: dict[str, Any] = {}
     for setting in (*launch.settings, *node.settings):
         for name, value in _stated(setting, full_name):
@@ -96,7 +96,7 @@ def _plain(value: object) -> bool:
 
 
 def undetermined(interface: Interface) -> bool:
-    """Return whether an end has no known name, or several; the values of all parameters may then determine its name."""
+    """Return whether an end has no known name, or several. The values of all parameters may then determine its name."""
     ends = [one.names for one in interface.endpoints]
     for one in interface.flows:
         if one.flow is not None:
@@ -105,14 +105,14 @@ def undetermined(interface: Interface) -> bool:
 
 
 def with_prints(decided: Interface, every: Interface) -> Interface:
-    """Return an interface for known parameters, with the fingerprints that its flows have without a launch file."""
+    """Return an interface for known parameters; its flows have the fingerprints of a run without a launch file."""
     prints = {_ends(one): one.fingerprint for one in every.flows}
     flows = (replace(one, fingerprint=prints.get(_ends(one), one.fingerprint)) for one in decided.flows)
     return replace(decided, flows=tuple(flows))
 
 
 def with_names_in_code(decided: Interface, every: Interface) -> Interface:
-    """Return an interface for known parameters that also has the names as they are in the code."""
+    """Return an interface for known parameters that also has the names as written in the code."""
     written = {(one.role, one.span): one.written for one in every.endpoints if one.written}
     ends = (replace(one, written=written.get((one.role, one.span), one.written)) for one in decided.endpoints)
     return replace(decided, endpoints=tuple(ends))
@@ -127,7 +127,7 @@ def _stated(setting: Setting, full_name: str) -> Sequence[tuple[str, Any]]:
     try:
         return [(one.name, one.value) for one in stated((setting,), full_name)]
     except (NoYamlError, UnreadableError):
-        return ()  # another part of the report states the problem
+        return ()  # another part of the report describes the problem
 
 
 def bound(
@@ -168,7 +168,7 @@ class _Namer:
         self._depth = 0
 
     def endpoint(self, one: Endpoint) -> Endpoint:
-        """Return an endpoint with the topic names that the launch file gives it; no names if one of them is unknown."""
+        """Return an endpoint with the topic names that the launch file gives it; without names if one is unknown."""
         if not any(MARK in name for name in one.names):
             return one
         return replace(one, names=self._names(one.names), written=tuple(map(self._in_code, one.names)))
@@ -214,7 +214,7 @@ class _Namer:
         return None if one.default is None else self._deeper(one.default)
 
     def _deeper(self, text: str) -> str | None:
-        """Return a string with the values of its parts, which may contain parts themselves."""
+        """Return a string in which each part is replaced by its value; a value may contain parts itself."""
         if self._depth >= DEEPEST:
             return None
         self._depth += 1

@@ -19,7 +19,7 @@ def is_empty(expr: ast.expr) -> bool:
 
 
 def parts(expr: ast.expr) -> list[ast.expr]:
-    """Return the parts of which the strings of an expression are made; none if they are unknown."""
+    """Return the parts of which the strings of an expression are made; empty if these are unknown."""
     match expr:
         case ast.Subscript(value=value):
             return [value]
@@ -46,7 +46,7 @@ def parameters(function: Function | ast.Lambda) -> list[str]:
 
 
 def binds(function: Function | ast.Lambda, name: str) -> bool:
-    """Return whether a name is local to a function: a parameter, or assigned in its body."""
+    """Return whether a name is local to a function: as a parameter, or because the body assigns it."""
     if name in parameters(function):
         return True
     return any(
@@ -58,7 +58,7 @@ def binds(function: Function | ast.Lambda, name: str) -> bool:
 def bound_values(inside: ast.AST, name: str, texts: Collection[str]) -> Iterator[ast.expr | None]:
     """Yield the values that statements bind to a name: assigned values and iterables of loops; None if unknown.
 
-    `texts` are names of variables that hold one text.
+    `texts` are the names of variables that hold a single text.
     """
     for node in ast.walk(inside):
         match node:

@@ -25,7 +25,7 @@ def in_line(chain: Chain, glyphs: Glyphs) -> Line:
 
 
 def statements(chain: Chain, view: View) -> Iterator[Line]:
-    """Yield the statements of each node on the way: the shortest chain, or all of them if the view says so."""
+    """Yield the statements of each node on the way: those of the shortest chain, or all if the view asks for all."""
     for hop in chain.hops:
         yield from _steps(hop, view)
 

@@ -15,14 +15,14 @@ STEPS: Final = 100_000  # maximum number of steps of the search
 def chains(
     hops: Sequence[Hop], origin: str = "", target: str = "", *, every: bool = False
 ) -> tuple[tuple[Chain, ...], bool]:
-    """Return the chains between two topics, at most `MOST` unless `every`, and whether there may be more.
+    """Return the chains between two topics, at most `MOST` unless `every`, and whether there may be more chains.
 
     Without `origin`, chains begin where data enters the analysed nodes. Without `target`, they end where data leaves
     these nodes. A chain passes each topic once.
     """
     hops = [
         hop for hop in hops if hop.source != hop.sink
-    ]  # leave out hops from a topic to itself; otherwise no chain would end at a topic that a node republishes
+    ]  # leave out hops from a topic to itself: with one, no chain could end at a topic that a node republishes
     from_topic: dict[str, list[Hop]] = {}
     for hop in hops:
         from_topic.setdefault(hop.source, []).append(hop)
@@ -38,14 +38,14 @@ def chains(
 
 
 def shown_chains(hops: Sequence[Hop], origin: str, target: str, most: int) -> tuple[tuple[Chain, ...], bool]:
-    """Return the chains between two topics of which a format shows `most`, 0 for all; and whether there may be more."""
+    """Return the chains between two topics, for a format that shows `most` (0: all), and whether there may be more."""
     return chains(hops, origin, target, every=most == 0 or most > MOST)
 
 
 def limited(found: Sequence[Chain], most: int, *, more: bool) -> tuple[Sequence[Chain], str]:
-    """Return at most `most` chains, 0 for all, and a remark on the others; "" if there are none.
+    """Return at most `most` chains (0: all), and a remark on the chains left out; "" if there are none.
 
-    `more` says that the search ended before all chains were found.
+    `more` means that the search ended before it had found all chains.
     """
     shown = found[:most] if most else found
     rest = len(found) - len(shown)
@@ -72,7 +72,7 @@ def _last(hops: Sequence[Hop]) -> set[str]:
 
 
 def _ends(topics: set[str], edges: Sequence[tuple[str, str, bool]]) -> set[str]:
-    """Return the topics without successors, and those on a cycle whose edges all come from unread nodes."""
+    """Return the topics without successors, and the topics on a cycle whose edges all belong to unread nodes."""
     after: dict[str, set[str]] = {}
     for one, other, _ in edges:
         after.setdefault(one, set()).add(other)

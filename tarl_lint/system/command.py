@@ -122,7 +122,7 @@ class _Workbench:
         return runner.read(tuple(self.files.values()), tell=self.tell)
 
     def interface(self, program: Program, fixed: Mapping[str, object]) -> Interface | SourceError | str:
-        """Return the interface of a program with these values of parameters, or why it cannot be analysed."""
+        """Return the interface of a program with these values of parameters, or why the program cannot be analysed."""
         known = program, repr(sorted(fixed.items(), key=lambda one: one[0]))
         if known not in self._known:
             self._known[known] = self._analysed(program, fixed)
@@ -176,7 +176,7 @@ def _launches(asked: Request, workspace: Workspace, config: Config) -> Iterator[
             place = f"{shown(broken.file)}:{broken.line}" if broken.line else shown(broken.file)
             raise UsageError(f"{place}: the launch file cannot be read: {broken.reason}.")
         problem = unknown_argument(launch, given)
-        # if there are no nodes, the file could not be read, and its arguments are unknown
+        # without nodes, the file could not be read, so its arguments are unknown
         if problem and launch.nodes:
             raise UsageError(problem)
         yield launch
@@ -212,7 +212,7 @@ def _launches(asked: Request, workspace: Workspace, config: Config) -> Iterator[
 def _launch_file(named: str, workspace: Workspace) -> Path:
     """Return a launch file by its path, by its name in the workspace, or as `package/name`.
 
-    Raises UsageError if there is no such file, or if several packages have one.
+    Raises UsageError if there is no such file, or if several packages have such a file.
     """
     if Path(named).is_file():
         return Path(named).resolve()
@@ -265,9 +265,9 @@ def _rendered(
 def judged(found: Sequence[System], config: Config, *, writing: bool = False) -> tuple[System, ...]:
     """Return the systems with the hazards of the enabled rules; hazards in the baseline are marked as accepted.
 
-    Hazards that a comment or the setting `per-file-ignores` silences are left out.
+    A hazard is left out if a comment or the setting `per-file-ignores` silences it.
 
-    Raises BaselineError if the baseline does not exist, unless this run writes it.
+    Raises BaselineError if the baseline does not exist, unless this run writes the baseline.
     """
     known = _baseline(config, writing=writing).counts()
     elsewhere = FileIgnores(config.root or Path.cwd(), config.per_file_ignores)
@@ -299,7 +299,7 @@ def _baseline(config: Config, *, writing: bool) -> Baseline:
 def vanished(found: Sequence[System], asked: Request, config: Config) -> tuple[Accepted, ...]:
     """Return the hazards in the baseline that no launch file has any more.
 
-    Only a run of all launch files can tell, and only for files of its workspace that it could read.
+    Only a run of all launch files can know this, and only for those files of its workspace that it could read.
     """
     if asked.launch != ALL or config.baseline is None or not config.baseline.exists():
         return ()
@@ -319,7 +319,10 @@ def vanished(found: Sequence[System], asked: Request, config: Config) -> tuple[A
 
 
 def accepted(found: Sequence[System], config: Config, gone: Sequence[Accepted] = ()) -> tuple[Path, Baseline]:
-    """Return the baseline with the hazards of these systems, and its file; all other entries but `gone` are kept."""
+    """Return the baseline with the hazards of these systems, and its file.
+
+    All other entries are kept, except those in `gone`.
+    """
     path = config.baseline or Path(BASELINE_NAME)
     removed = {one.fingerprint for one in gone}
     kept = baseline.load(path).entries if path.exists() else ()

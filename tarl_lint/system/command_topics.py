@@ -1,4 +1,4 @@
-"""Tell which published messages are commands to move or to drive something: by their type, or by the topic's name."""
+"""Recognise published messages that are commands to move or drive something, by their type or by the topic's name."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ _MEASURED: Final = frozenset(
 def is_command(kind: str, topics: tuple[str, ...]) -> bool:
     """Return whether messages of a type are commands on one of these topics.
 
-    Numbers are commands if the name of the topic has a word such as *command* or *thrust* and none such as *state*.
+    Numbers are commands if the name of the topic has a word such as *command* or *thrust*, and no word such as
+    *state*.
     """
     return kind in COMMANDS or (kind in _NUMBERS and any(map(_commanded, topics)))
 

@@ -40,7 +40,7 @@ from tarl_lint.workspace.parameter_yaml import YAML, NoYamlError, content
 from tarl_lint.workspace.ros_names import resolved
 
 UNKNOWN: Final = "?"
-# prefix before the name of a service; together they stand for a server whose code is not analysed
+# prefix of the name of a service; with this prefix, the name stands for a server whose code is not analysed
 SERVER: Final = "server of "
 # ROS programs that use only topics of transforms, robot models and displays
 _SILENT: Final = frozenset(
@@ -79,7 +79,7 @@ def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: 
 
 
 def _with_meant(instances: Sequence[Instance]) -> list[Instance]:
-    """Return the nodes; unread ones have the remappings of groups that no other node of the group can use."""
+    """Return the nodes. An unread node gets those remappings of its groups that no other node of the group can use."""
     candidates: dict[tuple[str, str], list[Instance]] = {}
     for one in instances:
         for pair in one.node.remaps[: one.node.inherited]:
@@ -94,12 +94,12 @@ def _with_meant(instances: Sequence[Instance]) -> list[Instance]:
 
 
 def _opaque(instance: Instance) -> bool:
-    """Return whether the remappings of a node are all that is known about its topics."""
+    """Return whether nothing but the remappings of a node is known about its topics."""
     return instance.interface is None and not instance.seen and instance.node.kind != "test"
 
 
 def _may_use(instance: Instance, old: str) -> bool:
-    """Return whether a node may use a name before any remapping: an unread one, or one that uses the name."""
+    """Return whether a node may use a name before any remapping: because it is unread, or because it uses the name."""
     if _opaque(instance):
         return not instance.silent
     own, namespace = instance.name.rpartition("/")[2], instance.node.namespace
@@ -121,7 +121,7 @@ def _unparsed(launch: Launch) -> Iterator[Problem]:
     found: dict[tuple[Path, str], None] = {}
     for setting in (*launch.settings, *(one for node in launch.nodes for one in node.settings)):
         whole = setting.name == "~" or setting.file.suffix in YAML
-        if setting.yaml is None or (launch.ros2 and not whole):  # ROS 2 may take other texts for strings
+        if setting.yaml is None or (launch.ros2 and not whole):  # for ROS 2, other texts may be strings
             continue
         reason = _unparsable(setting)
         if reason and (whole or reason != _NO_YAML):
@@ -164,7 +164,7 @@ def _instance(
 
 
 def _known(instance: Instance, launch: Launch, workspace: Workspace) -> Seen:
-    """Return the topics of a C++ program: from its source, its arguments, or as they are known to be."""
+    """Return the topics of a C++ program: from its source, from its arguments, or from the tables of known programs."""
     node = instance.node
     if is_republisher(node):
         return Seen(republished(instance, ros2=launch.ros2))
@@ -195,7 +195,7 @@ def _decided(
     every: Interface,
     read: Callable[[Mapping[str, object]], Interface | SourceError | str],
 ) -> Interface:
-    """Return the interface of a launched node; pass all its parameters only if names are unknown without them."""
+    """Return the interface of a launched node. Pass all its parameters only if some names are unknown without them."""
     values = parameter_values(launch, node, name)
     resolve = Instance(node, name).resolve
 
@@ -213,7 +213,7 @@ def _decided(
 
 
 def hops(instances: Sequence[Instance]) -> list[Hop]:
-    """Return the flows of each node by launched topics, and the possible flows of nodes that were not read."""
+    """Return the flows of each node by launched topics, and the possible flows of unread nodes."""
     found: dict[tuple[str, str, str], list[Finding]] = {}
     started: dict[tuple[str, str, str], dict[LaunchedNode, None]] = {}
     for instance in instances:
@@ -237,7 +237,7 @@ def hops(instances: Sequence[Instance]) -> list[Hop]:
 
 
 def _chosen_by_requests(instances: Sequence[Instance], found: Sequence[Hop]) -> Iterator[Hop]:
-    """Yield the possible flows of unread nodes from the requests of their services to what they publish and answer."""
+    """Yield the possible flows of unread nodes from requests of services to published topics and responses."""
     sinks = {hop.sink for hop in found}
     asked, answered = PARTS[0]
     for instance in (one for one in instances if one.seen and one.known.through):
@@ -280,7 +280,7 @@ def _flows(instance: Instance) -> Iterator[tuple[Finding, str, str]]:
 
 
 def _ranked(findings: Iterable[Finding]) -> tuple[Kind, tuple[Finding, ...]]:
-    """Return the kind of the strongest flow, and the flows with explicit ones first."""
+    """Return the kind of the strongest flow, and the flows, explicit ones first."""
     ordered = sorted(findings, key=lambda one: (one.flow is None or one.flow.kind != "explicit", one.span))
     first = ordered[0].flow
     return ("explicit" if first is not None and first.kind == "explicit" else "implicit"), tuple(ordered)

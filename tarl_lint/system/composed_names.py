@@ -1,7 +1,7 @@
-"""The names of all parameters that a program reads, also those that it composes from parts.
+"""The names of all parameters that a program reads, also names that it composes from parts.
 
-The analysis of the program knows the names at each call, for each caller and iteration. The names are all names only if
-the analysis has reached every call, from every place that calls the function around it.
+The analysis of the program knows the names at each call, for each caller and iteration. The list of names is
+complete only if the analysis has reached every call, from every place that calls the enclosing function.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def _literal(call: ast.Call) -> frozenset[str] | None:
 def _reached_by_all(
     machine: Interpreter, modules: Sequence[Module], outlines: Mapping[str, Outline], composing: set[str]
 ) -> bool:
-    """Return whether the analysis has followed all calls of functions, and of those that call them."""
+    """Return whether the analysis has followed all calls of the functions, and all calls of their callers."""
     entered: dict[str, set[_Place]] = {}
     for frame in machine.frames.values():
         if frame.caller is not None and frame.call_pos is not None:
@@ -74,12 +74,12 @@ def _reached_by_all(
     while pending:
         qualname = pending.pop()
         if not qualname:
-            continue  # the module itself
+            continue  # the function is the module itself
         if qualname not in entered or len(seen) > _MOST:
             return False
         for path, call in _calls_of(qualname, modules, outlines):
             around = outlines[path].qualname(call.lineno)
-            # a call of a base class's `__init__` may be one of several classes
+            # a call of a base class's `__init__` may call that of one of several classes
             followed = (path, position(call)) in entered[qualname] or (
                 last_name(call.func) == _INIT and (around in entered or not around)
             )

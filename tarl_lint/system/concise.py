@@ -33,7 +33,7 @@ def concise(
 def github(
     systems: Sequence[System], result: Result, view: View, origin: str = "", target: str = ""
 ) -> Iterator[Line]:
-    """Yield the annotations of the hazards; flows across nodes, which have no line, are in the log only."""
+    """Yield the annotations of the hazards; flows across nodes have no line and appear only in the log."""
     yield from pull_request.report(result, view)
     found = [shown_chains(system.hops, origin, target, view.most_flows) for system in systems]
     yield from flows(systems, found, view)
@@ -44,7 +44,7 @@ def flows(
 ) -> Iterator[Line]:
     """Yield a line for each flow across nodes: the launch file, then topics and nodes.
 
-    `chains` has the chains of each system, and whether there may be more.
+    `chains` has the chains of each system, and says for each whether there may be more.
     """
     for system, (all_found, more) in zip(systems, chains, strict=True):
         found, rest = limited(all_found, view.most_flows, more=more)

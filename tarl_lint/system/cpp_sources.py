@@ -1,7 +1,7 @@
 """Find the topics that the C++ source of a node names as literals in calls, without any analysis of the code.
 
-The topics of C++ nodes are drawn and composed, so that a chain does not end at a C++ node. Rules take them for ends
-that may exist, never for certain ones.
+The topics of C++ nodes are drawn and composed, so that a chain does not end at a C++ node. Rules treat these topics
+as possible, never as certain.
 """
 
 from __future__ import annotations

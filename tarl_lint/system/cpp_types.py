@@ -1,8 +1,8 @@
 """Find the types that a C++ package of the workspace may use in topics and services, without any analysis of its code.
 
-A program can only use types that its sources, or the libraries of its workspace, name. So the names in all C++ files of
-the package, and of the packages whose headers it includes, are a superset. Libraries from elsewhere must be known to
-use no topics on their own.
+A program can only use types that occur in its sources, or in the libraries of its workspace. Therefore all types
+are among the names in the C++ files of the package, and of the packages whose headers it includes. For libraries
+from elsewhere, it must be known that they use no topics on their own.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _QUIET: Final = frozenset(
 )  # fmt: skip
 _MESSAGES: Final = re.compile(r"\w+_(?:msgs|srvs|interfaces|actions?|msg|srv)$")
 _GENERATED: Final = ("msg", "srv", "action")
-# headers with which a library only makes its classes known to a loader
+# headers that a library uses only to register its classes with a loader
 _EXPORTS: Final = (
     "pluginlib/class_list_macros",
     "class_loader/register_macro",
@@ -41,7 +41,7 @@ _EXPORTS: Final = (
 )
 _IMAGES: Final = frozenset(
     ["Image", "CompressedImage", "CameraInfo", "Theora", "Packet"]
-)  # of image_transport
+)  # headers of image_transport
 
 
 # (folder of a package, packages of the workspace) → the types; many nodes of a launch file have the same package
@@ -49,7 +49,7 @@ _FOUND: dict[tuple[Path, int], frozenset[str] | None] = {}
 
 
 def used_types(package: Package, workspace: Workspace) -> frozenset[str] | None:
-    """Return the types that C++ programs of a package may use, among other names; None if they are unknown."""
+    """Return a set of names that contains all types that C++ programs of a package may use; None if it is unknown."""
     key = package.folder, len(workspace.packages)
     if key not in _FOUND:
         _FOUND[key] = _used(package, workspace)
@@ -93,7 +93,7 @@ def _names(folder: Path) -> tuple[frozenset[str], frozenset[str]] | None:
         names |= set(_NAME.findall(text))
         for header in _INCLUDE.findall(text):
             first, slash, rest = header.partition("/")
-            # headers without a folder are of the system, or of the package itself; the latter are read, too
+            # headers without a folder belong to the system, or to the package, whose headers are read anyway
             if header.startswith(_EXPORTS):
                 continue
             if slash and first not in ("..", ".") and not (folder / first).is_dir():

@@ -1,4 +1,4 @@
-"""What the table of a text report leaves out of a node: remappings, parameters, services and actions."""
+"""Details of a node that the table of a text report leaves out: remappings, parameters, services and actions."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _OFFERS: Final[Mapping[Role, str]] = {"serves": "serves", "calls": "calls", "per
 
 
 def details(instance: Instance, shared: Sequence[Setting], glyphs: Glyphs) -> str:
-    """Return the remappings, services and actions of a node, with names as launched, and its number of parameters.
+    """Return the remappings, services and actions of a node, as launched, and the number of its parameters.
 
-    `shared` are the settings of the launch file outside its nodes. Returns "" if there is nothing to say.
+    `shared` are the settings of the launch file outside its nodes. Returns "" if the node has no details.
     """
     return "; ".join((*_remaps(instance, glyphs), *_parameters(instance, shared), *_offers(instance)))
 

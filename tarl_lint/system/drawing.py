@@ -11,8 +11,8 @@ from tarl_lint.system.compose import SERVER, UNKNOWN
 from tarl_lint.system.model import Chain, System
 
 BoxKind = Literal["topic", "node", "unread"]
-# solid: data is published; dashed: data is used only in conditions, or the node was not read; faint: the node does not
-# publish anything of the topic; touching: dashed without an arrowhead
+# solid: data is published; dashed: data is used only in conditions, or the node was not read; faint: the node
+# publishes nothing that depends on the topic; touching: like dashed, but without an arrowhead
 EdgeKind = Literal["solid", "dashed", "faint", "touching"]
 
 
@@ -20,9 +20,9 @@ EdgeKind = Literal["solid", "dashed", "faint", "touching"]
 class Drawing:
     """Names of nodes and topics, and edges between them, by name. Nodes in `unread` are drawn dashed.
 
-    An edge from a topic to a node is `(topic, node, kind)`. `kind` is that of the strongest flow that takes the
-    topic's data out of the node; "" if there is none. `touching` are pairs of a node that was not read and a topic
-    that its remappings name. The key of a box is `n ` and the name of the node, or `t ` and the name of the topic.
+    An edge from a topic to a node is `(topic, node, kind)`. `kind` is the kind of the strongest flow from the topic
+    through the node; "" if there is no such flow. `touching` are pairs of a node that was not read and a topic that
+    its remappings name. The key of a box is `n ` and the name of the node, or `t ` and the name of the topic.
     """
 
     nodes: tuple[str, ...]
@@ -158,7 +158,7 @@ def _without_cycles(every: Iterable[str], edges: list[tuple[str, str]]) -> list[
 
 
 def _untangled(columns: list[list[str]], edges: list[tuple[str, str]]) -> list[list[str]]:
-    """Return the columns sorted by the mean height of each name's predecessors (Sugiyama et al. 1981)."""
+    """Return the columns, each sorted by the mean height of a name's predecessors (Sugiyama et al. 1981)."""
     before: dict[str, list[str]] = {}
     for one, other in edges:
         before.setdefault(other, []).append(one)

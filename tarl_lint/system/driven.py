@@ -1,4 +1,4 @@
-"""Find publishers through which a program repeats commands without any input, such as a patrol by the clock."""
+"""Find publishers through which a program repeats commands without input, such as a patrol that follows the clock."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _FIELDS: Final = frozenset(
 def driven(
     machine: Linker, findings: Sequence[Finding], modules: Sequence[Module]
 ) -> frozenset[tuple[str, Pos]]:
-    """Return the places (file and position) at which a program makes such publishers.
+    """Return the places (file and position) at which a program makes publishers that repeat commands.
 
     A publisher counts if a timer or a loop makes its publish call, and no flow ends there. The program must set some
     field of a message to a value other than zero: a node that only stops the robot does not count.
@@ -47,7 +47,7 @@ def driven(
 
 
 def _moves(tree: ast.Module) -> bool:
-    """Return whether code gives a field of a command a value other than zero."""
+    """Return whether code sets a field of a command to a value other than zero."""
     for node in ast.walk(tree):
         match node:
             case ast.Assign(targets=targets, value=value):

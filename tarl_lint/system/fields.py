@@ -1,6 +1,7 @@
 """Find uses of message fields that the message type does not have, for types whose fields are known.
 
-Fields of types of the workspace are known only when a system is composed; their uses are listed until then.
+Fields of types of the workspace become known when a system is composed. Until then, the uses of these fields are
+listed.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ _NONE: Final[Heard] = {}
 
 
 class _Use(NamedTuple):
-    """A use of the field `path[-1]` of a message: of the message itself, or of the part that `path[:-1]` names."""
+    """A use of the field `path[-1]`: of the message itself, or of the part of the message that `path[:-1]` names."""
 
     type: str
     path: tuple[str, ...]
@@ -41,7 +42,8 @@ def examined(
 ) -> tuple[tuple[Misfit, ...], tuple[Misfit, ...]]:
     """Return the uses of absent fields, and the uses of fields of unknown types `package/Name` as dotted paths.
 
-    `heard` are the types `package/Name` of the messages that the analysis passes to each function, by its name.
+    `heard` maps the name of each function to the types `package/Name` of the messages that the analysis passes to
+    it.
     """
     types = ImportedTypes(module.tree)
     known = {**KNOWN_FIELDS, **BY_RELEASE.get(types.ros, {})}
@@ -57,7 +59,7 @@ def examined(
 
 
 def lacking(kind: str, path: tuple[str, ...], fields: _Fields) -> tuple[str, str] | None:
-    """Return the type and its absent field at the end of a path; None if the type has it or is unknown."""
+    """Return the type and the field at the end of a path if the type lacks the field; None otherwise, or if unknown."""
     *before, name = path
     for part in before:
         kind = fields.get(kind, {}).get(part) or ELEMENTS.get(kind, {}).get(part, "")
@@ -73,7 +75,7 @@ def _found(kind: str, field: str, node: ast.expr, module: Module, outline: Outli
 
 
 def _uses(tree: ast.Module, outline: Outline, types: ImportedTypes, heard: Heard) -> Iterator[_Use]:
-    """Yield the uses of fields of messages whose types the module imports, or that a callback receives."""
+    """Yield the uses of fields of messages whose types the module imports, or which a callback receives."""
     if not types.used and not heard:
         return
     nodes = list(walk(tree))

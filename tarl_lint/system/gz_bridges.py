@@ -38,7 +38,7 @@ _ROLES: Final[Mapping[str, tuple[Role, ...]]] = {
 
 
 def own_name(node: LaunchedNode) -> str:
-    """Return the name that a bridge has if the launch file gives it none; "" for other programs."""
+    """Return the name of a bridge to which the launch file gives no name; "" for other programs."""
     return _OWN_NAMES.get(f"{node.package}/{node.executable}", "")
 
 
@@ -62,7 +62,10 @@ def bridged(instance: Instance, values: Mapping[str, Any], workspace: Workspace)
 
 
 def _of_argument(text: str, instance: Instance) -> list[Endpoint] | None:
-    """Return the ends of one argument, which is split as in `parameter_bridge.cpp`; None if they are not known."""
+    """Return the ends of one argument; None if they are not known.
+
+    The argument is split as in `parameter_bridge.cpp`.
+    """
     name, _, rest = text.partition("@")
     if "$(" in text or not name or not rest:
         return None

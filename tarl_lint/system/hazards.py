@@ -26,14 +26,14 @@ class Rule(Protocol):
 ARCHITECTURE: Final = tuple(code for code in RULES if code.startswith("TARL3"))
 
 
-# rules about each program by itself; the others assume that the nodes of a system run together
+# rules about each program by itself; all other rules assume that the nodes of a system run together
 _OF_PROGRAMS: Final = ("TARL306", "TARL309")
 
 
 def hazards(system: System, config: Config) -> tuple[Finding, ...]:
     """Return the hazards of the enabled rules, with fingerprints, sorted by place.
 
-    Without a launch file, the system contains all nodes of a folder, also those of different robots.
+    Without a launch file, the system contains all nodes of a folder, even if they belong to different robots.
     """
     found: set[Finding] = set()
     for code in _OF_PROGRAMS if system.file.is_dir() else ARCHITECTURE:
@@ -64,12 +64,12 @@ def at_end(code: str, instance: Instance, endpoint: Endpoint, message: str, abou
 
 
 def single(endpoint: Endpoint) -> str:
-    """Return the type of an endpoint; "" if it is unknown or may be one of several."""
+    """Return the type of an endpoint; "" if the type is unknown, or may be one of several."""
     return "" if " | " in endpoint.type or endpoint.type == "AnyMsg" else endpoint.type
 
 
 def differ(one: Endpoint, other: Endpoint) -> bool:
-    """Return whether two endpoints certainly have different types; packages are compared where both are known."""
+    """Return whether two endpoints certainly have different types; packages are compared if both are known."""
     if not single(one) or not single(other):
         return False
     whole = one.whole_type and other.whole_type

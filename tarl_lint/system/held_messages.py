@@ -1,8 +1,8 @@
 """Infer which expressions of a module hold messages, or parts of them.
 
-Variables, attributes of `self`, elements of lists, arguments of callbacks, annotations and responses of services are
-followed. A variable holds a message only if every value that it is assigned holds one of the same type; None counts as
-no value.
+Variables, attributes of `self`, elements of lists, arguments of callbacks, annotations and responses of services
+are followed. A variable holds a message only if every value assigned to it is a message of the same type; None is
+ignored.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Held(NamedTuple):
 
 
 class _Value(NamedTuple):
-    """What a name is bound to: an expression, or an element of its list; None if it is unknown."""
+    """The value of a name: an expression, or an element of the expression's list; None if it is unknown."""
 
     expr: ast.expr | None
     element: bool = False
@@ -164,9 +164,9 @@ class HeldMessages:
         return next((one for one in around if isinstance(one, _Scope)), None)
 
     def _common(self, key: tuple[ast.AST, str], values: list[_Value], depth: int) -> Held | None:
-        """Return what all values of a variable or attribute hold; None if they differ or one is unknown.
+        """Return the message that all values of a variable or attribute hold; None if they differ, or one is unknown.
 
-        Each variable is examined once; one whose values depend on itself is unknown.
+        Each variable is examined once. If its values depend on the variable itself, the message is unknown.
         """
         if key in self._found:
             return self._found[key]
@@ -184,7 +184,7 @@ class HeldMessages:
         return self._found[key]
 
     def _class_of(self, expr: ast.Attribute) -> ast.ClassDef | None:
-        """Return the class of `self`, if the attribute is one of `self` that only its methods set."""
+        """Return the class of `self`, if the expression is an attribute of `self` that only the class's methods set."""
         own = isinstance(expr.value, ast.Name) and expr.value.id == "self"
         if not own or not self._foreign.isdisjoint((expr.attr, _ANY)):
             return None
@@ -196,7 +196,7 @@ class HeldMessages:
         return None if key is None else self._common(key, self._attributes.get(key, []), depth)
 
     def _arguments(self, function: _Function, given: set[tuple[str, int]], heard: Heard) -> dict[str, Held]:
-        """Return the messages in the arguments of a function: as a callback, as the analysis knows, or annotated."""
+        """Return the messages in a function's arguments, known from callbacks, the analysis, or annotations."""
         by_number: dict[int, set[str]] = {}
         for kind, number in given:
             by_number.setdefault(number, set()).add(kind)

@@ -51,7 +51,7 @@ def republished(instance: Instance, *, ros2: bool) -> tuple[Endpoint, ...]:
 
 
 def transported(instance: Instance, seen: Sequence[Endpoint]) -> Iterator[Endpoint]:
-    """Yield the topics that a C++ program names, with those of the transports of its images."""
+    """Yield the topics that a C++ program names, and the topics of the transports of its images."""
     for end in seen:
         base = end.names[0]
         if end.type not in (IMAGE, CAMERA):
@@ -69,7 +69,7 @@ def transported(instance: Instance, seen: Sequence[Endpoint]) -> Iterator[Endpoi
 
 
 def _topic(instance: Instance, base: str, transport: str) -> str:
-    """Return the topic of a transport: below that of the image, unless it is renamed itself."""
+    """Return the topic of a transport: it is below the image's topic, unless a remapping renames it."""
     if transport == RAW:
         return instance.resolve(base)
     own, name = instance.name.rpartition("/")[2], f"{base}/{transport}"

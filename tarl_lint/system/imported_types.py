@@ -9,7 +9,7 @@ from tarl_lint.message_fields import PACKAGES
 from tarl_lint.trees import walk
 
 _KINDS: Final = ("msg", "srv", "action")
-# parts of services and actions: classes inside the type in ROS 2, and names with this ending in ROS 1
+# parts of services and actions: in ROS 2, they are classes inside the type; in ROS 1, names with this ending
 PARTS: Final = ("Request", "Response", "Goal", "Result", "Feedback")
 
 
@@ -67,7 +67,7 @@ class ImportedTypes:
 
     @property
     def used(self) -> bool:
-        """Return whether the module imports any."""
+        """Return whether the module imports any of these types."""
         return bool(self._classes or self._modules)
 
     def of(self, expr: ast.expr) -> str:

@@ -13,13 +13,14 @@ from tarl_lint.system.model import Endpoint, Interface, Misfit, Qos
 
 # number of additional entries to keep: those of other launch files and of earlier versions of files
 SPARE: Final = 1000
-_BROKEN: Final = 0  # first item of an entry for a file with an error; that of an interface is a path
+# first item of an entry for a file with an error; the first item of an interface's entry is a path
+_BROKEN: Final = 0
 
 
 def key(
     script: Script, entry: str, package: str, imported: Sequence[Script], fixed: Mapping[str, object]
 ) -> str:
-    """Return the key of a program: everything that its interface depends on, except for the settings."""
+    """Return the key of a program: all facts on which the program's interface depends, except the settings."""
     scripts = [
         part
         for one in (script, *imported)

@@ -1,6 +1,6 @@
 """The interface of one program: topics and services that it uses, and its flows.
 
-A program is analysed with the modules that it imports, whose main blocks do not run.
+A program is analysed with the modules that it imports. The main blocks of these modules do not run.
 """
 
 from __future__ import annotations
@@ -161,7 +161,7 @@ def _of_topics(flow: Flow) -> bool:
 
 
 def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Finding:
-    """Return a flow with the fingerprint that it has in a run without launch files."""
+    """Return a flow with the fingerprint that the flow has in a run without launch files."""
     names = config.launched
 
     def named(topics: tuple[str, ...]) -> tuple[str, ...]:
@@ -264,7 +264,7 @@ def imported_type(tree: ast.Module, name: str) -> str:
 
 
 def _by_topics(publishers: Sequence[Publisher]) -> Iterable[list[Publisher]]:
-    """Return publishers of one place, which may be a wrapper, in groups with the same topics."""
+    """Return the publishers of one place in groups with the same topics. The place may be in a wrapper."""
     groups: dict[frozenset[str], list[Publisher]] = {}
     for one in publishers:
         groups.setdefault(frozenset(map(str, one.topics)), []).append(one)
@@ -272,5 +272,5 @@ def _by_topics(publishers: Sequence[Publisher]) -> Iterable[list[Publisher]]:
 
 
 def only(types: Collection[str]) -> str:
-    """Return the type, if there is only one; else ""."""
+    """Return the type if there is exactly one; else ""."""
     return next(iter(types)) if len(types) == 1 else ""

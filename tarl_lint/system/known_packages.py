@@ -1,8 +1,8 @@
 """Message and service types of well-known packages, and the typed topics of some of their programs.
 
-The packages are usually installed without source. The types tell which ends of a topic an unread node may have: a
-laser driver does not publish velocities. Transforms, diagnostics, parameters and states of lifecycle nodes do not
-count, since no rule examines them.
+The packages are usually installed without source. The types show which topics an unread node may publish or
+subscribe to: a laser driver does not publish velocities. Transforms, diagnostics, parameters and states of
+lifecycle nodes are left out, since no rule examines them.
 """
 
 from __future__ import annotations
@@ -95,10 +95,10 @@ _PACKAGES: Final[Mapping[str, str]] = {
     "ros_gz_sim": _CONTROL,
     "rosapi": "",
     "tf2_web_republisher": "",
-    # what the tools of RViz publish; what it displays does not count
+    # types that the tools of RViz publish; the types that RViz displays are left out
     **dict.fromkeys(("rviz", "rviz2"), "PoseStamped PoseWithCovarianceStamped PointStamped InteractiveMarkerFeedback"),
 }  # fmt: skip
-# programs that use no topics of the types that rules examine
+# programs without topics of the types that rules examine
 _QUIET: Final = frozenset(
     ["nodelet/manager", "rqt_reconfigure/rqt_reconfigure", "gazebo_ros/spawn_model", "gazebo_ros/spawn_entity.py",
      "ros_gz_sim/create", "controller_manager/spawner", "controller_manager/unspawner", "rosbag/record",
@@ -136,12 +136,12 @@ _UNSTAMPED: Final = "Twist"
 
 
 def unlikely(node: LaunchedNode) -> frozenset[str]:
-    """Return types that a program of an unknown package does not use: the driver of a sensor commands nothing."""
+    """Return types that a program of an unknown package does not use: for example, sensor drivers send no commands."""
     return unused_types(*identity(node))
 
 
 def name_words(node: LaunchedNode) -> frozenset[str] | None:
-    """Return the words of the names that a program may give topics and services; None if they may be any."""
+    """Return the words of the names that a program may give topics and services; None if it may use any words."""
     found = driver_words(*identity(node))
     return None if found is None else found | frozenset(words(node.name))
 
@@ -159,7 +159,7 @@ def kinds(node: LaunchedNode) -> frozenset[str] | None:
 
 
 def started_by(package: str) -> Seen:
-    """Return what is known of the nodes that the launch files of a package start."""
+    """Return the known facts about the nodes that the launch files of a package start."""
     return Seen(kinds=of_package(package), never=unused_types(package, ""), words=driver_words(package, ""))
 
 
@@ -195,7 +195,7 @@ def _ends(role: Role, topics: str, stamped: object, span: Span) -> Iterator[Endp
 
 
 def _velocity(stamped: object) -> str:
-    """Return the type of velocities; "" if only the robot knows it."""
+    """Return the type of velocities; "" if it is known only on the robot."""
     return "TwistStamped" if stamped is True else _UNSTAMPED if stamped is False else ""
 
 

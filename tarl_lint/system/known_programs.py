@@ -3,8 +3,8 @@
 The names are those in the sources of each package: `image_proc/src`, `depth_image_proc/src` and
 `stereo_image_proc/src` of image_pipeline (1.17.0 for ROS 1, 30b982af for ROS 2), `pcl_ros/src/pcl_ros/filters` of
 perception_pcl 1.7.5, `pointcloud_to_laserscan/src` (d71ed2e), `depthimage_to_laserscan/src` (a05f98d),
-`imu_filter_madgwick/src` and `imu_complementary_filter/src` of imu_tools (4b8d5db), joint_state_publisher (7cb7069) and
-robot_state_publisher (e0f77e6). Where a launch file renames anything else, nothing is claimed.
+`imu_filter_madgwick/src` and `imu_complementary_filter/src` of imu_tools (4b8d5db), joint_state_publisher (7cb7069)
+and robot_state_publisher (e0f77e6). If a launch file renames anything else, the table makes no claim.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ _TRANSPORTED: Final[Mapping[str, str]] = {":": IMAGE, "@": CAMERA}
 
 
 def stated(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen:
-    """Return the topics of a program that the table has; nothing for unknown programs. `values` are its parameters."""
+    """Return the topics of a program in the table; empty for unknown programs. `values` are its parameters."""
     joints = _of_joints(instance, values)
     if joints is not None:
         return joints
@@ -163,7 +163,7 @@ def _identity(node: LaunchedNode, *, ros2: bool) -> str:
 
 
 def _belongs(old: str, names: set[str]) -> bool:
-    """Return whether a renamed topic is one of the names, or a transport or the camera of one."""
+    """Return whether a renamed topic is one of the names, or belongs to one as a transport or camera topic."""
     name = old.lstrip("/")
     parts = {name, name.rpartition("/")[0], name.replace("~/", "~")}
     return not parts.isdisjoint(names) or name.endswith("camera_info")

@@ -1,4 +1,4 @@
-"""Find the ends that were probably meant for an end without another one, by their names."""
+"""Find ends of topics, services and actions that have no other end, and the ends that were probably meant to be it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _GENERAL: Final = frozenset(["Trigger", "SetBool", "Empty"])  # types of service
 
 
 class Lonely(NamedTuple):
-    """An end of a topic, service or action, by its launched name, of which the other end is not known."""
+    """An end of a topic, service or action without a known other end, by its launched name."""
 
     name: str
     node: Instance
@@ -27,11 +27,11 @@ class Lonely(NamedTuple):
 
 
 def near(system: System, one: Lonely, others: Iterable[Lonely], *, longer: bool = False) -> list[Lonely]:
-    """Return the ends that were probably meant for an end, each node and name once, sorted.
+    """Return the ends that were probably meant to be the other end of an end, each node and name once, sorted.
 
-    Nodes that were not read may be the other end of both names. Such nodes do not matter for private names, because
-    only the node itself uses these. They matter for misspelt names only if they mention one of the two names. `longer`
-    says that names may also differ by whole words; in the root, only those of special types.
+    An unread node may be the other end of both names. It does not matter for private names, because only the node
+    itself uses these. It matters for misspelt names only if it mentions one of the two names. With `longer`, names
+    may also differ by whole words; in the root namespace, this holds only for special types.
     """
     able = tuple(system.able(one.end))
     found = {
@@ -45,7 +45,7 @@ def near(system: System, one: Lonely, others: Iterable[Lonely], *, longer: bool 
 
 
 def _explained(system: System, one: Lonely, other: Lonely, able: Iterable[Instance]) -> bool:
-    """Return whether something that was not read may be the other end of one of two ends.
+    """Return whether an unread node or file may contain the other end of one of two ends.
 
     `able` are the nodes that may use their type.
     """

@@ -1,4 +1,4 @@
-"""The types of the messages, requests and goals that subscriptions, servers and synchronizers pass to functions."""
+"""The types of messages, requests and goals that functions receive from subscriptions, servers and synchronizers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import Final
 from tarl_lint.system.imported_types import ImportedTypes, short
 from tarl_lint.trees import argument, last_name, walk
 
-# functions that register a callback: places and keywords of the type and the callback, and what is passed
+# functions that register a callback: the places and keywords of the type and of the callback, and the objects that
+# the callback gets
 _REGISTERS: Final[Mapping[str, tuple[tuple[int, str], tuple[int, str], tuple[str, ...]]]] = {
     "Subscriber": ((1, "data_class"), (2, "callback"), ("",)),
     "create_subscription": ((0, "msg_type"), (2, "callback"), ("",)),
@@ -22,7 +23,7 @@ HANDLE: Final = "@"  # end of the type of a goal handle, whose `request` is the 
 
 
 def received(tree: ast.Module, types: ImportedTypes) -> dict[str, set[tuple[str, int]]]:
-    """Return function name → the types of what it receives, with their positions; a type is "" if it is unknown."""
+    """Return function name → the types of the objects that the function receives, with positions; "" if unknown."""
     found: dict[str, set[tuple[str, int]]] = {}
     for call in _calls(tree):
         for callback, kinds in _registered(call, types):
@@ -35,7 +36,7 @@ def received(tree: ast.Module, types: ImportedTypes) -> dict[str, set[tuple[str,
 
 
 def received_by_lambdas(tree: ast.Module, types: ImportedTypes) -> dict[ast.Lambda, tuple[str, ...]]:
-    """Return the lambda functions that are callbacks, with the types of what they receive."""
+    """Return the lambda functions that are callbacks, with the types of the objects that they receive."""
     calls = _calls(tree)
     pairs = (pair for call in calls for pair in _registered(call, types))
     return {callback: kinds for callback, kinds in pairs if isinstance(callback, ast.Lambda)}
@@ -46,7 +47,7 @@ def _calls(tree: ast.Module) -> list[ast.Call]:
 
 
 def _registered(call: ast.Call, types: ImportedTypes) -> Iterator[tuple[ast.expr, tuple[str, ...]]]:
-    """Yield the callback that a call registers, with the types of what it receives."""
+    """Yield the callback that a call registers, with the types of the objects that the callback receives."""
     places = _REGISTERS.get(last_name(call.func))
     if places is None:
         return
@@ -60,9 +61,9 @@ def _registered(call: ast.Call, types: ImportedTypes) -> Iterator[tuple[ast.expr
 
 
 def _synchronized(tree: ast.Module, types: ImportedTypes) -> dict[str, list[str]]:
-    """Return function name → the types of the messages that a synchronizer of message_filters passes to it, in order.
+    """Return function name → the types of the messages that a synchronizer passes to the function, in order.
 
-    A function that several synchronizers call is left out.
+    The synchronizer is one of message_filters. A function that several synchronizers call is left out.
     """
     calls = _calls(tree)
     calls = [one for one in calls if last_name(one.func) == "registerCallback" and one.args]
@@ -110,7 +111,7 @@ def _of_filters(
 
 
 def _only(expr: ast.expr, assigned: Mapping[str, list[ast.expr]]) -> ast.expr | None:
-    """Return an expression, or the only value of a variable."""
+    """Return an expression; for a variable with a single value, this value."""
     if not isinstance(expr, ast.Name | ast.Attribute):
         return expr
     values = assigned.get(ast.unparse(expr), [])

@@ -21,7 +21,7 @@ from tarl_lint.workspace.ros_names import joined, remapped
 
 Role = Literal[
     "publishes", "subscribes", "serves", "calls", "performs", "asks"
-]  # what a node does with a topic, service or action; it asks the server of an action
+]  # what a node does with a topic, service or action; `asks` means that it sends goals to the server of an action
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +36,10 @@ class Qos:
 class Endpoint:
     """A use of a topic or service in a program. `names` are the names in the code; empty if they are unknown.
 
-    If names contain parameters, `written` has the names as in the code, and `names` has them with the values at
-    launch. `type` has no package; `whole_type` is `package/Name`, or "" if it is unknown or may be one of several.
-    `driven` says whether the program publishes commands or numbers again and again without any input.
+    If names contain parameters, `written` has the names as in the code, and `names` has the names with the values
+    at launch. `type` is the type without its package. `whole_type` is `package/Name`, or "" if the type is unknown
+    or may be one of several. `driven` says whether the program publishes commands or numbers repeatedly without any
+    input.
     """
 
     role: Role
@@ -72,18 +73,17 @@ class Interface:
     """The topics, services and parameters of a program, by the names in its code.
 
     `flows` are the findings TARL101 to TARL103. `name` is the node's name in the code; "" if it is computed.
-    `words` are all strings in the program. `parameters` says whether `words` includes every parameter that
-    the program reads. `closed` says that the program imports nothing that could use topics on its own.
-    `whole` says in addition that all topics have constant names and that the analysis was complete.
-    `in_names` are the parameters that names contain; `deciding` are the parameters used in conditions.
-    `stale` are publish calls that go on without new messages; `misfits` are uses of fields that a message
-    type lacks. `uses` are uses of fields of types `package/Name` that are unknown here; their fields are dotted paths.
-    `configured` are the classes `PACKAGE.cfg.NAMEConfig`, whose `.cfg` files name further parameters.
-    `complete` says that the endpoints are all that the program has, though some may have no known name.
-    `private_words` are the words that only private names (`~path`) contain.
-    `exact` are the names of all parameters that the program reads, without `~`; None if some of them are not known.
-    `private` are the parameters that a program of rospy reads only as its own, `public` those only in its namespace.
-    `cut` are the parts that exhausted the budget of the analysis.
+    `words` are all strings in the program. `parameters` is True if `words` includes every parameter that the
+    program reads. `closed` is True if the program imports no code that could use topics on its own. `whole` is True
+    if, in addition, all topics have constant names and the analysis was complete. `in_names` are the parameters
+    that names contain; `deciding` are the parameters used in conditions. `stale` are publish calls that go on
+    without new messages; `misfits` are uses of fields that a message type lacks. `uses` are uses of fields of types
+    `package/Name` that are unknown here; their fields are dotted paths. `configured` are the classes
+    `PACKAGE.cfg.NAMEConfig`, whose `.cfg` files name further parameters. `complete` is True if all endpoints of the
+    program are known, though some may have no known name. `private_words` are the words that only private names
+    (`~path`) contain. `exact` are the names of all parameters that the program reads, without `~`; None if some of
+    them are not known. `private` are the parameters that a program of rospy reads only as private ones; `public`
+    are those that it reads only in its namespace. `cut` are the parts that exhausted the budget of the analysis.
     """
 
     path: str
@@ -111,12 +111,12 @@ class Interface:
 
 @dataclass(frozen=True)
 class Seen:
-    """The topics and services of a node whose code was not read, as its C++ source or its arguments name them.
+    """The topics and services of a node whose code was not read, from its C++ source or its arguments.
 
-    `certain` says that the node has no others, except those of transforms and parameters. `through` says that data of
-    each subscribed topic may reach each published one. `kinds` are all types of messages and services that the node may
-    use; None if they are unknown. `never` are types that it does not use in any case. `words` are the words of the
-    names that the node may give topics and services; None if they may be any.
+    `certain` is True if the node has no others, except those of transforms and parameters. `through` is True if
+    data of each subscribed topic may reach each published topic. `kinds` are all types of messages and services
+    that the node may use; None if they are unknown. `never` are types that it certainly does not use. `words` are
+    the words of the names that the node may give topics and services; None if it may use any words.
     """
 
     ends: tuple[Endpoint, ...] = ()
@@ -148,7 +148,7 @@ class Instance:
     name: str
     interface: Interface | None = None
     unread: str = ""
-    known: Seen = Seen()  # what is known of a node that could not be read
+    known: Seen = Seen()  # known facts about a node that could not be read
     silent: bool = False  # whether the node is known to publish nothing that other nodes subscribe to
     # if the code of the node could not be read: the remappings of its launch groups that it can use
     meant: tuple[tuple[str, str], ...] = ()
@@ -194,7 +194,7 @@ class Instance:
         return offered(name, self.known.words)
 
     def ends(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
-        """Yield the endpoints of a role by launched name, without those whose name is unknown."""
+        """Yield the endpoints of a role by launched name; an endpoint with an unknown name is left out."""
         yield from self._launched(self.certain, role)
 
     def named(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
@@ -242,7 +242,7 @@ class Chain:
 
     @property
     def kind(self) -> Kind | Literal["not read"]:
-        """Return `explicit` if all hops are explicit, and `not read` if any node on the way was not read."""
+        """Return `explicit` if all hops are explicit, and `not read` if any node of the chain was not read."""
         kinds = {hop.kind for hop in self.hops}
         return "not read" if "not read" in kinds else "implicit" if "implicit" in kinds else "explicit"
 
@@ -252,9 +252,9 @@ class System:
     """The nodes of one launch file. Hops and chains are sorted.
 
     `messages` are the fields of types `package/Name` of the workspace that the nodes use, each with its type or "".
-    `packages` are the packages of the workspace. `included` is what is known of the nodes of packages whose launch
-    files are included, but not in the workspace. `ros2` says that the launch file is for ROS 2. `silenced` are the
-    findings that comments silence, `disabled` those in files in which `per-file-ignores` disables their rule.
+    `packages` are the packages of the workspace. `included` has the known facts about nodes of packages outside the
+    workspace whose launch files are included. `ros2` is True for a launch file of ROS 2. `silenced` are the
+    findings that comments silence, `disabled` those that `per-file-ignores` disables in their files.
     """
 
     file: Path
@@ -272,7 +272,7 @@ class System:
     ros2: bool = False
 
     def able(self, end: Endpoint) -> Iterator[Instance]:
-        """Yield the nodes that may have further endpoints of the type of an endpoint.
+        """Yield the nodes that may have unknown endpoints with the type of an endpoint.
 
         Nodes of other packages do not use types that packages of this workspace define.
         """
@@ -285,7 +285,7 @@ class System:
         return end.whole_type.partition("/")[0] in self.packages
 
     def hides(self, end: Endpoint, *names: str) -> bool:
-        """Return whether a part of the launch that was not read may start a node with such an endpoint.
+        """Return whether an unread part of the launch may start a node with such an endpoint.
 
         `names` are the launched names that the endpoint may have. If a package of the workspace defines the type,
         launch files of other packages start no such node.
@@ -305,7 +305,7 @@ class System:
                 yield name, instance, endpoint
 
     def named(self, role: Role) -> Iterator[tuple[str, Instance, Endpoint]]:
-        """Yield the endpoints of a role by launched name, also those that are known of unread nodes."""
+        """Yield the endpoints of a role by launched name, including the known endpoints of unread nodes."""
         for instance in self.instances:
             for name, endpoint in instance.named(role):
                 yield name, instance, endpoint

@@ -1,4 +1,4 @@
-"""Topics, services and actions of a launch file with one known side: heard, called or asked for, but not offered."""
+"""Topics, services and actions of a launch file that nodes subscribe to, call or ask for, but none offers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final
 
 from tarl_lint.system.model import Role, System
 
-# names that ROS itself, transforms or a simulator provide
+# names of topics and services of ROS itself, of transforms or of a simulator
 _GIVEN: Final = frozenset(["/clock", "/tf", "/tf_static", "/rosout", "/rosout_agg", "/parameter_events"])
 _SIDES: Final[tuple[tuple[Role, Role], ...]] = (
     ("subscribes", "publishes"),
@@ -21,8 +21,8 @@ _SIDES: Final[tuple[tuple[Role, Role], ...]] = (
 class OneSided:
     """A name that nodes use in one role, while no known node has the role `missing`.
 
-    `types` are the types that the users expect. `certain` says that no part of the launch file that was not read can
-    be the other side.
+    `types` are the types that the users expect. `certain` is True if no unread part of the launch file can be the
+    other side.
     """
 
     name: str
@@ -33,10 +33,11 @@ class OneSided:
 
 
 def one_sided(system: System) -> tuple[OneSided, ...]:
-    """Return the one-sided names, sorted by role and name. Without a launch file there are none.
+    """Return the one-sided names, sorted by role and name; empty without a launch file.
 
-    Names that ROS itself provides are left out, and names that the remappings of a node mention whose code was not
-    read: this node is probably the other side. So are names that depend on a value that only the robot knows.
+    Names that ROS itself provides are left out. If the remappings of an unread node mention a name, this node is
+    probably the other side, and the name is left out as well. So are names that depend on a value known only on the
+    robot.
     """
     return () if system.file.is_dir() else tuple(_one_sided(system))
 

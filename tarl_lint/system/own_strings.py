@@ -1,7 +1,7 @@
 """Decide whether an expression can only have values that are made of strings in the program itself.
 
 Names of parameters are often computed: from the keys of a table, in a loop, or by a helper method that receives the
-name. If all parts are strings of the program, the program still states every name that it reads.
+name. If all parts of a name are strings in the program, all names that the program reads can be found in its text.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tarl_lint.system.bound_values import Function, binds, bound_values, is_empt
 from tarl_lint.trees import last_name
 
 _Scope = Function | ast.Lambda | None
-# functions and methods whose result consists of their arguments and, for a method, of its object
+# functions and methods whose result is composed of their arguments and, for a method, of its object
 _MADE: Final = frozenset(
     ["sorted", "reversed", "enumerate", "zip", "list", "tuple", "set", "frozenset", "dict", "str", "chain", "product",
      "items", "keys", "values", "format", "join", "get", "copy", "range", "len", "int", "OrderedDict"]
@@ -64,7 +64,7 @@ class OwnStrings:
         return bool(found) and all(self._own(one, outline, seen) for one in found)
 
     def _elements(self, elements: Sequence[ast.expr], outline: Outline, seen: frozenset[object]) -> bool:
-        """Return whether a list or tuple is made of strings; a default beside a name does not count."""
+        """Return whether a list or tuple is made of strings; a default value beside a name is ignored."""
         own = [self._own(one, outline, seen) for one in elements]
         named = any(isinstance(one, ast.Constant) and isinstance(one.value, str) for one in elements)
         strange = [one for one, fine in zip(elements, own, strict=True) if not fine]
@@ -89,7 +89,7 @@ class OwnStrings:
         return bool(parts or call.keywords) and all(self._own(one, outline, seen) for one in parts)
 
     def _returned(self, name: str, seen: frozenset[object]) -> bool:
-        """Return whether the function of this name returns only own strings, if there is one such function."""
+        """Return whether the function of this name returns only strings of the program, if there is exactly one."""
         found = [
             (one, outline)
             for outline in self._outlines
@@ -113,7 +113,7 @@ class OwnStrings:
         return expr.id == "chain" or expr.id in imported
 
     def _attribute(self, expr: ast.Attribute, outline: Outline, seen: frozenset[object]) -> bool:
-        """Return whether an attribute is own: a field of a class, or one whose assigned values are all own."""
+        """Return whether an attribute is own: a field of a class, or an attribute whose assigned values are all own."""
         if expr.attr in _OF_CLASSES:
             return True
         if ("attribute", expr.attr) in seen:

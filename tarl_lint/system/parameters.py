@@ -33,7 +33,7 @@ COPYING: Final = frozenset(
 
 
 def words(modules: Sequence[Module]) -> frozenset[str]:
-    """Return every string of a program, as a name without `~` and slashes around it and dots before it.
+    """Return every string of a program as a name: without `~`, slashes around the name, and dots before it.
 
     Names of fields of classes and of keywords of `dict` count as strings.
     """
@@ -46,7 +46,7 @@ def words(modules: Sequence[Module]) -> frozenset[str]:
 
 
 def private_words(modules: Sequence[Module]) -> frozenset[str]:
-    """Return the words that all strings of a program state as private names, such as `~path`."""
+    """Return the words that occur in the strings of a program only in private names, such as `~path`."""
     texts = {text for module in modules for node in ast.walk(module.tree) for text in _texts(node)}
     own = {one.strip("~/") for one in texts if one.startswith("~")}
     return frozenset(own - {one.strip("/").lstrip(".") for one in texts if not one.startswith("~")})
@@ -73,9 +73,10 @@ def _texts(node: ast.AST) -> Iterator[str]:
 
 
 def scopes(modules: Sequence[Module]) -> tuple[frozenset[str], frozenset[str]]:
-    """Return the parameters that a program of rospy reads only as its own (`~gain`), and those only in its namespace.
+    """Return the parameters that a program of rospy reads only as private ones, and those only in its namespace.
 
-    A name counts only if each of its strings in the program is the literal name in such a call.
+    `~gain` is a private one. A name is included only if each string with this name in the program is the literal
+    name in such a call.
     """
     if not any("rospy" in module.text for module in modules) or any(
         "rclpy" in module.text for module in modules
@@ -98,7 +99,7 @@ def scopes(modules: Sequence[Module]) -> tuple[frozenset[str], frozenset[str]]:
 
 
 def reads_named_parameters(modules: Sequence[Module]) -> bool:
-    """Return whether a program reads only parameters whose names it states: literally, in tables, or as arguments."""
+    """Return whether a program states all names of parameters that it reads: literally, in tables, or as arguments."""
     if any(OPEN.search(module.text) for module in modules):
         return False
     outlines = [Outline(module.tree) for module in modules if any(one in module.text for one in READERS)]
@@ -113,7 +114,7 @@ def reads_named_parameters(modules: Sequence[Module]) -> bool:
 def configurations(modules: Sequence[Module]) -> tuple[str, ...] | None:
     """Return the classes `PACKAGE.cfg.NAMEConfig` of a program whose servers of dynamic_reconfigure add parameters.
 
-    Return None if the class of a server may be another one.
+    Return None if the class of a server is not certain.
     """
     serving = [module for module in modules if _SERVER in module.text]
     found: list[str] = []
@@ -148,7 +149,7 @@ def _stated(call: ast.Call, outline: Outline, strings: OwnStrings) -> bool:
 
 
 def _group(argument: ast.expr) -> bool:
-    """Return whether an argument is a literal name of a whole group (`~`, `/`), or no name."""
+    """Return whether an argument is a literal name of a whole group (`~` or `/`), or is no name at all."""
     if not isinstance(argument, ast.Constant):
         return False
     return not isinstance(argument.value, str) or argument.value.rstrip("/") in ("", "~")
@@ -181,7 +182,7 @@ def deciding(modules: Sequence[Module]) -> tuple[str, ...]:
 
 
 def _assigned(nodes: Sequence[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
-    """Yield the last names of assigned variables with their values."""
+    """Yield the assigned variables, by the last part of their names, with their values."""
     for node in nodes:
         if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
             for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
@@ -216,7 +217,7 @@ def _copies(value: ast.expr) -> bool:
 
 
 def _variables(expr: ast.AST) -> Iterator[str]:
-    """Yield the last names of variables and attributes in an expression."""
+    """Yield the variables and attributes in an expression, by the last part of their names."""
     for node in ast.walk(expr):
         if isinstance(node, ast.Attribute):
             yield node.attr

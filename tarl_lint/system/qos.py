@@ -45,9 +45,10 @@ def of_call(
 ) -> Qos | None:
     """Return the quality of service in a call at a position; None if it is not constant.
 
-    `others` are the outlines of all modules of the program, which may define the profile. If the call is one of a
-    wrapper, `inside` are the calls in it. If the profile is a variable of a wrapper, its value is taken from the tables
-    and calls that contain it beside one of the `topics`, or else from all calls of the wrapper.
+    `others` are the outlines of all modules of the program, which may define the profile. If the call is a call of
+    a wrapper, `inside` are the calls that the wrapper makes. A profile may be a variable of a wrapper. Its value is
+    then taken from the tables and calls that contain it beside one of the `topics`, or else from all calls of the
+    wrapper.
     """
     call = outline.call(pos)
     if call is None:
@@ -83,7 +84,7 @@ def _given(call: ast.Call) -> ast.expr | None:
 def _through(
     call: ast.Call, outline: Outline, where: Outline, made: ast.Call, others: Collection[Outline]
 ) -> Qos | None:
-    """Return the quality of service of a subscription that the call of a wrapper makes in another function."""
+    """Return the quality of service of a subscription that another function, a wrapper, makes when it is called."""
     given = _given(made)
     found = None if given is None else _anywhere(given, where, others)
     function = _function_around(made, where)
@@ -98,7 +99,7 @@ def _function_around(node: ast.AST, outline: Outline) -> ast.FunctionDef | None:
 
 
 def _argument(call: ast.Call, function: ast.FunctionDef, name: str) -> ast.expr | None:
-    """Return what a call passes for a parameter of a function or method; None if it is not known."""
+    """Return the argument that a call passes for a parameter of a function or method; None if it is not known."""
     plain = [one.arg for one in function.args.args]
     given = next((word.value for word in call.keywords if word.arg == name), None)
     if given is not None or any(isinstance(one, ast.Starred) for one in call.args):
@@ -111,7 +112,7 @@ def _argument(call: ast.Call, function: ast.FunctionDef, name: str) -> ast.expr 
 
 
 def _anywhere(expr: ast.expr, outline: Outline, others: Collection[Outline]) -> Qos | None:
-    """Return the quality of service of an expression; the module of its name or function may be another one."""
+    """Return the quality of service of an expression; its name or function may come from another module."""
     found = _of(expr, outline, 0)
     name = last_name(expr.func if isinstance(expr, ast.Call) else expr)
     if found is None and name not in outline.assigned and not _functions(name, outline):
@@ -123,7 +124,7 @@ def _anywhere(expr: ast.expr, outline: Outline, others: Collection[Outline]) -> 
 
 
 def _beside(topics: Collection[str], outline: Outline, others: Collection[Outline]) -> Qos | None:
-    """Return the only quality of service beside a topic in a row of a table or the arguments of a call."""
+    """Return the only quality of service that is beside a topic in a row of a table, or in the arguments of a call."""
     found = [
         [one for part in row if (one := _anywhere(part, where, others)) is not None]
         for where in (outline, *(one for one in others if one is not outline))
@@ -136,7 +137,7 @@ def _beside(topics: Collection[str], outline: Outline, others: Collection[Outlin
 
 
 def _either(one: Qos | None, other: Qos | None) -> Qos | None:
-    """Return what two possible profiles have in common."""
+    """Return the policies that two possible profiles have in common."""
     if one is None or other is None:
         return None
     return Qos(
@@ -206,7 +207,7 @@ def _imported_as(tree: ast.Module) -> dict[str, str]:
 
 
 def _preset(expr: ast.expr) -> str:
-    """Return `SENSOR_DATA` for `QoSPresetProfiles.SENSOR_DATA.value`, also by its short key; "" for others."""
+    """Return `SENSOR_DATA` for `QoSPresetProfiles.SENSOR_DATA.value` or its short key; "" for other expressions."""
     match expr:
         case ast.Attribute(attr="value", value=ast.Attribute(value=enumeration, attr=name)) if (
             last_name(enumeration) == "QoSPresetProfiles"
@@ -218,7 +219,7 @@ def _preset(expr: ast.expr) -> str:
 
 
 def _table(expr: ast.expr, outline: Outline) -> dict[str, ast.expr] | None:
-    """Return the entries of a mapping, also of a variable; None if they are not known."""
+    """Return the entries of a mapping, or of a variable that holds one; None if they are not known."""
     if isinstance(expr, ast.Name | ast.Attribute):
         values = outline.assigned.get(last_name(expr), [])
         return (

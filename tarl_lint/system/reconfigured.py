@@ -1,4 +1,4 @@
-"""Add the parameters of dynamic_reconfigure, which the workspace's `.cfg` files name, to those of a program."""
+"""Add the parameters of dynamic_reconfigure to those of a program; the workspace's `.cfg` files name them."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _names(config: str, workspace: Workspace) -> tuple[str, ...] | None:
 
 @lru_cache(maxsize=256)
 def _generated(path: Path, _changed: int) -> dict[str, tuple[str, ...]]:
-    """Return the parameters of each class that a `.cfg` file generates; nothing if a part of it is unknown.
+    """Return the parameters of each class that a `.cfg` file generates; empty if a part of the file is unknown.
 
     `_changed` is the time of the file's last change, so that a changed file is read again.
     """

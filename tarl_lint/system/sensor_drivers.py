@@ -1,4 +1,4 @@
-"""Tell what the driver of a sensor may offer: the types of its messages and services, and the words of their names.
+"""Find what the driver of a sensor may offer: the types of its messages and services, and the words of their names.
 
 A driver is known by its package, or by a word such as `lidar` in the name of its package or program. The types and
 words are those of common drivers of the same sensor. A driver of a laser scanner may publish `rear/scan` or
@@ -20,8 +20,8 @@ from tarl_lint.system.command_topics import COMMANDS
 class Sensor:
     """A kind of sensor.
 
-    `packages` are well-known drivers, and `signs` the words by which others are recognised. `types` are the messages
-    and services of drivers, `words` the words of their names.
+    `packages` are well-known drivers. `signs` are the words by which other drivers are recognised. `types` are the
+    messages and services of the drivers, and `words` are the words of their names.
     """
 
     packages: frozenset[str]
@@ -38,7 +38,7 @@ def _set(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-# what drivers of all sensors have
+# types and words that drivers of all sensors have
 _TYPES: Final = frozenset(
     ["Bool", "String", "Empty", "Trigger", "SetBool", "Header", "Temperature", "Marker", "MarkerArray",
      "DiagnosticArray", "DiagnosticStatus"]
@@ -102,14 +102,14 @@ SENSORS: Final = (
         "relposned hp",
     ),
 )  # fmt: skip
-# further words that tell a driver of a sensor, of which no words of topics are known
+# further words by which a driver of a sensor is recognised; the words of its topics are not known
 _OTHERS: Final = frozenset(["barometer", "rfid", "barcode"])
-# what makes a package more than the driver of a sensor
+# words that show that a package is more than the driver of a sensor
 _ACTIVE: Final = re.compile(
     r"follow|control|nav(?!sat)|track|servo|drive(?!r)|slam|pilot|guard|safe(?!tyscan)|stop|avoid|teleop|plan|fus|"
     r"filter|base|robot|sim|odom|match|joint|tilt|goal|map|graph|mount|(?<![a-z])pan(?![a-z])"
 )
-# what makes a program one that processes the data of a sensor, and may publish results of any type
+# words that show that a program processes the data of a sensor; such a program may publish results of any type
 _PROCESSING: Final = re.compile(
     r"detect|segment|cluster|proc|percept|recogn|obstacle|people|person|human|face|leg|object|estimat|merg|assembl|"
     r"conver|(?<![a-z])to(?![a-z])|[a-z]2[a-z]|view|display|record|server|bridge|relay|mux|throttle|transform|fake|"
@@ -120,7 +120,7 @@ _PROCESSING: Final = re.compile(
 _SIGN: Final = re.compile(
     rf"(?<![a-z])({'|'.join(sorted(_OTHERS.union(*(one.signs for one in SENSORS))))})(?![a-z])"
 )
-# what drivers of sensors do not use
+# types that drivers of sensors do not use
 _NEVER: Final = COMMANDS | {"Joy", "Path", "OccupancyGrid", "JointState", "PoseArray"}
 # words in the names of packages and programs that say nothing about their topics
 _EMPTY: Final = frozenset(
@@ -129,7 +129,7 @@ _EMPTY: Final = frozenset(
 
 
 def sensors(package: str, program: str) -> tuple[Sensor, ...]:
-    """Return the kinds of sensors of which a program is the driver, by its package or its names; empty if none."""
+    """Return the kinds of sensors for which a program is the driver, judged by its package or names; empty if none."""
     known = tuple(one for one in SENSORS if package in one.packages)
     if known or _PROCESSING.search(f"{package}/{program}".lower()):
         return known
@@ -156,7 +156,7 @@ def driver_words(package: str, program: str) -> frozenset[str] | None:
 
 
 def unused_types(package: str, program: str) -> frozenset[str]:
-    """Return types that a program does not use: the driver of a sensor commands nothing."""
+    """Return types that a program does not use: for example, the driver of a sensor sends no commands."""
     return frozenset(_NEVER) if _signs(package, program) else frozenset()
 
 

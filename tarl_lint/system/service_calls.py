@@ -27,12 +27,12 @@ _SERVERS: Final = (
 )
 # endings of the names of calls that send or receive feedback
 FEEDBACK: Final = (".publish_feedback", ".feedback")
-# For each pair: the message that goes to the server of a service or action, and the one that may come back.
+# Each pair has the message that goes to the server of a service or action, and the message that may come back.
 PARTS: Final = ((" (request)", " (response)"), (" (goal)", " (result)"), (" (goal)", " (feedback)"))
 
 
 def part(api: str, *, sent: bool) -> str:
-    """Return which part of a service or action an end of a flow is, such as ` (request)`; "" for a topic."""
+    """Return the part of a service or action that an end of a flow is, such as ` (request)`; "" for a topic."""
     client = api.startswith(CLIENTS)
     if not client and not api.startswith(_SERVERS):
         return ""

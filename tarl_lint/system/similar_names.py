@@ -1,4 +1,4 @@
-"""Tell which absolute names of topics and services may be meant to be equal."""
+"""Decide which absolute names of topics and services may be meant to be equal."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Final
 
 from tarl_lint.system.model import Instance
 
-_LONG: Final = 5  # minimum length of names of which a letter may be wrong
+_LONG: Final = 5  # names of at least this length are compared for a wrong letter
 _CODE: Final = 2  # maximum length of words such as `fl`, which stand for a place
 _SYNONYMS: Final = (
     frozenset(["state", "status"]),
@@ -17,7 +17,7 @@ _SYNONYMS: Final = (
 
 
 def spelled_alike(one: str, other: str) -> bool:
-    """Return whether two absolute names may be meant to be equal: one has a namespace more, or a letter differs.
+    """Return whether two absolute names may be meant to be equal: by an additional namespace or by a different letter.
 
     `/robot/scan` may be meant to be `/scan`, but `/left/scan` and `/right/scan` are different names. Words of the last
     part may be abbreviated (`vel`, `cmd`). For differences of letters, see `misspelt`.
@@ -31,12 +31,12 @@ def spelled_alike(one: str, other: str) -> bool:
 def misspelt(one: str, other: str) -> bool:
     """Return whether the spelling alone shows that two absolute names were meant to be equal.
 
-    A letter may be missing, wrong, or in the wrong place; underscores and upper case make no difference, and words may
+    A letter may be missing, wrong, or in the wrong place. Underscores and upper case make no difference. Words may
     be in another order. A slash may stand for an underscore (`water/current`). Words of the same meaning, such as
     `state` and `status`, are alike in the same namespace. Names that differ in a digit (`left_1`, `left_2`) or in a
-    word of one or two letters (`imu_a`, `imu_b`; `wheel_fl`, `wheel_fr`) are different names, and so are names with
-    fewer than five letters, unless two letters are exchanged. A letter may also differ in a word of the namespace that
-    has at least five letters.
+    word of one or two letters (`imu_a`, `imu_b`; `wheel_fl`, `wheel_fr`) are different names. Names with fewer than
+    five letters are different names as well, except if two letters are exchanged. A letter may also differ in a
+    word of the namespace that has at least five letters.
     """
     (above, last), (beyond, end) = (name.rpartition("/")[::2] for name in (one, other))
     if last == end:
@@ -62,7 +62,7 @@ def misspelt(one: str, other: str) -> bool:
 
 
 def _abbreviated(one: str, other: str) -> bool:
-    """Return whether names have the same words, some of which are abbreviated in one of them."""
+    """Return whether two names have the same words, where one of the names may abbreviate some of them."""
     pairs = list(zip_longest(one.split("_"), other.split("_"), fillvalue=""))
     return all(a == b or _shortened(*sorted((a, b), key=len)) for a, b in pairs)
 
@@ -78,7 +78,7 @@ def _shortened(short: str, long: str) -> bool:
 
 
 def under_own_name(name: str, other: str, them: Instance) -> bool:
-    """Return whether `other` is a private name of a node and `name` what it is without the launch file's node name."""
+    """Return whether `other` is a private name, and `name` is the same name with the node's name in the code."""
     own = them.interface.name if them.interface is not None else ""
     rest = other.removeprefix(f"{them.name}/")
     above, _, last = them.name.rpartition("/")
@@ -86,7 +86,7 @@ def under_own_name(name: str, other: str, them: Instance) -> bool:
 
 
 def in_private_names(one: str, other: str, *nodes: Instance) -> bool:
-    """Return whether two names are private names of the same node, which is one of the given ones."""
+    """Return whether two names are private names of the same node, which is one of the given nodes."""
     above, beyond = one.rpartition("/")[0], other.rpartition("/")[0]
     return one != other and above == beyond and above in [node.name for node in nodes]
 
@@ -94,7 +94,7 @@ def in_private_names(one: str, other: str, *nodes: Instance) -> bool:
 def longer_alike(one: str, other: str, *, rooted: bool = False) -> bool:
     """Return whether two names in the same namespace differ by whole words: `open` and `open_door`.
 
-    `rooted` says that this namespace may be the root.
+    With `rooted`, this namespace may be the root.
     """
     (above, last), (beyond, end) = (name.rpartition("/")[::2] for name in (one, other))
     few, many = sorted((set(last.split("_")), set(end.split("_"))), key=len)
@@ -113,7 +113,7 @@ def _within(few: list[str], many: list[str]) -> bool:
 
 
 def _namespace_apart(few: list[str], many: list[str]) -> bool:
-    """Return whether one word of one part of a namespace is misspelt in another namespace."""
+    """Return whether two namespaces differ in nothing but one misspelt word."""
     if len(few) != len(many):
         return False
     parts = [(a.split("_"), b.split("_")) for a, b in zip(few, many, strict=True) if a != b]

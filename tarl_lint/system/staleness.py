@@ -1,4 +1,4 @@
-"""Find publish calls that go on when no message arrives, in loops and timers that never check the age of a message."""
+"""Find publish calls that continue when messages stop, in loops and timers that never check the age of a message."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _TIMES: Final = re.compile(
     r"\bnow\(|\b(get_time|get_rostime|Time|time|monotonic|stamp|clock|timeout|wait_for_message|Duration)\b|watchdog|stale|"
     r"last_|_time\b|elapsed|_age\b|\bage\b|fresh|alive|heartbeat|deadman|counter|countdown|received|_new\b|\bnew_|updated"
 )
-# words that show a watchdog wherever they are in the program
+# words that show that a program has a watchdog, wherever they occur
 _WATCHDOGS: Final = re.compile(
     r"watchdog|deadline|liveliness|SubscriptionEventCallbacks|heartbeat|deadman|wait_for_message|threading\.Timer\(|"
     r"oneshot\s*=\s*True"
 )
-# uses of the time that do not compare it: pauses, timers, and the stamps of messages
+# uses of the time that compare no times: pauses, timers, and the stamps of messages
 _SLEEPS: Final = re.compile(
     r"\bheader\.stamp\s*=(?!=)[^,\n]*|\bstamp=[^=,\n][^,\n]*\(\)|"
     r"\btime\.sleep\(|\bimport time\b|\bDuration\([^)]*\)|create_(wall_)?timer\([^)]*\)|rospy\.Timer\([^)]*\)"
@@ -37,10 +37,10 @@ _Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Finding, ...]:
-    """Return the flows into commands that a timer or loop publishes again and again from the last message.
+    """Return the flows into commands that a timer or loop publishes repeatedly from the last message.
 
-    One function receives the message and stores it, and another function publishes it. No function that runs again and
-    again clears the stored value or seems to check the age of the message.
+    One function receives the message and stores it, and another function publishes the command. No function that
+    runs repeatedly clears the stored value, or seems to check the age of the message.
     """
     flows = [one.flow for one in findings if one.flow is not None]
     if not any(is_command(one.sink.type, one.sink.topics) for one in flows):
@@ -56,7 +56,7 @@ def _callbacks(flow: Flow) -> set[str]:
 
 
 class Program:
-    """The functions of a program by their names, and which of them call which. `callbacks` receive messages."""
+    """The functions of a program by their names, and the calls between them. `callbacks` receive messages."""
 
     def __init__(self, modules: Sequence[Module], callbacks: set[str]) -> None:
         self._callbacks = callbacks
@@ -67,7 +67,7 @@ class Program:
         self._texts = {module.path: module.text for module in modules}
         self._trees = {module.path: module.tree for module in modules}
         self._functions: dict[str, list[tuple[str, _Function | ast.Module]]] = {}
-        # function → callers, and whether each calls it in a loop
+        # function → its callers, and whether each caller calls it in a loop
         self._callers: dict[str, list[tuple[str, bool]]] = {}
         for module in modules:
             self._functions.setdefault("", []).append((module.path, module.tree))
@@ -104,7 +104,7 @@ class Program:
             self._handlers |= {last_name(one) for one in given} - {""}
 
     def goes_on(self, flow: Flow) -> bool:
-        """Return whether a command is published again and again from a message that was stored."""
+        """Return whether a command is published repeatedly from a stored message."""
         explicit = flow.kind == "explicit" and "ubscri" in flow.source.api
         if not explicit or not is_command(flow.sink.type, flow.sink.topics):
             return False
@@ -168,7 +168,7 @@ class Program:
         return False
 
     def _looped(self, name: str, path: str, line: int) -> bool:
-        """Return whether a line of a function is in a `while` of it."""
+        """Return whether a line of a function is in a `while` loop of this function."""
         return any(
             isinstance(node, ast.While) and node.lineno <= line <= (node.end_lineno or 0)
             for where, function in self._functions.get(name, ())
@@ -177,14 +177,14 @@ class Program:
         )
 
     def _running(self) -> set[str]:
-        """Return the functions that timers and loops call, directly or through others."""
+        """Return the functions that timers and loops call, directly or through other functions."""
         found = {name for name in self._timed if name in self._functions}
         found |= {name for name, callers in self._callers.items() if name in self._functions and any(
             looped and caller not in self._handlers for caller, looped in callers)}  # fmt: skip
         return self._reached(found)
 
     def _reached(self, found: set[str]) -> set[str]:
-        """Return functions, and all that they may call or read as properties."""
+        """Return functions, together with all functions that they may call or read as properties."""
         pending = [*found]
         while pending:
             fresh = (self._named.get(pending.pop(), set()) & self._functions.keys()) - found
@@ -200,7 +200,7 @@ class Program:
         return False
 
     def _text(self, path: str, function: _Function | ast.Module) -> str:
-        """Return the text of a function; of a module, that of its loops."""
+        """Return the text of a function; for a module, the text of its loops."""
         lines = self._texts[path].split("\n")
         if isinstance(function, _Function):
             return "\n".join(lines[function.lineno - 1 : function.end_lineno])
@@ -208,7 +208,7 @@ class Program:
         return "\n".join("\n".join(lines[one.lineno - 1 : one.end_lineno]) for one in loops)
 
     def _cleared(self, name: str, running: set[str]) -> bool:
-        """Return whether code sets a stored value to None, or changes it again and again without a message."""
+        """Return whether code sets a stored value to None, or changes it repeatedly without a message."""
         for where, functions in self._functions.items():
             if where in _SETUP or where == "":
                 continue
@@ -235,7 +235,7 @@ def _word(name: str) -> str:
 
 
 def _own(function: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes of a function or module without those of functions inside it."""
+    """Yield the nodes of a function or module, except the nodes of functions inside it."""
     for child in ast.iter_child_nodes(function):
         if not isinstance(child, _Function):
             yield child
@@ -243,7 +243,7 @@ def _own(function: ast.AST) -> Iterator[ast.AST]:
 
 
 def _changes(function: ast.AST) -> Iterator[tuple[ast.expr, ast.expr | None]]:
-    """Yield what a function assigns, with its value; None for what it changes in place or takes out."""
+    """Yield the targets that a function changes, each with its new value; None for a change in place or a removal."""
     for node in ast.walk(function):
         match node:
             case ast.Assign(targets=targets, value=value):

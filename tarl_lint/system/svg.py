@@ -81,7 +81,7 @@ def _edge(one: _Box, other: _Box, kind: EdgeKind) -> str:
     x1, y1 = one.x + one.width, one.y + BOX / 2
     x2, y2 = other.x, other.y + BOX / 2
     bend = GAP if x2 < x1 else max(GAP / 2, (x2 - x1) / 2)
-    below = 2 * BOX if x2 < x1 else 0.0  # a backward edge passes below the boxes in between
+    below = 2 * BOX if x2 < x1 else 0.0  # a backward edge passes below the boxes between its ends
     marker = "" if kind == "touching" else ' marker-end="url(#arrow)"'
     return (
         f'<path{_CLASSES[kind]} d="M{x1:.0f},{y1:.0f} C{x1 + bend:.0f},{y1 + below:.0f} '

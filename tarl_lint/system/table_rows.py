@@ -1,4 +1,4 @@
-"""Rows of tables and arguments of calls that name a topic, which tell the type and the profile of this topic.
+"""Rows of tables, and arguments of calls, that contain a topic together with its type and profile.
 
 The analysis joins the elements of a table, so a loop over a table gives all topics all types. The rows separate them.
 """
@@ -36,7 +36,7 @@ def _rows(node: ast.AST) -> Iterator[list[ast.expr]]:
 
 
 def separated(end: Endpoint, whole_types: Collection[str], outlines: Collection[Outline]) -> list[Endpoint]:
-    """Return an endpoint with several topics and types as one for each topic, if the rows tell all types."""
+    """Return an endpoint with several topics and types as one endpoint per topic, if the rows give the types of all."""
     kinds = end.type.split(" | ")
     if len(end.names) < 2 or len(kinds) < 2:
         return [end]

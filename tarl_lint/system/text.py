@@ -23,7 +23,8 @@ SHOWN: Final = 4  # maximum number of similar topics that a message suggests
 WIDEST: Final = 44  # maximum width of a list of topics (columns)
 
 _ROLES: Final[tuple[Role, Role]] = ("subscribes", "publishes")
-# the role that no known node has → the heading, what the users of the name do, and what other nodes may do
+# role that no known node has → the heading; a verb for what users of the name do; a verb for what other nodes may
+# do
 _MISSING: Final[Mapping[Role, tuple[str, str, str]]] = {
     "publishes": ("No publisher", "heard by", "publish"),
     "serves": ("No server", "called by", "offer"),
@@ -127,7 +128,7 @@ def _table(system: System, glyphs: Glyphs) -> Iterator[Line]:
 
 
 def _row(instance: Instance, glyphs: Glyphs) -> tuple[str, ...]:
-    """Return the cells of a node; for a node that was not read, the last cell is the reason."""
+    """Return the cells of a node. If the node was not read, the last cell is the reason."""
     node = instance.node
     where = f"{node.package}/{node.executable}" if node.package else node.executable
     name = f"{instance.name} ({node.condition})" if node.condition else instance.name
@@ -158,7 +159,7 @@ def _findings(system: System) -> Iterator[Line]:
 
 
 def _lonely(system: System) -> Iterator[Line]:
-    """Yield the topics, services and actions that only have the side that uses them."""
+    """Yield the topics, services and actions that nodes use but no known node offers."""
     found = one_sided(system)
     for missing, (title, verb, may) in _MISSING.items():
         chosen = [one for one in found if one.missing == missing]

@@ -1,7 +1,7 @@
 """Topics of the programs of topic_tools, such as `relay`, `throttle` and `mux`, which publish what they receive.
 
-The topics are arguments of the programs; in ROS 2, they may also be parameters, as those of components are. Source: the
-files of these names in `topic_tools/src` of ros_comm (ROS 1) and of topic_tools (ROS 2).
+The topics are arguments of the programs; in ROS 2, they may also be parameters. For components, they always are.
+Source: the files of these names in `topic_tools/src` of ros_comm (ROS 1) and of topic_tools (ROS 2).
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ _Topics = tuple[Sequence[str], Sequence[str]]
 def _named(words: Sequence[str], number: int, suffix: str) -> _Topics:
     """Return the input and output topics of a program.
 
-    Argument `number` names the output. If it is missing, the output is the input's name with the suffix.
+    The argument with index `number` names the output. If this argument is missing, the output is the input's name
+    with the suffix.
     """
     return words[:1], words[number : number + 1] or [f"{words[0]}{suffix}"]
 
@@ -39,7 +40,7 @@ _PROGRAMS: Final[Mapping[str, Callable[[Sequence[str]], _Topics]]] = {
     "transform": _converted,
     "relay_field": _converted,
 }
-# programs whose first argument may be a topic with a field below it
+# programs whose first argument may be a topic followed by a field
 _OF_FIELDS: Final = ("transform", "relay_field")
 _CHOOSING: Final[Mapping[str, str]] = {
     "mux": "Mux",
@@ -70,7 +71,7 @@ def passed_on(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> S
             ends.append(Endpoint("subscribes" if role == "subscribes" else "publishes", (name,), "", span))
     above = (
         "~" if ros2 else instance.resolve(program)
-    )  # in ROS 1, the namespace of the services may be remapped
+    )  # in ROS 1, a remapping may rename the namespace of the services
     return Seen((*ends, *_choice(program, outputs, above, span)) if named else (), certain)
 
 
@@ -111,7 +112,7 @@ def _texts(value: Any) -> list[str]:
 
 
 def _choice(program: str, outputs: Sequence[str], above: str, span: Span) -> Iterator[Endpoint]:
-    """Yield the services of `mux` and `demux` that choose the topic; they are below the name `above`."""
+    """Yield the services of `mux` and `demux` that choose the topic. Their names begin with the namespace `above`."""
     kind = _CHOOSING.get(program)
     if kind is None:
         return

@@ -30,12 +30,12 @@ EXECUTABLES: Final = (
 )
 # variables of conditions under which tests are built
 _TESTING: Final = frozenset({"BUILD_TESTING", "CATKIN_ENABLE_TESTING"})
-# what a CMake file contains if it builds or installs programs
+# matches a CMake file that builds or installs programs
 _BUILDS: Final = re.compile(rf"\bPROGRAMS\b|catkin_install_python|{'|'.join(EXECUTABLES)}", re.IGNORECASE)
 # folders of the interfaces that commands of ROS 1 declare
 _PLACES: Final = {"add_message_files": "msg", "add_service_files": "srv", "add_action_files": "action"}
 _INTERFACES: Final = frozenset({"rosidl_generate_interfaces", *_PLACES})
-# blocks whose first command must be closed by the second
+# pairs of commands: the first begins a block that the second must close
 _BLOCKS: Final = {"if": "endif", "foreach": "endforeach", "while": "endwhile", "macro": "endmacro",
                   "function": "endfunction"}  # fmt: skip
 _KEYWORDS: Final = frozenset(
@@ -60,8 +60,9 @@ class Command:
 class Cmake:
     """The installed programs (file, installed name) and Python packages (name, folder) of a package.
 
-    `compiled` lists its C++ programs, and `tests` the programs that it builds for tests only. `components` lists the
-    classes of its composable nodes, and `configurations` the `.cfg` files that it declares.
+    `compiled` lists its C++ programs, and `tests` lists the programs that the package builds only for tests.
+    `components` lists the classes of its composable nodes, and `configurations` lists the `.cfg` files that the
+    package declares.
     """
 
     programs: tuple[tuple[str, str], ...] = ()
@@ -160,7 +161,7 @@ class _Build:
             self.compiled.add(_after(words, "EXECUTABLE"))
 
     def _known(self, command: Command, words: Sequence[str]) -> tuple[str, ...]:
-        """Return the words without unknown variables; record a problem for each of the others."""
+        """Return the words without unknown variables; record a problem for each word with an unknown variable."""
         unknown = [one for one in words if _names_unknown(one)]
         for one in unknown:
             self.problems.append(
@@ -183,7 +184,7 @@ class _Build:
             self.problems.append(Problem(self.path, command.line, reason))
 
     def _exists(self, command: Command, file: str) -> bool:
-        """Return whether the package has a declared file; record a problem if it does not."""
+        """Return whether a file that the package declares exists; record a problem if it does not."""
         path = self.folder / file
         if _VARIABLE.search(file) or not path.is_relative_to(self.folder):
             return False
@@ -193,7 +194,7 @@ class _Build:
 
 
 def _names_unknown(word: str) -> bool:
-    """Return whether a word has a variable without a known value; variables of install folders do not count."""
+    """Return whether a word has a variable without a known value; variables for install folders are ignored."""
     return any(
         "DESTINATION" not in one and not one.startswith("CMAKE_INSTALL_") for one in _VARIABLE.findall(word)
     )
@@ -214,7 +215,7 @@ def _after(words: Sequence[str], keyword: str, default: str = "") -> str:
 
 
 def renamed(command: Command) -> dict[str, str]:
-    """Return the target that a command gives the name of a file, with this name; empty if there is none."""
+    """Return the target to which a command gives the name of a file, and this name; empty if there is none."""
     words = command.words
     if command.name != "set_target_properties" or "OUTPUT_NAME" not in words[:-1]:
         return {}
@@ -222,7 +223,7 @@ def renamed(command: Command) -> dict[str, str]:
 
 
 def _unclosed(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the lines at which a call, a text or a block begins that does not end."""
+    """Yield the lines at which a call, a text or a block begins that is never closed."""
     depth, start = 0, 0
     for line, token in _tokens(text):
         if token["stray"]:

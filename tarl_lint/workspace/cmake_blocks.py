@@ -24,7 +24,7 @@ _ENDS: Final = {"macro": "endmacro", "function": "endfunction", "foreach": "endf
 
 @dataclass
 class Blocks:
-    """Expands blocks. `replaced` returns the words of a call with their variables replaced."""
+    """Expands blocks. The function `replaced` returns the words of a call with their variables replaced."""
 
     replaced: Callable[[Sequence[str], Variables], tuple[str, ...]]
     variables: Variables
@@ -32,7 +32,7 @@ class Blocks:
     left: int = MOST
 
     def run(self, calls: Sequence[Call], depth: int = 0) -> Iterator[Called]:
-        """Yield the calls with variables replaced; the receiver may change variables between two calls."""
+        """Yield the calls with variables replaced. The code that receives them may change variables in between."""
         place = 0
         while place < len(calls) and self.left > 0 and depth <= DEEPEST:
             name, words, line = calls[place]
@@ -56,7 +56,7 @@ class Blocks:
             yield from self.run(body, depth + 1)
 
     def _items(self, words: Sequence[str]) -> list[str]:
-        """Return the items of `foreach(x a b)` or `foreach(x IN LISTS names ITEMS a)`; none of a range."""
+        """Return the items of `foreach(x a b)` or `foreach(x IN LISTS names ITEMS a)`; empty for a range."""
         if words[:1] == ("RANGE",):
             return []
         if words[:1] != ("IN",):

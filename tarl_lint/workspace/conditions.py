@@ -1,4 +1,4 @@
-"""Conditions of launched nodes that are known only on the robot: combine them, and tell which exclude each other.
+"""Conditions of launched nodes that are known only on the robot: combine them, and find pairs that exclude each other.
 
 A condition is a text such as `if $(arg real)`, `unless $(arg real)` (ROS 1), `not $(var real)`, `mode == 'sim'`.
 """
@@ -17,7 +17,7 @@ _COMPARED: Final = re.compile(r"(.+?)\s*(==|!=)\s*(.+)", re.DOTALL)
 _EQUALS: Final = re.compile(r"\$\((not-)?equals (\$\([^()]*\)|\S+) (\$\([^()]*\)|\S+)\)")
 _Literal = tuple[
     str, str | None, bool
-]  # (tested expression, constant that it is compared with, whether they must be equal)
+]  # triples: the tested expression, the constant with which it is compared, and whether the two must be equal
 
 
 def combined(outer: str, inner: str) -> str:
@@ -85,7 +85,7 @@ def _constant(text: str, subject: str) -> bool:
 
 
 def _stripped(text: str) -> tuple[str, bool]:
-    """Return a condition without its outermost operator, and whether it has the same truth."""
+    """Return a condition without its outermost operator, and whether its truth stays the same without the operator."""
     for word, kept in (("if ", True), ("unless ", False), ("not ", False)):
         if text.startswith(word):
             return text.removeprefix(word).strip(), kept

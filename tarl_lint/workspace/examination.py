@@ -1,4 +1,4 @@
-"""Read every file of a workspace, and tell which of them cannot be read and why. Nothing is executed."""
+"""Read every file of a workspace, and report which files cannot be read, and why. Nothing is executed."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ NO_YAML: Final = "YAML files were not examined: run pip install PyYAML"
 
 @dataclass(frozen=True)
 class Examined:
-    """A workspace with everything in it that could not be read.
+    """A workspace, together with all parts of it that could not be read.
 
-    `foreign` are nodes that launch files start from packages outside the workspace, as `package/program`; `absent` are
-    packages outside the workspace whose launch files are included. `symbolic` is the number of values of launch files
-    that are known only on the robot, and `note` says what was not examined at all.
+    `foreign` are nodes that launch files start from packages outside the workspace, as `package/program`; `absent`
+    are packages outside the workspace whose launch files are included. `symbolic` is the number of values in launch
+    files that are known only on the robot. `note` describes the parts that were not examined at all.
     """
 
     workspace: Workspace
@@ -56,7 +56,7 @@ def examined(workspace: Workspace) -> Examined:
 
 
 class _Examination:
-    """Examines packages, and collects what launch files take from elsewhere."""
+    """Examines packages, and collects the packages outside the workspace that launch files use."""
 
     def __init__(self, workspace: Workspace) -> None:
         self.workspace = workspace
@@ -89,7 +89,7 @@ class _Examination:
         return replace(package, problems=tuple(sorted(new, key=lambda one: (one.file, one.line, one.reason))))
 
     def _launch(self, file: Path) -> Iterator[Problem]:
-        """Yield what hides nodes of a launch file; count the values that are known only on the robot."""
+        """Yield the problems that may hide nodes of a launch file. Count the values known only on the robot."""
         yield from _text(file, _python_encoding if file.suffix == ".py" else _xml_encoding)
         launch = read_launch(file, self.workspace)
         for one in launch.problems:
@@ -136,7 +136,7 @@ class _Examination:
 
 
 def _builds(package: Package, name: str) -> bool:
-    """Return whether the `CMakeLists.txt` of a package names a program, which macros of other packages may build."""
+    """Return whether the `CMakeLists.txt` of a package names a program; macros of other packages may build it."""
     if name in (*package.compiled, *package.tests):
         return True
     try:
@@ -154,7 +154,7 @@ def _named(package: Package, name: str) -> list[Path]:
 
 
 def _python_files(package: Package) -> set[Path]:
-    """Return the Python files of programs and importable modules, without those of packages inside."""
+    """Return the Python files of programs and importable modules, except the files of packages inside this one."""
     found = {one.path for one in package.executables if one.path is not None}
     for root in package.modules:
         found |= {root.path} if root.path.is_file() else set(root.path.rglob("*.py"))

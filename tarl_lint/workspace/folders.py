@@ -24,8 +24,8 @@ def folders(
 ) -> Iterator[tuple[Path, list[str]]]:
     """Yield the source folders with their files, sorted; skip build output.
 
-    Also skip a folder with a marker such as COLCON_IGNORE, unless it contains one of the folders in `kept`. Add
-    markers that a person (not a tool) has placed to `ignored`, and folders that cannot be read to `unread`.
+    Also skip a folder with a marker such as COLCON_IGNORE, unless it contains one of the folders in `kept`. Markers
+    that a person (not a tool) has placed are added to `ignored`. Folders that cannot be read are added to `unread`.
     """
     unread = [] if unread is None else unread
 

@@ -1,4 +1,4 @@
-"""Hidden packages that a launch file names, which build tools skip although the launch file needs them."""
+"""Hidden packages that a launch file names: the launch file needs them, but build tools skip them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tarl_lint.workspace.model import Hidden, Problem, Workspace
 
 
 def named_by(launch: Launch, workspace: Workspace) -> tuple[Hidden, ...]:
-    """Return the hidden packages that contain the launch file, an included file, a node or parameters, by name."""
+    """Return the hidden packages that contain the launch file, an included file, a node or parameters; by name."""
     settings = [*launch.settings, *(one for node in launch.nodes for one in node.settings)]
     places = {launch.file, *(one.file for one in settings), *(node.file for node in launch.nodes)}
     found = {workspace.hidden_at(place) for place in places}
@@ -36,6 +36,6 @@ def problems(launch: Launch, workspace: Workspace) -> Iterator[Problem]:
 
 
 def folders_with(hidden: Collection[Hidden], workspace: Workspace) -> tuple[Path, ...]:
-    """Return the folders of hidden packages, and of all other packages that the same markers hide."""
+    """Return the folders of hidden packages, and of all other packages hidden by the same markers."""
     markers = {one.marker for one in hidden}
     return tuple(one.package.folder for one in workspace.hidden if one.marker in markers)

@@ -12,7 +12,7 @@ _CONSTANT: Final = re.compile(rf"({_TYPE})\s+[A-Za-z]\w*\s*=(.*)")
 _WHOLE: Final = re.compile(r"u?int(?:8|16|32|64)|byte|char")
 _REAL: Final = frozenset({"float32", "float64"})
 _TEXT: Final = frozenset({"string", "wstring"})
-# ending → the number of sections, which lines of dashes separate
+# file ending → number of sections; lines of dashes separate the sections
 SECTIONS: Final = {".msg": 1, ".srv": 2, ".action": 3}
 
 
@@ -36,7 +36,7 @@ def mistakes(text: str, ending: str) -> Iterator[tuple[int, str]]:
 
 
 def _has_value(kind: str, text: str) -> bool:
-    """Return whether the text is a value of the type; only that of a string may contain #."""
+    """Return whether the text is a value of the type; only the value of a string may contain #."""
     try:
         constant(kind, text.partition("#")[0].strip())
     except ValueError:

@@ -1,4 +1,4 @@
-"""Values that depend on a condition known only on the robot: actions become conditional, other data unknown."""
+"""Values that depend on a condition known only on the robot: actions become conditional, other data becomes unknown."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def conditional(value: Any, condition: str, line: int) -> Any:
             return value
         return Action("group", value.line, {"actions": [value], "assumed": condition})
     if isinstance(value, tuple) and len(value) == 2 and plain(value[0]):
-        # a pair, such as a remapping: only its second element is conditional
+        # of a pair, such as a remapping, only the second element becomes conditional
         return value[0], conditional(value[1], condition, line)
     if isinstance(value, list | tuple):
         return type(value)(conditional(one, condition, line) for one in value)
@@ -72,7 +72,7 @@ def either(one: Any, other: Any, text: str, line: int) -> Any:
 
 
 def one_of(values: list[tuple[str, Any]], line: int) -> Any:
-    """Return the value that is one of several, each under a condition; no two conditions hold together."""
+    """Return the value that is one of several values, each under a condition. The conditions exclude each other."""
     if all(_actions(one) for _, one in values):
         return _one_of_actions(values, line)
     (text, one), *others = values
@@ -101,7 +101,7 @@ def _one_of_two(one: Any, other: Any, text: str, other_text: str, line: int) -> 
         }
     if _data(one) and _data(other):
         return Unknown(line, f"{_text(one)} if {text} else {_text(other)}")
-    # of functions, classes and modules, the first known one is used
+    # of several functions, classes or modules, the first known one is used
     return one if not isinstance(one, Unknown) else other
 
 

@@ -1,4 +1,4 @@
-"""Interpret both branches of an `if` of a launch file whose condition is known only on the robot.
+"""Interpret both branches of an `if` in a launch file; its condition is known only on the robot.
 
 `launch_alternatives` joins the values of both branches.
 """
@@ -50,7 +50,7 @@ class BranchingInterpreter(Interpreter):
 
     @property
     def condition(self) -> str:
-        """Return the conditions that the current statement runs under; "" if there are none."""
+        """Return the conditions under which the current statement runs; "" if there are none."""
         found = ""
         for one in self._branches:
             found = combined(found, one.condition)
@@ -76,7 +76,7 @@ class BranchingInterpreter(Interpreter):
         self._cases(statement, 0, self.value(statement.subject, names), names)
 
     def _cases(self, statement: ast.Match, first: int, subject: Any, names: Scope) -> None:
-        """Interpret the cases of a `match` from one on."""
+        """Interpret the cases of a `match`, beginning with a given case."""
         for index, case in enumerate(statement.cases[first:], first + 1):
             fit = fits(self, case.pattern, subject, names)
             if fit and case.guard is not None:
@@ -98,7 +98,7 @@ class BranchingInterpreter(Interpreter):
                 return
 
     def _alternatives(self, runs: _Runs, text: str, line: int, names: Scope) -> None:
-        """Interpret both branches, and continue with the names of those that do not end early.
+        """Interpret both branches, and continue with the names of the branches that do not end early.
 
         A branch ends early by `return`, `raise`, `break` or `continue`.
         """
@@ -126,7 +126,7 @@ class BranchingInterpreter(Interpreter):
             self._go_on(_all(text, rest), old, rest, other)
 
     def _branch(self, run: Callable[[], None], branch: Branch) -> tuple[Exception | None, list[Branch]]:
-        """Interpret a branch; return the exception that ended it early, or None, and the conditions if it continues."""
+        """Interpret a branch. Return the exception that ended it early, or None; and its conditions if it goes on."""
         count = len(self._branches)
         self._branches.append(branch)
         try:
@@ -152,7 +152,7 @@ class BranchingInterpreter(Interpreter):
     def _go_on(
         self, text: str, old: dict[int, Any], within: list[Branch], left: Exception | None = None
     ) -> None:
-        """Put the following statements under a condition, up to the end of the function or loop that `left` ends."""
+        """Put the following statements under a condition, up to the end of the function or loop that `left` leaves."""
         whole = any(one.whole for one in within) if left is None else not isinstance(left, Left) or left.whole
         self._branches.append(Branch(text, old, whole))
 
@@ -177,7 +177,7 @@ class BranchingInterpreter(Interpreter):
         raise left
 
     def _join(self, after: Names, text: str, line: int) -> None:
-        """Bind each name to the value of both branches; `after` are the names of the first one."""
+        """Bind each name to the value of both branches; `after` are the names after the first branch."""
         for scope, first in zip(after.scopes, after.values, strict=True):
             for name in [*first, *(one for one in scope if one not in first)]:
                 one, other = first.get(name, ABSENT), scope.get(name, ABSENT)
@@ -210,7 +210,7 @@ class BranchingInterpreter(Interpreter):
         return conditional(value, condition, self.line) if condition else value
 
     def call(self, called: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        """Return the value of a call; what it adds to a list under a condition is conditional."""
+        """Return the value of a call; elements that it adds to a list under a condition are conditional."""
         if self._branches and args:
             bound = isinstance(called, Bound)
             owner = called.of if bound else getattr(called, "__self__", None)
@@ -253,7 +253,8 @@ class BranchingInterpreter(Interpreter):
     def _stops(self, body: list[ast.stmt], names: Scope) -> bool:
         """Interpret the body of a loop once, and return whether no iteration follows.
 
-        If the body ends early, go on where an unknown condition left the iteration or the loop before.
+        If the body ends early, continue with the names with which an unknown condition left the iteration or the
+        loop earlier.
         """
         loop, loop.start = self._open_loops[-1], len(self._branches)
         try:
@@ -282,7 +283,7 @@ class BranchingInterpreter(Interpreter):
 
     @contextmanager
     def _loop(self, line: int) -> Iterator[None]:
-        """Interpret a loop; after it, names have the values of all its ends."""
+        """Interpret a loop. After the loop, each name has the values that it may have at any end of the loop."""
         loop = Loop(len(self._branches), len(self._branches), line)
         self._open_loops.append(loop)
         try:
@@ -292,7 +293,7 @@ class BranchingInterpreter(Interpreter):
         self._join_all(loop.breaks, line)
 
     def _resume(self, loop: Loop, names: Scope) -> None:
-        """Go on with the names with which an unknown condition left the iteration, or else the loop."""
+        """Continue with the names with which an unknown condition left the iteration or, otherwise, the loop."""
         begin, left = (loop.start, loop.continues) if loop.continues else (loop.begin, loop.breaks)
         texts = [text for text, _ in left]
         left.pop()[1].restore()
@@ -301,13 +302,13 @@ class BranchingInterpreter(Interpreter):
         self._branches[begin:] = [Branch(text, self._containers(Names.of(names)))]
 
     def _join_all(self, left: list[tuple[str, Names]], line: int) -> None:
-        """Bind each name to its values where the loop or the iteration was left, or else to the current one."""
+        """Bind each name to its values where the loop or iteration was left, or else to its current one."""
         while left:
             text, names = left.pop()
             self._join(names, text, line)
 
     def _do_while(self, statement: ast.While, names: Scope) -> None:
-        """Interpret a loop; one that an unknown condition may end is interpreted once."""
+        """Interpret a loop; if an unknown condition may end the loop, interpret it once."""
         count, returned = len(self._branches), self._returned()
         with self._loop(statement.lineno):
             while True:

@@ -92,7 +92,7 @@ def _pairs(node: Any) -> list[tuple[Any, Any]]:
 
 
 def _named(node: Any, left: list[int]) -> list[Entity]:
-    """Return the elements of a list of mappings; each mapping has one key, the tag."""
+    """Return the elements of a list of mappings. Each mapping has a single key, which is the tag."""
     found: list[Entity] = []
     for one in node.value if node.id == "sequence" else ():
         for key, value in _pairs(one):

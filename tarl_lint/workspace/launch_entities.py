@@ -1,4 +1,4 @@
-"""Read ROS 2 launch files in XML and YAML into the same actions as Python files."""
+"""Read ROS 2 launch files in XML and YAML as the same actions that Python files give."""
 
 from __future__ import annotations
 
@@ -184,7 +184,7 @@ def substitutions(text: str) -> Any:
 
 
 def _end(text: str, start: int) -> int:
-    """Return the index of the parenthesis that closes the one after `start`; -1 if there is none."""
+    """Return the index of the parenthesis that closes the first parenthesis after `start`; -1 if there is none."""
     depth = 0
     for index in range(start + 1, len(text)):
         depth += {"(": 1, ")": -1}.get(text[index], 0)

@@ -18,8 +18,9 @@ class Setting:
 
     `name` is absolute or begins with `~`; for YAML, it is the namespace of the parameters.
 
-    `file` contains the value: the launch file, or the YAML file that it loads. `unknown` says that only the robot
-    knows the value: then `value` and `yaml` are None, or they are set under a condition known only on the robot.
+    `file` contains the value: the launch file, or the YAML file that it loads. `unknown` is True if the value is
+    known only on the robot. Then `value` and `yaml` are None, or they hold a value that is set under a condition
+    known only on the robot.
     """
 
     name: str
@@ -33,12 +34,13 @@ class Setting:
 class LaunchedNode:
     """A node in a launch file. `settings` are its private parameters, in the order of setting.
 
-    The first `inherited` remappings are those of the groups around the node. If the robot makes the name unique, as in
-    `$(anon name)`, nodes with the same `name` and `anonymous` have the same name there; otherwise `anonymous` is "".
-    `event` says that an event starts the node, possibly in place of another one.
+    The first `inherited` remappings are those of the groups around the node. If the name is made unique on the
+    robot, as in `$(anon name)`, `anonymous` is not empty: two nodes have the same name on the robot if both their
+    `name` and their `anonymous` are equal. Otherwise `anonymous` is "". `event` is True if an event starts the
+    node, possibly in place of another node.
 
-    Names that only the robot knows stay symbolic: `/$(arg robot)`. `condition` is a condition that only the robot can
-    evaluate; "" if the node is started in any case. For a component, `executable` is its class.
+    Names that are known only on the robot stay symbolic: `/$(arg robot)`. `condition` is a condition that can be
+    evaluated only on the robot; "" if the node is always started. For a component, `executable` is its class.
     """
 
     package: str
@@ -61,8 +63,8 @@ class LaunchedNode:
 class Launch:
     """A launch file with its included files. `settings` are the parameters outside nodes.
 
-    `arguments` are the names of its launch arguments, and `required` those without a value or default; `ros2` says
-    whether it is for ROS 2.
+    `arguments` are the names of its launch arguments, and `required` are the names of arguments without a value or
+    default. `ros2` is True for a launch file of ROS 2.
     """
 
     file: Path

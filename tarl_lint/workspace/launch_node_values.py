@@ -43,7 +43,7 @@ def setting(name: str, value: Any, context: Context) -> Setting | None:
 
 
 def _listed_values(value: list[Any] | tuple[Any, ...], context: Context) -> str:
-    """Return a list as YAML, with the types that launch_ros gives its elements; "" for the parts of one string."""
+    """Return a list as YAML, with the types that launch_ros gives its elements; "" for the parts of a single string."""
     if all(isinstance(one, bool | int | float) for one in value):
         real = any(isinstance(one, float) for one in value)
         return repr([float(one) if real and not isinstance(one, bool) else one for one in value])
@@ -61,7 +61,7 @@ def _parsed(name: str, context: Context, text: str) -> Setting:
 
 
 def command(values: Mapping[str, Any], context: Context) -> str:
-    """Return the arguments of a node; those of a list are quoted."""
+    """Return the arguments of a node; if they are given as a list, each is quoted."""
     texts = []
     quoted = isinstance(values.get("arguments"), list | tuple)
     for one in _listed(values.get("arguments")):
@@ -72,7 +72,7 @@ def command(values: Mapping[str, Any], context: Context) -> str:
 
 
 def anonymous(name: Any) -> bool:
-    """Return whether a name has a part that is made unique on the robot."""
+    """Return whether a part of a name is made unique on the robot."""
     parts = name.parts if isinstance(name, Joined) else name if isinstance(name, list | tuple) else (name,)
     return any(isinstance(one, Anonymous) for one in parts)
 

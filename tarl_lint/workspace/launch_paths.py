@@ -1,4 +1,4 @@
-"""The paths through a launch file that unknown conditions leave open: branches, calls and loops, and their names."""
+"""The paths through a launch file that are possible under unknown conditions: branches, calls, loops, names."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tarl_lint.workspace.python.values import Scope
 
 @dataclass
 class Branch:
-    """A condition that statements run under. `old` are the containers that existed before it, by identity."""
+    """A condition on statements. `old` are the containers that existed before the condition, by identity."""
 
     condition: str
     old: dict[int, Any]
@@ -20,7 +20,7 @@ class Branch:
 
 @dataclass
 class Frame:
-    """A call of a function: its values returned so far, each under a condition, and the conditions around it."""
+    """A call of a function: the values returned so far, each under a condition, and the conditions around the call."""
 
     branches: int
     returned: list[tuple[str, Any]] = field(default_factory=list)
@@ -29,14 +29,14 @@ class Frame:
 
 @dataclass
 class Names:
-    """The names of a scope and of those around it."""
+    """The names of a scope and of the scopes around it."""
 
     scopes: list[dict[str, Any]]
     values: list[dict[str, Any]]
 
     @classmethod
     def of(cls, names: Scope) -> Names:
-        """Return the current names of a scope and of those around it."""
+        """Return the current names of a scope and of the scopes around it."""
         scopes: list[dict[str, Any]] = []
         scope: Scope | None = names
         while scope is not None:
@@ -53,7 +53,7 @@ class Names:
 
 @dataclass
 class Loop:
-    """A loop: the names at each `break` and `continue` that only an unknown condition reaches, with the condition."""
+    """A loop. For each `break` and `continue` reached under an unknown condition: the names and the condition."""
 
     begin: int  # number of conditions around the loop
     start: int  # number of conditions around the current iteration

@@ -64,7 +64,7 @@ _EVENTS: Final = ("on_exit", "on_start", "on_stdout", "on_stderr", "on_completio
 
 
 def module_file(path: Path, workspace: Workspace, name: str) -> Path | None:
-    """Return the file of a module that a package of the workspace installs, or that is beside the file `path`."""
+    """Return the file of a module that a package of the workspace installs, or that is in the folder of `path`."""
     first, *rest = name.split(".")
     homes = [one.path for each in workspace.packages for one in each.modules if one.name == first]
     beside = path.parent / first
@@ -101,7 +101,7 @@ class _File:
     def actions(self, problems: list[Problem]) -> Any:
         """Return the launch description.
 
-        Problems are added to `problems`, also later when the returned functions are called.
+        Problems are added to `problems`, even later, when the returned functions are called.
         """
         self.file.problems = problems
         self.file.run()
@@ -177,7 +177,7 @@ class _File:
                              ("composable_node_descriptions", "components")):  # fmt: skip
                 if old in given and (kind != "node" or old != "launch_arguments"):
                     given.setdefault(new, given.pop(old))
-            # copy the list: what is added to this group later must not change the list in the launch file
+            # copy the list: actions that are added to this group later must not change the list in the launch file
             if kind == "group":
                 given["actions"] = list(given.get("actions") or given.get("initial_entities") or [])
             if self.file.condition:
@@ -286,7 +286,7 @@ def _value(value: Any, value_type: Any = None, **_: Any) -> Quoted:
 
 
 def _named_value(name: Any, value: Any, value_type: Any = None, **_: Any) -> dict[Any, Quoted]:
-    """Return a parameter with its name, as in the mappings of a node's parameters."""
+    """Return a parameter with its name, as in the dicts of a node's parameters."""
     return {_hashed(name): _value(value, value_type)}
 
 

@@ -63,7 +63,7 @@ def _text(path: Path) -> str:
 
 
 def is_ros2_xml(path: Path, workspace: Workspace) -> bool:
-    """Return whether an XML launch file is for ROS 2, by its elements or else by its package's build type."""
+    """Return whether an XML launch file is for ROS 2, judged by its elements or else by its package's build type."""
     text = _text(path)
     if not text:
         return False

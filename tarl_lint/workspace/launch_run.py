@@ -43,7 +43,7 @@ class Runner:
     problems: list[Problem] = field(default_factory=list)
     arguments: set[str] = field(default_factory=set)  # names of the declared arguments
     required: set[str] = field(default_factory=set)  # names of the declared arguments without a value
-    # the files that include the current action, with their arguments
+    # the files through which the current action is included, with their arguments
     including: list[object] = field(default_factory=list)
     seen: int = 0
     # names of the arguments that are declared under a condition and have no value
@@ -117,7 +117,7 @@ class Runner:
             self._set(action, context, condition)
 
     def _set(self, action: Action, context: Context, condition: str) -> None:
-        """Apply an action that changes the context of later actions; what it sets on a condition is symbolic."""
+        """Apply an action that changes the context of later actions. Under a condition, it sets symbolic values."""
         values, kind = action.values, action.kind
         name = performed(values.get("name"), context)
 

@@ -156,7 +156,7 @@ class _Api:
 
 @dataclass(frozen=True)
 class _Script:
-    """The script API, `roslaunch.scriptapi.ROSLaunch()`; a node starts where it is made."""
+    """The script API, `roslaunch.scriptapi.ROSLaunch()`; a node starts as soon as it is made."""
 
     api: _Api
     readable: ClassVar = frozenset({"load"})
@@ -194,7 +194,8 @@ def is_script(text: str) -> bool:
 def read_script(path: Path, workspace: Workspace) -> Launch:
     """Read a script that uses the `roslaunch` API, as if it were run without arguments.
 
-    What it makes counts as started: launch files that a `ROSLaunchParent` gets, and nodes.
+    Every node and launch file that the script creates counts as started. Launch files are those that a
+    `ROSLaunchParent` gets.
     """
     api = _Api(path, workspace)
     api.interpreter.append(

@@ -1,6 +1,7 @@
 """Substitutions of ROS 2 launch files, and their strings.
 
-A string known only on the robot stays symbolic: it contains what it depends on as `$(…)`, as in `/$(var robot)/odom`.
+A string known only on the robot stays symbolic: it contains the values on which it depends as `$(…)`, as in `/$(var
+robot)/odom`.
 """
 
 from __future__ import annotations
@@ -32,14 +33,14 @@ _NAMES: Final = {"math": Library("math"), **{name.removeprefix("math."): value f
 
 @dataclass
 class Context:
-    """The context of an action: its file, and the settings of earlier actions. Groups get copies."""
+    """The context of an action: its file, and the settings of earlier actions. Each group gets a copy."""
 
     workspace: Workspace
     file: Path
     configurations: dict[str, str] = field(default_factory=dict)
     namespace: str = "/"
-    # remappings and parameters that all following nodes get. If a list is not empty, launch_ros lets a group share it
-    # with its surroundings, so what a group appends also applies after the group
+    # remappings and parameters that all following nodes get. In launch_ros, a group shares a list with its
+    # surroundings unless the list is empty, so elements that a group appends also apply after the group
     remaps: list[tuple[str, str]] = field(default_factory=list)
     settings: list[Setting] = field(default_factory=list)
     # names of the launch configurations that were read; shared by all groups
@@ -51,7 +52,7 @@ class Context:
     environment: dict[str, str] = field(default_factory=dict)  # variables that the launch file sets
 
     def spend(self) -> None:
-        """Count a substitution. Raises SpentError if there were too many."""
+        """Count a substitution. Raises SpentError if there were too many substitutions."""
         self.left[0] -= 1
         if self.left[0] < 0:
             raise SpentError("it has too many substitutions")
@@ -80,7 +81,7 @@ class Context:
         )
 
     def reset(self) -> None:
-        """Forget all launch configurations. launch keeps namespace, remappings and parameters among them."""
+        """Forget all launch configurations. The package launch keeps namespace, remappings and parameters there."""
         self.configurations = {}
         self.namespace, self.remaps, self.settings = "/", [], []
 
@@ -158,7 +159,7 @@ class Joined(Substitution):
 
 @dataclass(frozen=True)
 class Anonymous(Substitution):
-    """`AnonName`, `$(anon name)`: a name that the robot makes unique; here without the part that does so."""
+    """`AnonName`, `$(anon name)`: a name that the robot makes unique; here without the unique part."""
 
     name: Any
 
@@ -292,7 +293,7 @@ class OnRobot(Substitution):
     default: Any = None
 
     def text(self, context: Context, depth: int) -> str:
-        """Return the value that the launch file sets, the default, or else what it depends on as `$(…)`."""
+        """Return the value that the launch file sets, the default, or else the values on which it depends as `$(…)`."""
         kind, _, rest = self.what.partition(" ")
         if kind in ("env", "optenv") and rest.split(" ")[0] in context.environment:
             return context.environment[rest.split(" ")[0]]

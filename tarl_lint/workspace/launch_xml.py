@@ -30,7 +30,7 @@ class _Place:
     namespace: str = "/"
     remaps: tuple[tuple[str, str], ...] = ()
     private: tuple[Setting, ...] = ()  # private parameters that all following nodes get
-    # the files that include the element, with their arguments, outermost first
+    # the files through which the element is included, with their arguments, outermost first
     including: tuple[object, ...] = ()
     visit: int = 0  # number of the file, in the order in which files were included
     condition: str = ""  # the enclosing condition, if it is known only on the robot
@@ -93,7 +93,7 @@ class _Reader:
                     place = self._set(place, _unset(element, place, place.namespace))
 
     def _element(self, element: Element, place: _Place, unsure: str) -> _Place:
-        """Read one element; return the context of the following ones. `unsure` is its own unknown condition."""
+        """Read one element; return the context of the following ones. `unsure` is the element's unknown condition."""
         if element.tag == "arg":
             return self._argument(element, place, unsure)
         if element.tag == "remap":
@@ -151,14 +151,14 @@ class _Reader:
         self.file(path, given, replace(place, namespace=namespace))
 
     def _value(self, element: Element, name: str, stated: str, place: _Place) -> str:
-        """Return the value of an argument; it is symbolic if only the robot knows it."""
+        """Return the value of an argument; the value is symbolic if it is known only on the robot."""
         text, reasons = place.scope.symbolic(stated)
         for reason in reasons:
             self._problem(element, place, f"<arg name={name!r}>: {reason}")
         return text
 
     def _node(self, element: Element, place: _Place) -> None:
-        """Read a node, or a test, which rostest runs beside the nodes."""
+        """Read a node, or a test; rostest runs tests beside the nodes."""
         named = "name" if element.tag == "node" or "name" in element.attrib else "test-name"
         package, executable, name = (self._name(element, key, place) for key in ("pkg", "type", named))
         inner, settings = place, list(place.private)
@@ -240,7 +240,7 @@ class _Reader:
         return Setting(_parameter(above, name.rstrip("/")), path, yaml=content)
 
     def _name(self, element: Element, key: str, place: _Place) -> str:
-        """Return an attribute, with parts known only on the robot as `$(…)`."""
+        """Return an attribute; parts known only on the robot are written as `$(…)`."""
         text, reasons = place.scope.symbolic(element.get(key, ""))
         for reason in reasons:
             self._problem(element, place, f"{key} of <{element.tag}>: {reason}")
@@ -249,7 +249,7 @@ class _Reader:
     def _holds(self, element: Element, place: _Place) -> tuple[bool, str]:
         """Return whether `if` and `unless` keep an element.
 
-        If the condition is unknown, the element is kept; also return that condition.
+        If the condition is unknown, the element is kept, and the condition is returned, too.
         """
         for key, wanted in (("if", True), ("unless", False)):
             if key in element.attrib:
@@ -317,7 +317,7 @@ def _unset(param: Element, place: _Place, above: str) -> Setting:
 
 
 def _perhaps(text: str, condition: str) -> str:
-    """Return a string that counts under a condition; it is symbolic unless the condition is ""."""
+    """Return a string that is valid under a condition; it is symbolic unless the condition is ""."""
     return f"$({text} {condition})" if condition else text
 
 

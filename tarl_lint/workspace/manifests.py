@@ -71,7 +71,7 @@ def _root(path: Path) -> tuple[ElementTree.Element | None, str]:
 
 
 def _kind(folder: Path, stated: str, depends: tuple[str, ...]) -> Kind:
-    """Return the build type: the stated one, else that of the build tool dependency, else a guess from the files."""
+    """Return the build type: the stated one, else the one of the build tool dependency, else a guess from the files."""
     for kind in _BUILD_TYPES:
         if stated == kind:
             return kind

@@ -21,8 +21,8 @@ _STANDARD: Final = frozenset(["std_msgs", "geometry_msgs", "nav_msgs", "sensor_m
 def fields(types: Iterable[str], workspace: Workspace) -> Mapping[str, Mapping[str, str]]:
     """Return the fields of message types `package/Name` and of the types in them, for types that the workspace defines.
 
-    A field has the name of its type, or "" if this has no fields or is an array. Types of standard packages have no
-    package in their names.
+    Each field is given with the name of its type; "" if the type has no fields or is an array. Types of standard
+    packages have no package in their names.
     """
     found: dict[str, Mapping[str, str]] = {}
     pending = sorted(set(types))

@@ -15,9 +15,9 @@ INTERFACES: Final = ("msg", "srv", "action")
 class Problem:
     """Something that could not be read: the file, a line (0 for the whole file) and the reason.
 
-    `hides` states that a launch file may start further nodes there. If an included file is not in the workspace,
-    `package` is its package and `given` are the values that it receives; otherwise, `package` is "". `unreadable` says
-    that nothing of the file could be read.
+    `hides` is True if a launch file may start further nodes there. If an included file is not in the workspace,
+    `package` is its package, and `given` are the values that it receives. Otherwise, `package` is "". `unreadable`
+    is True if nothing of the file could be read.
     """
 
     file: Path
@@ -30,7 +30,7 @@ class Problem:
 
 
 def unreadable(file: Path, line: int, reason: str) -> Problem:
-    """Return the problem of a file that may start nodes, of which nothing could be read."""
+    """Return the problem of a file that may start nodes and could not be read at all."""
     return Problem(file, line, reason, hides=True, unreadable=True)
 
 
@@ -59,8 +59,9 @@ class ImportRoot:
 class Package:
     """A package: a folder with a `package.xml`.
 
-    `compiled` are its C++ programs, `tests` those for tests only, and `components` the classes of its nodelets and
-    composable nodes. `others` are files in folders named `launch` that may be launch files, but do not look like them.
+    `compiled` are its C++ programs. `tests` are the programs that are only for tests. `components` are the classes
+    of its nodelets and composable nodes. `others` are files in folders named `launch` that may be launch files, but
+    do not look like them.
     """
 
     name: str
@@ -94,8 +95,8 @@ class Workspace:
 
     A package with a `package.xml` comes before a mere folder of definitions.
 
-    `hidden` are further packages. Hidden packages are found by name and by path, but are not among
-    `packages`. `unread` are folders that could not be read, and packages whose name another one has.
+    `hidden` are further packages. Hidden packages are found by name and by path, but are not among `packages`.
+    `unread` are folders that could not be read, and packages with the name of another package.
     """
 
     root: Path
@@ -104,7 +105,7 @@ class Workspace:
     unread: tuple[Problem, ...] = ()
 
     def package(self, name: str) -> Package | None:
-        """Return the package of that name, a hidden one if there is no other."""
+        """Return the package of that name; if there is none, a hidden package of that name."""
         return next((one for one in self._all() if one.name == name), None)
 
     def package_of(self, path: Path) -> Package | None:

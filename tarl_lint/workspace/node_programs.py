@@ -21,8 +21,8 @@ class Program:
 def program(node: LaunchedNode, workspace: Workspace, files: Iterable[Path]) -> Program | str:
     """Return the program of a node, or the reason why there is none. `files` are the Python files of the workspace.
 
-    If the package installs a script from a place where it does not exist, the whole package is searched for it, as
-    `rosrun` does.
+    If the package installs a script from a place where the script does not exist, the whole package is searched for
+    the script, as `rosrun` does.
     """
     if node.kind == "test":
         return "a test"

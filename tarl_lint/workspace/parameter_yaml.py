@@ -52,7 +52,7 @@ def _parsed(text: str) -> Any:
 def sections(parsed: Any, above: str = "") -> Iterator[tuple[str, dict[Any, Any]]]:
     """Yield the sections of a ROS 2 parameter file: the pattern of node names, and the parameters.
 
-    Other files have none.
+    Other files have no sections.
 
     Namespaces may be part of the key (`/robot/gate`), or enclosing keys.
     """
@@ -67,7 +67,7 @@ def sections(parsed: Any, above: str = "") -> Iterator[tuple[str, dict[Any, Any]
 
 
 def matches(pattern: str, node: str) -> bool:
-    """Return whether a section is for the node with the absolute name `node`. `gate` is for `/gate` only."""
+    """Return whether a section is for the node with the absolute name `node`. Section `gate` is only for `/gate`."""
     parts = ["(/[^/]+)*" if part == "**" else "/[^/]+" if part == "*" else "/" + re.escape(part)
              for part in pattern.strip("/").split("/")]  # fmt: skip
     return re.fullmatch("".join(parts), node) is not None
@@ -81,8 +81,8 @@ def is_wildcard(pattern: str) -> bool:
 def of_node(parsed: Mapping[Any, Any], node: str) -> dict[Any, Any]:
     """Return the parameters that parsed YAML has for a node (dotted names for ROS 2); later sections win.
 
-    A file without sections has the same parameters for every node. A node without a name gets the section if there is
-    only one.
+    A file without sections has the same parameters for every node. A node without a name gets a section only if the
+    file has just one.
     """
     found = list(sections(parsed))
     if not found:

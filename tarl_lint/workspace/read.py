@@ -91,7 +91,7 @@ def _packages(
 ) -> list[Package]:
     """Return the packages below a folder in the order of their folders.
 
-    Add the markers of others to `markers`, and folders that cannot be read to `unread`.
+    Markers such as COLCON_IGNORE are added to `markers`, and folders that cannot be read to `unread`.
     """
     found: dict[Path, _Found] = {}
     for folder, files in folders(root, kept, markers, unread):
@@ -114,7 +114,7 @@ def _package(found: _Found) -> Package:
     problems: list[Problem] = []
     if found.declared:
         declared, problems = manifest(found.folder)
-    else:  # definitions outside packages get the folder's name as package name
+    else:  # for definitions outside packages, the name of the folder is the name of the package
         declared = Manifest(found.folder.name, "unknown")
     built = build(found.folder, declared)
     executables, modules, more = installed(found.folder, declared, found.scripts, built)
@@ -140,7 +140,7 @@ def _package(found: _Found) -> Package:
 
 
 def _has_ending(path: Path) -> bool:
-    """Return whether a file has the ending of a launch file; other programs also use the one of rostest."""
+    """Return whether a file has the ending of a launch file; other programs use the ending of rostest, too."""
     return path.name.endswith(ENDINGS) and (path.suffix != TEST or _mentions(path, b"<launch"))
 
 

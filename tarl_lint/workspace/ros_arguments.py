@@ -66,7 +66,7 @@ def ros2(arguments: str) -> Given:
 
 
 def first_of_each(remaps: Iterable[tuple[str, str]], namespace: str, node: str) -> Pairs:
-    """Return the remappings that ROS 2 applies to a node: the first of each name, and none of other nodes."""
+    """Return the remappings that ROS 2 applies to a node: the first for each name, without those for other nodes."""
     found: dict[str, tuple[str, str]] = {}
     for old, new in remaps:
         of, colon, name = old.rpartition(":")
@@ -76,7 +76,7 @@ def first_of_each(remaps: Iterable[tuple[str, str]], namespace: str, node: str) 
 
 
 def _is_name(text: str) -> bool:
-    """Return whether a string can be the name of a topic; nodes also get values in this form, as in `debug:=false`."""
+    """Return whether a string can be the name of a topic; nodes may get values in the same form: `debug:=false`."""
     return _NAME.fullmatch(text) is not None and text not in ("true", "false", "True", "False")
 
 

@@ -11,7 +11,7 @@ _FOUND: Final = re.compile(
 
 
 def package_in(path: str) -> str:
-    """Return the package that an absent path begins with: `robot` for `$(find robot)/launch/arm.launch`; else "".
+    """Return the package at the beginning of a missing path: `robot` for `$(find robot)/launch/arm.launch`; else "".
 
     In Python, the path may be an expression, such as `$(os.path.join(get_package_share_directory('robot'), 'launch'))`.
     """

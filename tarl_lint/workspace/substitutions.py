@@ -15,7 +15,8 @@ from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.python.evaluator import Library, Unknown, constant
 
 _ARGUMENT: Final = re.compile(r"\$\(((?:[^()]|\([^()]*\))*)\)")
-ALWAYS_SET: Final = frozenset({"HOME", "USER", "PATH"})  # environment variables whose defaults never count
+# environment variables that are always set, so that their defaults are never used
+ALWAYS_SET: Final = frozenset({"HOME", "USER", "PATH"})
 _EVAL: Final = "$(eval "
 LONGEST: Final = 100_000  # maximum length of a text (characters)
 _TRUTH: Final = {"true": True, "false": False}
@@ -24,8 +25,8 @@ _TRUTH: Final = {"true": True, "false": False}
 class SymbolicError(Exception):
     """A string depends on values that are known only on the robot.
 
-    The message is the reason. `text` represents the value, such as `$(env ROBOT)`; if it is empty, the
-    original text does.
+    The message is the reason. `text` represents the value, such as `$(env ROBOT)`. If `text` is empty, the original
+    text represents the value.
     """
 
     def __init__(self, reason: str, text: str = "") -> None:
@@ -37,8 +38,8 @@ class SymbolicError(Exception):
 class Scope:
     """The names for substitutions: the arguments of the file, its folder, and the packages.
 
-    An argument without a value is None. If the value of an argument is known only on the robot, the value is symbolic,
-    such as `$(env ROBOT)`. All files that pass the argument on then have the same text.
+    An argument without a value is None. If the value of an argument is known only on the robot, the value is
+    symbolic, such as `$(env ROBOT)`. All files to which the argument is passed on then have the same text for it.
     """
 
     workspace: Workspace
@@ -55,7 +56,7 @@ class Scope:
         return replaced
 
     def symbolic(self, text: str) -> tuple[str, list[str]]:
-        """Return a string with parts known only on the robot as `$(arg robot)`, and the reasons for them."""
+        """Return a string, with parts known only on the robot as `$(arg robot)`, and why they are unknown."""
         reasons: list[str] = []
 
         def replaced(found: re.Match[str]) -> str:

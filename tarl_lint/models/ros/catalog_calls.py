@@ -64,7 +64,7 @@ def _timer(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _done(ctx: Interpreter, it: Invocation) -> Value:
-    """Run a future's done callback with the future."""
+    """Call the done callback of a future with the future."""
     future = containers.through_statement(ctx, it.base, it.frame, it.call, "future")
     for target in it.argument(it.fact.callback).objects:
         subscriptions.call_when(
@@ -74,7 +74,7 @@ def _done(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _thread(ctx: Interpreter, it: Invocation) -> Value:
-    """Run a function with the arguments in a tuple, in a thread or at a later time."""
+    """Run a function in a thread or at a later time; its arguments are in a tuple."""
     given = it.argument(it.fact.extra)
     values = sizes.unpacked(ctx, given) or []
     for target in it.argument(it.fact.callback).objects:
@@ -247,7 +247,7 @@ def parameter_or(ctx: Interpreter, it: Invocation) -> Value:
 def _parameter_object(ctx: Interpreter, it: Invocation) -> Value:
     """Return a parameter.
 
-    If the code does not declare the parameter, its value is the one that the launch gives the node.
+    A parameter that the code does not declare has the value that the launch gives the node.
     """
     name = it.argument(it.fact.topic)
     found = _parameters(ctx, it.base, name)

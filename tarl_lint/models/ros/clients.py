@@ -1,7 +1,7 @@
 """Models of clients of services and actions: requests and goals are sinks, responses and results are sources.
 
-Clients are followed with the setting `clients`, in runs for launch files, where the server is another node, and for
-programs that run the code.
+Clients are followed in three cases: with the setting `clients`, in runs for launch files (the server is then
+another node), and for programs that run the code.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ READING: Final = frozenset(["get_result"])
 
 
 def launched_call(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value | None:
-    """Model a call that makes or uses a client, or asks for the names of the node.
+    """Model a call that makes or uses a client, or asks for names of the node.
 
     Return None for other calls.
     """

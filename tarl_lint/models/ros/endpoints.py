@@ -24,9 +24,10 @@ class DefaultName(str):
 class SourceRecord:
     """A subscription: its place, its topics, and the nodes at which its messages arrive.
 
-    `key` distinguishes the subscriptions made at one place, which have different topics or, for a launch file, call
+    `key` distinguishes subscriptions at the same place: by their topics or, for a launch file, by their call
     contexts. `contexts` are the call contexts and iterations of unrolled loops in which the place is reached.
-    `types` are the last parts of the types' names; `whole_types` are types with packages ("" if that is unknown).
+    `types` are the names of the types without packages; `whole_types` are the names with packages ("" if a package
+    is unknown).
     """
 
     path: str
@@ -85,7 +86,7 @@ class Acceptance:
 class Publisher:
     """A publisher: its topics, types (as in SourceRecord), the place of its creation, and whether it is used.
 
-    `nodes` are the objects whose method made it.
+    `nodes` are the objects whose method made the publisher.
     """
 
     topics: set[str] = field(default_factory=set)

@@ -1,4 +1,7 @@
-"""Models of functions that return the names of the node, or resolve a name for it. Only for launch files."""
+"""Models of functions that return the node's names, or resolve a name for the node.
+
+They are used only for launch files.
+"""
 
 from __future__ import annotations
 

@@ -16,7 +16,8 @@ from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import UNKNOWN, Value, pointer
 from tarl_lint.models.ros.endpoints import Acceptance, DefaultName, Publisher, SinkRecord
 
-NO_NAMES = frozenset([None, ""])  # values of a variable for a topic that is not set
+# values of a variable that holds a topic's name, while the variable is not set
+NO_NAMES = frozenset([None, ""])
 
 
 def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
@@ -34,7 +35,7 @@ def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def image_publisher(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a new publisher of image_transport; images are also on topics below its own."""
+    """Return a new publisher of image_transport; it also publishes images on topics below its own topic."""
     made = made_publisher(ctx, it)
     for obj in made.objects:
         if isinstance(obj.info, Publisher):
@@ -47,7 +48,7 @@ def image_publisher(ctx: Interpreter, it: Invocation) -> Value:
 def topics(ctx: Interpreter, it: Invocation) -> list[str]:
     """Return the possible topic names of a registration, after remapping."""
     names, given = ctx.config.launched, it.argument(it.fact.topic)
-    # a variable for the topic that is not set yet: the call would fail
+    # the variable with the topic's name is not set yet, so the call would fail
     if named := (given.consts or NO_NAMES) - NO_NAMES:
         given = Value(given.deps, given.pts, named)
     kind = DefaultName if given.replaceable() else str
@@ -55,14 +56,14 @@ def topics(ctx: Interpreter, it: Invocation) -> list[str]:
 
 
 def names_of(info: Publisher) -> tuple[int, int, int]:
-    """Return the numbers of possible topics, types and nodes of a publisher; they never decrease."""
+    """Return the numbers of a publisher's possible topics, types and nodes. These numbers never decrease."""
     return len(info.topics), len(info.types), len(info.nodes)
 
 
 def receiver(ctx: Interpreter, base: Value) -> Value:
-    """Return what a publish call is called on, without the decisions between publishers that are all alike.
+    """Return the receiver of a publish call. Decisions between publishers that are all alike are left out.
 
-    Publishers of one topic and one node are alike, such as those that a program makes when it first needs one.
+    Publishers of one topic and one node are alike, such as publishers that a program makes when it first needs one.
     """
     infos = [o.info for o in base.pts if o.kind == "publisher" and isinstance(o.info, Publisher)]
     if not base.deps or not infos or len(infos) < len(base.pts) or _expects_none(ctx):
@@ -77,7 +78,7 @@ def receiver(ctx: Interpreter, base: Value) -> Value:
 
 
 def _expects_none(ctx: Interpreter) -> bool:
-    """Return whether a handler names the exception of a call on None; then whether a publisher exists is a decision."""
+    """Return whether a handler names the exception of a call on None, so that the existence of a publisher decides."""
     return any(t.names("AttributeError", ctx.exception_types) for f in ctx.stack for t in f.tries)
 
 
@@ -109,7 +110,7 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
 
 
 def _keys(ctx: Interpreter, it: Invocation, info: Publisher) -> tuple[Hashable, Hashable]:
-    """Return the keys of a publish call's record and node: of each publisher, up to MAX_APART for a call."""
+    """Return the keys of a publish call's record and node: a key for each publisher, at most MAX_APART for one call."""
     place, slot = (it.frame.program.path, it.call.pos), ("publish", it.call.slot)
     if ctx.launching:
         return ctx.end_key(*place, it.frame), slot
@@ -123,7 +124,7 @@ def _keys(ctx: Interpreter, it: Invocation, info: Publisher) -> tuple[Hashable, 
 
 
 def accept(ctx: Interpreter, it: Invocation, value: Value, acceptance: Acceptance) -> None:
-    """Let the decision about a goal depend on a returned value and its conditions, unless all values are one."""
+    """Let the decision about a goal depend on a returned value and its conditions, unless all values are the same."""
     node = _answer(ctx, it, value)
     known, constant = value.constant()
     names = {o.name for o in value.pts}
@@ -160,8 +161,8 @@ def under(
 ) -> None:
     """Make a node depend on the conditions of a statement, including those in callers.
 
-    `turns` are the iterations of unrolled loops in which the statement runs; the current ones by default. Conditions
-    inside the loop `but` are left out.
+    `turns` are the iterations of unrolled loops in which the statement runs; they default to the current
+    iterations. Conditions inside the loop `but` are left out.
     """
     turns = inside(statement, frame.turns if turns is None else turns)
     whole = ctx.control(frame)
@@ -227,7 +228,7 @@ def whole_type_names(value: Value) -> list[str]:
 
 
 def _api(info: Publisher, it: Invocation) -> str:
-    """Return the name of the sending API, by the call that created the sender."""
+    """Return the name of the API that sends a message; the call that created the sender determines it."""
     if info.kind != "topic":
         return f"{info.api}.{it.name}"
     library = info.api.partition(".")[0]

@@ -17,7 +17,7 @@ SIGNS: Final = ("~", "/")  # prefixes of topic names
 def note(
     ctx: Interpreter, qualified: str, made: Value, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> None:
-    """Record an object made by a call whose first argument is a topic; its method `publish` publishes there."""
+    """Record an object made by a call whose first argument is a topic; its method `publish` publishes on this topic."""
     names = sorted(t for t in arguments[0][0].texts() if t.startswith(SIGNS)) if arguments[0] else []
     if names:
         launched = ctx.config.launched
@@ -27,7 +27,7 @@ def note(
 
 
 def inherit(ctx: Interpreter, obj: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-    """Record an instance whose base class, outside the files, got a topic name as first argument."""
+    """Record an instance whose base class, which is outside the files, got a topic name as its first argument."""
     if isinstance(obj.info, Obj) and isinstance(obj.info.info, ClassInfo) and obj.info.info.opaque:
         note(ctx, f"{obj.name}.publish", pointer(obj), arguments, frame, call)
 

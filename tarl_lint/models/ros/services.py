@@ -164,7 +164,8 @@ def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
 def transform_broadcast(ctx: Interpreter, it: Invocation) -> Value:
     """Broadcast a transform. The call is a sink only in a thorough analysis with the setting `tf2`.
 
-    Reports have no flows into transforms: whoever reads a transform sees its age, and a transform alone moves no robot.
+    Reports have no flows into transforms: code that reads a transform can check its age, and a transform alone does
+    not move a robot.
     """
     if not (ctx.config.tf2 and ctx.thorough):
         return library_functions.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)

@@ -29,7 +29,7 @@ from tarl_lint.models.smach import LATER
 
 KINDS: Final[Mapping[str, Kind]] = {"service": "service", "action": "action", "transform": "transform"}
 NOTHING: Final[Mapping[str, Value]] = {}
-# (object that each call creates, name of its field, value of the field)
+# triples of the object that each call creates, the name of a field of the object, and the value of the field
 Fresh = Sequence[tuple[Obj, str, Value]]
 
 
@@ -127,7 +127,10 @@ def handle(ctx: Interpreter, frame: Frame, call: ir.Call) -> Value:
 def connect(
     ctx: Interpreter, record: SourceRecord, callback: Value, extra: Sequence[Value], it: Invocation
 ) -> None:
-    """Run a callback whenever a message of the source arrives; call a library's callback where it is registered."""
+    """Run a callback whenever a message of the source arrives.
+
+    A callback of a library is called in the place where it is registered.
+    """
     targets = callback.objects
     if len(targets) > 1 and ctx.dispatches and len(record.types) == 1:
         targets = single_dispatch.for_types(ctx, targets, [sorted(record.types)])
@@ -280,9 +283,9 @@ def call_when(
     program: str = "",
     guards: Sequence[int] = (),
 ) -> None:
-    """Queue a function as root with these arguments; `answer` receives its result.
+    """Queue a function as root with these arguments; `answer` receives the function's result.
 
-    `guards` are the nodes of the decisions whether ROS calls the function.
+    `guards` are the nodes of the decisions that determine whether ROS calls the function.
     """
     root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", function_of(target))
     root.maker = ctx.store.root
@@ -314,7 +317,7 @@ def call_when(
 
 
 def _too_many(ctx: Interpreter, root: Root) -> bool:
-    """Return whether a function has enough roots already, from its own restarts or from other objects of its class."""
+    """Return whether a function has enough roots already: restarts of itself, or other objects of its class."""
     if root.function is None:
         return False
     if root.generations() > MAX_GENERATIONS:
@@ -331,7 +334,7 @@ def call_later(ctx: Interpreter, target: Obj, values: Sequence[Value]) -> None:
 
 
 def _for_each_object(root: Root) -> bool:
-    """Return whether a thread or framework runs a method, and thus runs it for each object of the class."""
+    """Return whether a thread or framework runs a method, and therefore runs it for each object of the class."""
     return root.kind == "thread" or (isinstance(root.key, tuple) and root.key[0] == "framework")
 
 

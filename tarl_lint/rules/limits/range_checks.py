@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import Final, Literal
 
-# A function whose name matches, in the analysed files or a library, is assumed to return a value within limits.
+# A function of the analysed files or of a library whose name matches is assumed to return a value within limits.
 LIMITING: Final = re.compile(
     r"clamp|clip|limit|saturat|constrain|bound|restrict|normali[sz]e|wrap|thresh|sigmoid|squash|(^|_)sat(_|$)",
     re.I,
@@ -68,7 +68,7 @@ def limits(statement: ast.AST, ours: frozenset[str]) -> bool:
 
 
 def computes(statement: ast.AST) -> bool:
-    """Return whether a statement computes a new number instead of passing one on."""
+    """Return whether a statement computes a new number, rather than passing on a known number."""
     return any(
         isinstance(node, (ast.BinOp, ast.AugAssign))
         or (isinstance(node, ast.Call) and call_name(node) in ARITHMETIC)
@@ -91,7 +91,7 @@ def call_name(call: ast.Call) -> str:
 
 
 def _looked_up(node: ast.Subscript) -> bool:
-    """Return whether a computed index selects an element, for example of a table of speeds."""
+    """Return whether a computed index selects the value, for example from a table of speeds."""
     table = node.value
     name = table.attr if isinstance(table, ast.Attribute) else getattr(table, "id", "")
     return isinstance(node.slice, (ast.Attribute, ast.Call, ast.BinOp)) and name not in MEASURED
@@ -100,7 +100,7 @@ def _looked_up(node: ast.Subscript) -> bool:
 def side(test: ast.expr, *, holds: bool) -> Side:
     """Return where a value lies if a condition on it holds, or fails: above something, below something, or `both`.
 
-    A condition that is not understood gives `both`, so that nothing is concluded from it.
+    The result for a condition that is not understood is `both`, so that no conclusion is drawn from the condition.
     """
     if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
         return side(test.operand, holds=not holds)

@@ -85,7 +85,7 @@ class Magnitudes:
         return holds is None or side(test, holds=holds) != "above"
 
     def _guarded(self, node: int, dep: int) -> bool:
-        """Return whether a comparison of `dep` can replace `dep` by another value at `node`."""
+        """Return whether a comparison of `dep` can put another value in the place of `dep` at `node`."""
         mine = self.graph.branches[dep]
         for other in self.graph.data[node]:
             if other != dep and any(self._compares(b, dep) for b in self.graph.branches[other] - mine):
@@ -106,7 +106,7 @@ class Magnitudes:
         return node.test if isinstance(node, (ast.If, ast.While, ast.Assert)) else None
 
     def _about(self, condition: int, test: ast.expr, node: int) -> bool:
-        """Return whether a condition tests a value from which `node` is computed, or the same field."""
+        """Return whether a condition tests the same field, or a value from which `node` is computed."""
         asked = self._back(condition)
         made = self._back(node)
         if not asked:
@@ -120,7 +120,7 @@ class Magnitudes:
         return any(re.search(rf"\b{re.escape(name)}\b(?!\.)", text) for name in dotted(test))
 
     def _back(self, node: int) -> set[int]:
-        """Return a node and the nodes of the source from which it is computed."""
+        """Return a node, and those nodes of the source from which it is computed."""
         known = self._behind.get(node)
         if known is None:
             start = (self.graph.data[node] | {node}) & (self.reached | {node})

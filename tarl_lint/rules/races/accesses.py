@@ -1,4 +1,4 @@
-"""Accesses of a function to state that outlives it: attributes of its object, globals of its module."""
+"""Accesses of a function to state that outlives the call: attributes of its object, globals of its module."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tarl_lint.rules.races.held_locks import FUNCTIONS, in_loop, locks_around
 from tarl_lint.trees import children, walk
 
 MUTATORS: Final = catalog.MUTATORS | {"pop", "popleft", "remove", "clear", "sort", "reverse", "discard"}
-# a function that returns the values that the program assigns to a name
+# type of a function that returns all values that the program assigns to a name
 Assigned = Callable[[str], list[ast.expr]]
 How = Literal["replaces", "adds", "inside", "reads", "length"]  # effect of an access on the value of a name
 CONTAINERS: Final = frozenset(["OrderedDict", "Counter", "ChainMap", "UserDict", "UserList"])
@@ -23,7 +23,7 @@ CONTAINERS: Final = frozenset(["OrderedDict", "Counter", "ChainMap", "UserDict",
 class Access:
     """An access in the source, with the locks held around it in its function.
 
-    `constant` says that the access stores a constant, as for a flag.
+    `constant` means that the access stores a constant, for example in a flag.
     """
 
     node: ast.Attribute | ast.Name
@@ -47,9 +47,9 @@ class Access:
 def accesses(
     function: ast.AST, receiver: str, outline: Outline, elsewhere: Assigned | None = None
 ) -> Iterator[Access]:
-    """Yield the accesses in a function to globals, and to attributes of its receiver (its name; "" for none).
+    """Yield the accesses of a function to globals and to attributes of its receiver. `receiver` is its name, or "".
 
-    `elsewhere` is used for names that the module itself does not assign.
+    `elsewhere` is used for names to which the module itself assigns no value.
     """
     shared = _globals(outline) - _locals(function)
     for node in _own(function):
@@ -137,7 +137,10 @@ def _looks(node: ast.expr, outline: Outline) -> How:
 def _mutates(
     method: ast.expr, node: ast.Attribute | ast.Name, outline: Outline, elsewhere: Assigned | None
 ) -> bool:
-    """Return whether a method call changes a container; other objects may do their own locking."""
+    """Return whether a method call changes a container.
+
+    Other objects do not count, since they may do their own locking.
+    """
     if not isinstance(method, ast.Attribute) or method.attr not in MUTATORS:
         return False
     name = node.attr if isinstance(node, ast.Attribute) else node.id
@@ -147,7 +150,7 @@ def _mutates(
 
 
 def _foreign(assigned: Sequence[ast.expr]) -> bool:
-    """Return whether every value that a name gets, apart from None, is an argument or an instance of a class."""
+    """Return whether every value of a name, except None, is an argument or an instance of a class."""
     values = [v for v in assigned if not (isinstance(v, ast.Constant) and v.value is None)]
     return bool(values) and all(_handed(value) for value in values)
 

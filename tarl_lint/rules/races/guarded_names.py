@@ -15,8 +15,8 @@ from tarl_lint.trees import last_name, walk
 def always_or_never_guarded(modules: Sequence[Module]) -> bool:
     """Return whether no attribute or global is used both under a lock and without one.
 
-    Uses during construction do not count. If code under a lock calls a function of the modules, the answer is no,
-    since that function may use anything. Methods of the locks themselves use nothing.
+    Uses during construction do not count. If code under a lock calls a function of the modules, the result is
+    False, since this function may use any state. Methods of the locks themselves use no state.
     """
     outlines = [Outline(module.tree) for module in modules]
     ours = {d.name for outline in outlines for d in outline.definitions}
@@ -50,7 +50,7 @@ def _of_lock(call: ast.Call, outline: Outline) -> bool:
 
 
 def _accesses(outline: Outline) -> Iterator[Access]:
-    """Yield the accesses of all functions except `__init__` to attributes of variables named like a receiver."""
+    """Yield the accesses to attributes of variables with the name of a receiver, in all functions except `__init__`."""
     receivers = {_first(d) for d in outline.definitions if isinstance(d, FUNCTIONS)}
     for function in walk(outline.tree):
         if isinstance(function, FUNCTIONS) and getattr(function, "name", "") != "__init__":

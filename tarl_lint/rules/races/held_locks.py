@@ -27,8 +27,8 @@ def locks_around(node: ast.AST, outline: Outline) -> frozenset[str]:
 def tried_around(node: ast.AST, outline: Outline) -> frozenset[str]:
     """Return the locks around a node that the function only takes if they are free: `acquire(blocking=False)`.
 
-    Such a lock keeps an activity from running twice at a time. Code that needs the data of the activity cannot be
-    expected to take this lock.
+    Such a lock prevents an activity from running twice at the same time. Code that only needs the data of the
+    activity is not expected to take this lock.
     """
     function = outline.scope(node, FUNCTIONS)
     if function is None:
@@ -93,7 +93,7 @@ def _method(call: ast.Call) -> str:
 
 
 def lock_name(expr: ast.expr, outline: Outline) -> str:
-    """Return the last part of a lock's name; for a condition variable, that of its lock; "" for anything else."""
+    """Return the last part of a lock's name; for a condition variable, of its lock's name; "" for anything else."""
     if isinstance(expr, ast.Call):
         expr = expr.func.value if isinstance(expr.func, ast.Attribute) else expr.func
     name = last_name(expr)
@@ -104,8 +104,8 @@ def lock_name(expr: ast.expr, outline: Outline) -> str:
 def asked_before(node: ast.AST, outline: Outline) -> frozenset[str]:
     """Return the locks that the function takes after a test that only decides whether to return early.
 
-    In `if self.stamp == self.seen: return` before `with self.lock:`, the test only saves time. The value that counts
-    is read later, under the lock.
+    If `if self.stamp == self.seen: return` stands before `with self.lock:`, the test only saves time. The value
+    that counts is read later, under the lock.
     """
     current = node
     for outer in outline.around(node):

@@ -26,8 +26,8 @@ State = tuple[object, str]  # (object, name of an attribute) or (module, name of
 class Spot:
     """An access, or a call that leads to it: its place, its function, and the locks held there.
 
-    `tried` contains the locks that were taken only because they were free. `asked` are the locks that the
-    function takes later; empty unless this access only decides on an early return.
+    `tried` contains the locks that the function takes only if they are free. `asked` has entries only if this
+    access decides on nothing but an early return: the locks that the function takes later.
     """
 
     path: str
@@ -42,8 +42,8 @@ class Spot:
 class Use:
     """One access to shared state in one thread: the access first, then the calls that lead to it.
 
-    `name` is as in the source (`self.pose`, `pose`). `constant` says that the access stores a constant, as for a
-    flag.
+    `name` is as in the source (`self.pose`, `pose`). `constant` means that the access stores a constant, for
+    example in a flag.
     """
 
     name: str
@@ -170,7 +170,7 @@ def unguarded(uses: Sequence[Use]) -> Iterator[tuple[Use, Spot]]:
 
 
 def runs_here(outer: ast.AST | None) -> bool:
-    """Return whether a coroutine runs where it is made: `await it()`, `asyncio.run(it())`."""
+    """Return whether a coroutine runs in the place where the code creates it: `await it()`, `asyncio.run(it())`."""
     return isinstance(outer, ast.Await) or (
         isinstance(outer, ast.Call) and last_name(outer.func) in RUNS_COROUTINES
     )
@@ -179,8 +179,9 @@ def runs_here(outer: ast.AST | None) -> bool:
 class Harm:
     """Decides whether an access without a lock can go wrong while another thread accesses the state under the lock.
 
-    Python replaces a reference atomically: a single read of a value that is only ever replaced sees the old or the
-    new one. A store is lost only if another thread changes the value in place or relies on it across several accesses.
+    Python replaces a reference atomically: if a value is never changed in place, a single read sees either the old
+    or the new value. A store is lost only if another thread changes the value in place or relies on it across
+    several accesses.
     """
 
     def __init__(self, uses: Mapping[State, Sequence[Use]]) -> None:

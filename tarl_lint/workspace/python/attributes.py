@@ -126,7 +126,7 @@ def _class_of(base: Any) -> Any:
 
 
 def _fallback(base: Made | Class | Above, name: str) -> tuple[Any] | None:
-    """Return what `__getattr__` of the class returns."""
+    """Return the result of the class's `__getattr__`."""
     if isinstance(base, Made) and base.has("__getattr__") and not name.startswith("__"):
         return (base.run("__getattr__", name),)
     return None

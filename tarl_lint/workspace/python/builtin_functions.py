@@ -94,7 +94,7 @@ def streamed(value: Any) -> Iterator[Any]:
 
 
 def _combined(make: Callable[..., Iterator[Any]], *values: Any) -> Stream:
-    """Return an iterator that combines others, such as `zip`; it is endless if all of them are."""
+    """Return an iterator that combines other iterators, such as `zip`; it is endless if all of these are endless."""
     parts = [streamed(one) for one in values]
     endless = bool(values) and all(isinstance(one, Stream) and one.endless for one in values)
     return Stream(make(*parts), endless=endless)

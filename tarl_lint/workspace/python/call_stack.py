@@ -1,4 +1,4 @@
-"""The stack of calls of interpreted functions, and the destinations of the values that generators yield."""
+"""The stack of calls of interpreted functions. For each generator, it also has the receiver of the yielded values."""
 
 from __future__ import annotations
 

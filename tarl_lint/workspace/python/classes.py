@@ -19,7 +19,7 @@ AUTO: Final = Unknown(0, "auto()")  # the result of `enum.auto`
 
 
 def of_statement(run: Execution, statement: ast.ClassDef, names: Scope) -> Any:
-    """Return the class of a `class` statement, or what its decorators make of it."""
+    """Return the class of a `class` statement, or the result of its decorators."""
     bases = tuple(run.value(one, names) for one in statement.bases)
     kinds = {one.name for one in bases if isinstance(one, Library)} | {
         base.name
@@ -94,7 +94,7 @@ def _annotated(statement: ast.ClassDef) -> Iterable[tuple[str, str]]:
 
 
 def _enumerate(made: Class) -> None:
-    """Replace the values of an enumeration with its members."""
+    """Replace the values of an enumeration with the members of the enumeration."""
     found: dict[int, Made] = {}
     for name, value in list(made.names.items()):
         if isinstance(value, Function | Class | Partial) or name.startswith("_"):
@@ -220,7 +220,7 @@ def _is_set_later(kind: Class, name: str) -> bool:
 
 
 def _takes(kind: Class, name: str) -> bool:
-    """Return whether a positional argument can set a field."""
+    """Return whether a positional argument of the constructor can set a field."""
     found = kind.find(name)
     value = found[0] if found is not None else None
     return not (isinstance(value, Field) and (not value.init or value.keyword))

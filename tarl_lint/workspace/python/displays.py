@@ -99,7 +99,7 @@ def _dict_of(run: Evaluation, node: ast.DictComp, names: Scope) -> Any:
 def _loops(
     run: Evaluation, loops: list[ast.comprehension], names: Scope, values: Any = None
 ) -> Iterator[Scope]:
-    """Yield the names inside a comprehension. Raises OpaqueError if a list or test is not constant."""
+    """Yield the names inside a comprehension. Raises OpaqueError if a list or a condition is not constant."""
     loop, *rest = loops
     values = run.value(loop.iter, names) if values is None else values
     whole = values.values if isinstance(values, Stream) and values.endless else items(values)

@@ -1,4 +1,4 @@
-"""What values consist of: the elements of a loop, sets, and whether anything inside is unknown."""
+"""The contents of values: the elements of a loop, sets, and whether a part of a value is unknown."""
 
 from __future__ import annotations
 
@@ -122,7 +122,8 @@ def items(value: Any) -> list[Any] | None:
         return items(value.of)
     if isinstance(value, range):
         return list(value) if len(value) <= LARGEST else None
-    if hasattr(type(value), "looped"):  # a model of a library that a loop runs over, such as an open file
+    # a model of a library object over which a loop can iterate, such as an open file
+    if hasattr(type(value), "looped"):
         return value.looped()  # type: ignore[no-any-return] # a list or None
     return list(value) if type(value).__name__ in VIEWS else None
 
@@ -164,7 +165,7 @@ def known(value: Any) -> bool:
 
 
 def bounded(value: Any, most: int = LARGEST) -> bool:
-    """Return whether a value has at most about `most` elements, those of nested lists included."""
+    """Return whether a value has at most about `most` elements, including those of nested lists."""
     return not any(one is MANY for one in _leaves(value, most))
 
 
@@ -187,7 +188,7 @@ _HOLDING: Final = (list, tuple, dict, Unique, deque, ChainMap)
 
 
 def _leaves(value: Any, most: int) -> Iterator[Any]:
-    """Yield the constants in nested lists; an Unknown in place of the rest if there are more than `most` values."""
+    """Yield the constants in nested lists; after `most` values, yield one Unknown in place of the rest."""
     pending, left = [value], most
     while pending:
         one = pending.pop()

@@ -28,7 +28,7 @@ class Evaluation(Protocol):
         """Return the value of a call."""
 
     def imported(self, module: str) -> Namespace | None:
-        """Return an imported module that is interpreted, too."""
+        """Return an imported module if it is interpreted, too."""
 
     def kept(self, container: Any, value: Any) -> Any:
         """Return the form in which a container stores a value."""

@@ -51,7 +51,7 @@ class Evaluator:
 
     def __init__(self, models: Mapping[str, Any], steps: int = STEPS) -> None:
         self.models = {**LIBRARIES, **models}
-        self.left = [steps]  # shared with the files that this one imports
+        self.left = [steps]  # number of steps left; shared with the files that this file imports
         self.trying = 0
 
     def spend(self, steps: int = 1) -> None:
@@ -97,7 +97,7 @@ class Evaluator:
         return FilePath(found) if isinstance(found, PurePosixPath) else found
 
     def imported(self, module: str) -> Namespace | None:  # noqa: ARG002 - for subclasses
-        """Return an imported module that is interpreted, too; None if it is not interpreted."""
+        """Return an imported module if it is interpreted, too; otherwise None."""
         return None
 
     def kept(self, container: Any, value: Any) -> Any:  # noqa: ARG002 - for subclasses
@@ -202,7 +202,7 @@ class Evaluator:
         return COMPARE[kind](left, right if many is None or isinstance(right, dict) else many)
 
     def _unsure(self, kind: type[ast.cmpop], left: Any, many: list[Any] | None) -> Any:
-        """Return whether a list with unknown elements certainly has an element; Unknown if this is not certain."""
+        """Return the result of `in` or `not in` for a list with unknown elements; Unknown if it is not certain."""
         for one in many or ():
             if one is left or (settled([left, one]) and one == left):
                 return kind is ast.In

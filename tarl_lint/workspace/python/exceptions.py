@@ -23,7 +23,7 @@ def raised(run: Evaluation, statement: ast.Raise, names: Scope) -> Raised:
 
 
 def catches(kinds: Any, error: Any) -> bool | None:
-    """Return whether a handler of some exceptions catches an exception; None if that is not known."""
+    """Return whether a handler for some exceptions catches an exception; None if that is not known."""
     unsure = False
     for one in kinds if isinstance(kinds, tuple | list) else (kinds,):
         found = _catches_one(one, error)

@@ -61,7 +61,7 @@ def bind_outside(statement: ast.Nonlocal, names: Scope) -> None:
 
 
 def _below(module: str, models: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what `from module import *` binds."""
+    """Return the names that `from module import *` binds."""
     prefix = f"{module}."
     inside = {key.removeprefix(prefix): one for key, one in models.items() if key.startswith(prefix)}
     return {key: one for key, one in inside.items() if "." not in key}

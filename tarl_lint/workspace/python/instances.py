@@ -1,7 +1,7 @@
 """Objects of classes that an interpreted file defines.
 
-They have the special methods of their class, such as `__str__` and `__lt__`, so Python's own operations apply
-to them. These methods interpret the functions of the file and never execute them.
+The objects have the special methods of their class, such as `__str__` and `__lt__`, so Python's own operations work
+on them. These methods interpret the functions of the file and never execute them.
 """
 
 from __future__ import annotations

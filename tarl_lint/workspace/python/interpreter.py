@@ -212,7 +212,8 @@ class Interpreter(Evaluator):
             self.problem(
                 statement.lineno, f"the condition `{ast.unparse(statement.test)[:60]}` is not constant{also}"
             )
-            self.body(kept, names)  # take the branch that does not raise, so that the nodes in it are found
+            # take the branch that does not raise, so that the nodes in this branch are found
+            self.body(kept, names)
         else:
             self.body(statement.body if test else statement.orelse, names)
 
@@ -302,7 +303,7 @@ class Interpreter(Evaluator):
         bind_names(self, statement, names)
 
     def imported(self, module: str) -> Namespace | None:
-        """Return an imported module that is interpreted too; None if it is not."""
+        """Return an imported module if it is interpreted, too; otherwise None."""
         file = self._modules.file(module)
         if file is None or (file not in self._imported and len(self._imported) >= MODULES):
             return None

@@ -13,7 +13,7 @@ class Returned(Exception):  # noqa: N818 - control flow, never an error
 
 
 class Left(Exception):  # noqa: N818 - control flow, never an error
-    """A `break` of the file, or a `continue` if it is not `whole`."""
+    """A `break` of the file; with `whole` False, a `continue`."""
 
     def __init__(self, *, whole: bool) -> None:
         self.whole = whole

@@ -123,7 +123,7 @@ def _loaded(text: Any, **given: Any) -> Any:
 
 
 def _words(text: Any, **given: Any) -> list[str]:
-    """Return the result of `shlex.split`, and refuse None, for which it reads the standard input."""
+    """Return the result of `shlex.split`, and refuse None, for which `shlex.split` would read the standard input."""
     if not isinstance(text, str):
         raise OpaqueError("not a text")
     return shlex.split(text, **given)

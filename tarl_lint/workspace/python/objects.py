@@ -29,17 +29,17 @@ class Function:
     # callable that interprets this function with arguments, keywords and the class that defines the function
     run: Callable[[Function, list[Any], dict[str, Any], Class | None], Any]
     kind: str = ""  # `staticmethod`, `classmethod`, `property`, `cached_property` or `contextmanager`
-    setter: Function | None = None  # of a property
+    setter: Function | None = None  # for a property: the function that sets it
     name: str = ""  # the name that `functools.wraps` gives the function
 
     def called(self) -> str:
-        """Return its name."""
+        """Return the name of the function."""
         return self.name or self.node.name
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Class:
-    """A class of a file. `fields` are those of a data class, in order; `bases` are classes and library names."""
+    """A class of a file. `fields` are the fields of a data class, in order; `bases` are classes and library names."""
 
     name: str
     bases: tuple[Any, ...]
@@ -90,7 +90,7 @@ class Class:
         return any(isinstance(base, Library) and base.name in FLAGS for base in self.library_bases())
 
     def mixed(self) -> type | None:
-        """Return the type of the members of an enumeration whose members are numbers or strings."""
+        """Return the type of an enumeration's members if they are numbers or strings."""
         if not self.is_enumeration():
             return None
         for base in self.library_bases():

@@ -14,7 +14,8 @@ from tarl_lint.workspace.python.instances import Made
 from tarl_lint.workspace.python.values import LARGEST, OpaqueError
 
 BITS: Final = 4096  # maximum size of an integer (bits)
-_WIDTH: Final = re.compile(r"\d{4,}|\*(?!\D)")  # matches a width in a format that would make a huge text
+# matches a width in a format string that would make a huge text
+_WIDTH: Final = re.compile(r"\d{4,}|\*(?!\D)")
 # matches fields such as `{0.name}`, which read an attribute or element
 _INSIDE: Final = re.compile(r"\{[^{}:!]*[.\[]")
 BINARY: Final[Mapping[type[ast.operator], Callable[[Any, Any], Any]]] = {
@@ -29,7 +30,7 @@ COMPARE: Final[Mapping[type[ast.cmpop], Callable[[Any, Any], Any]]] = {
 UNARY: Final[Mapping[type[ast.unaryop], Callable[[Any], Any]]] = {
     ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Not: operator.not_, ast.Invert: operator.invert,
 }  # fmt: skip
-# special methods of an operator: those of the left, the right and the assigned operand
+# operator → name of its special methods, to which `r` (right operand) and `i` (augmented assignment) are prefixed
 _SPECIAL: Final[Mapping[type[ast.operator], str]] = {
     ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.Div: "truediv", ast.FloorDiv: "floordiv", ast.Mod: "mod",
     ast.BitOr: "or", ast.BitAnd: "and", ast.BitXor: "xor", ast.Pow: "pow", ast.LShift: "lshift",

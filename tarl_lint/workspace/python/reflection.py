@@ -86,7 +86,7 @@ def _element(of: Any, key: Any) -> Any:
 
 
 def _several(get: Callable[[Any, Any], Any], keys: tuple[Any, ...]) -> Partial:
-    """Return a function that returns one element or attribute of a value, or a tuple of several."""
+    """Return a function that returns an element or attribute of a value; for several names, a tuple of these."""
     return Partial(lambda of: get(of, keys[0]) if len(keys) == 1 else tuple(get(of, one) for one in keys))
 
 

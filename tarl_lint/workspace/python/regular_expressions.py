@@ -63,7 +63,7 @@ def of_pattern(pattern: re.Pattern[str], name: str, args: list[Any], keywords: d
 
 
 def _ways(pattern: re.Pattern[str], length: int) -> float:
-    """Estimate in how many ways a search tries to match a string of a length: exponentially many for nested repeats."""
+    """Estimate the number of ways to match a string of a given length; nested repeats give exponentially many."""
     try:
         parsed = _patterns.parse(pattern.pattern, pattern.flags)
     except RecursionError:
@@ -80,7 +80,7 @@ def _ways(pattern: re.Pattern[str], length: int) -> float:
 
 
 def _choices(parsed: Any, repeated: bool, depth: int = 0) -> Iterator[tuple[int, int, bool]]:
-    """Yield for each choice of a pattern: whether it repeats, its alternatives, and whether it is inside a repeat."""
+    """For each choice in a pattern, yield whether it repeats, its alternatives, and whether it is inside a repeat."""
     if depth > 50:
         raise OpaqueError("too deep")
     for kind, value in parsed:

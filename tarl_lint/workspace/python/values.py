@@ -69,7 +69,7 @@ class Scope:
         return None
 
     def store(self, name: str, value: Any) -> None:
-        """Bind a name in this scope, or in the one that a `global` or `nonlocal` statement refers to."""
+        """Bind a name in this scope, or in the scope to which a `global` or `nonlocal` statement refers."""
         self.elsewhere.get(name, self).names[name] = value
 
     def outside(self) -> Scope:
@@ -155,7 +155,7 @@ class Suppressed:
 class Suspended:
     """A call of a generator function that `contextlib.contextmanager` decorates.
 
-    `run` interprets the function, and calls its argument with the value that the function yields.
+    `run` interprets the function, and calls the argument of `run` with the value that the function yields.
     """
 
     run: Callable[[Callable[[Any], None]], Any]
@@ -168,5 +168,5 @@ class Partial:
     run: Callable[..., Any]
 
     def __call__(self, *args: Any, **keywords: Any) -> Any:
-        """Call it."""
+        """Call the callable with its stored arguments."""
         return self.run(*args, **keywords)
