@@ -84,7 +84,7 @@ def analyse(paths: Sequence[Path], *, root: Path | None = None, with_settings: b
     """Analyse the files at and below the paths.
 
     `root` is the base of relative paths in settings; it defaults to the working directory. `with_settings` applies
-    what the nearest settings file says about the code, such as the functions that receive messages.
+    those settings of the nearest settings file that describe the code, such as the functions that receive messages.
     Raises UsageError for a path that does not exist, and ConfigError for an unusable settings file.
     """
     config = describing(paths, root) if with_settings else Config(root=root)

@@ -206,8 +206,8 @@ FILLS_RESPONSE: Final = frozenset(
     ["rclpy.create_service"]
 )  # functions whose handlers get a response object to fill in
 
-# Callbacks of action servers: "goal" gets the goal, the others a goal handle; the return value of "execute" is the
-# result.
+# Callbacks of action servers. The callback "goal" gets the goal; all other callbacks get a goal handle. The return
+# value of "execute" is the result.
 ACTION_CALLBACKS: Final[Mapping[str, Mapping[str, tuple[int, str]]]] = {
     "actionlib.SimpleActionServer": {"goal": (2, "execute_cb")},
     "actionlib.ActionServer": {"accepted": (2, "goal_cb"), "cancel": (3, "cancel_cb")},

@@ -140,7 +140,7 @@ def _lint(chosen: Options, config: Config) -> Result:
 
 
 def _with_progress(work: Callable[[Tell], T]) -> T:
-    """Run a long computation; show its progress on a terminal."""
+    """Run a long computation, and show its progress on a terminal."""
     if not sys.stderr.isatty():
         return work(silent)
     from tarl_lint.run.progress import Progress
@@ -173,7 +173,7 @@ def _check(config: Config) -> None:
 def _show(typed: Namespace, result: Result, render: Callable[[View], Iterable[Line]]) -> None:
     """Print the report, or write it to a file.
 
-    Information that the format has no place for goes to standard error.
+    Information that does not fit into the format goes to standard error.
     """
     if typed.output_file:
         view = _view(typed)
@@ -187,7 +187,7 @@ def _show(typed: Namespace, result: Result, render: Callable[[View], Iterable[Li
 
 
 def _view(typed: Namespace, stream: TextIO | None = None) -> View:
-    """Return the display settings: those of the terminal if the report goes to a terminal."""
+    """Return the display settings; if the report goes to a terminal, use the settings of the terminal."""
     view = View(
         show_paths=typed.show_paths or typed.all_steps,
         all_steps=typed.all_steps,
@@ -200,7 +200,7 @@ def _view(typed: Namespace, stream: TextIO | None = None) -> View:
 
 
 def _print(lines: Iterable[Line]) -> None:
-    """Write to standard output. If the reader has closed it, stop silently.
+    """Write to standard output. If the reader has closed the stream, stop silently.
 
     Raises OutputError if writing fails, as on a full disk.
     """

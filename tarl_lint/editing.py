@@ -104,7 +104,7 @@ class _Memory(Cache):
         self._used[key] = self._run
 
     def adapted(self, scripts: Sequence[Script]) -> Report | None:
-        """Return the report of the last analysis of these files if no edit since then can change it."""
+        """Return the report of the last analysis of these files, if later edits cannot have changed it."""
         return self._analyses.adapted(scripts)
 
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:

@@ -1,4 +1,4 @@
-"""Data for hazard rules: the modules, their value-flow graph, their flows, and the reads of each name."""
+"""Data for hazard rules: the modules, the value-flow graph and flows of the modules, and the reads of each name."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Outline:
     parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
     calls: dict[tuple[int, int], list[ast.Call]] = field(default_factory=dict)
     definitions: list[Definition] = field(default_factory=list)  # sorted by line
-    # name → lock; the name of a condition variable → its lock
+    # name of a lock or condition variable → the lock
     locks: dict[str, str] = field(default_factory=dict)
     # last part of a name → values assigned to it
     assigned: dict[str, list[ast.expr]] = field(default_factory=dict)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a file under another name and then rename it, so that no reader sees a partial file.
+    """Write a file under another name and then rename it, so that readers never see a partial file.
 
     A device or pipe is written to directly and never replaced.
     """

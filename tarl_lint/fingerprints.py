@@ -75,7 +75,7 @@ def digest(texts: Sequence[str]) -> str:
 
 
 def of_finding(finding: Finding, package: str, module: str) -> Fingerprint:
-    """Return the fingerprint of a finding. `package` and `module` are those of the file where the finding begins."""
+    """Return the fingerprint of a finding. `package` and `module` belong to the file where the finding begins."""
     if finding.flow is not None:
         return of_flow(finding.flow, package)
     return OfHazard(_package(package, module), finding.code, finding.about, finding.place)

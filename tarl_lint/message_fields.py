@@ -72,7 +72,7 @@ _ARRAYS: Final = (
 _BEAMS: Final = HEADED | _fields(
     "angle_min angle_max angle_increment time_increment scan_time range_min range_max ranges intensities"
 )
-# all types of the standard packages; a field counts as known if any release of ROS 1 or ROS 2 has it
+# all types of the standard packages; a field counts as known if it exists in any release of ROS 1 or ROS 2
 ALL_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     **FIELDS,
     "Header": _fields("seq stamp frame_id"),

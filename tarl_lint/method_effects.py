@@ -47,7 +47,7 @@ def changes(method: str, *, dropped: bool) -> bool:
 
 
 def only_tells(name: str) -> bool:
-    """Return whether a function or method uses its arguments without storing them or writing into them."""
+    """Return whether a function or method uses its arguments without storing the arguments or writing into them."""
     return TELLS.match(name) is not None
 
 
@@ -57,7 +57,7 @@ def reads(name: str) -> bool:
 
 
 def writes(name: str) -> bool:
-    """Return whether a function or method writes into a stream that it gets, whatever it returns."""
+    """Return whether a function or method writes into a stream that it gets, whatever the call returns."""
     return WRITES.match(name) is not None
 
 

@@ -63,7 +63,7 @@ class Step:
 class Source:
     """A subscription at which messages arrive. `span` is the subscription call; `topics` is empty if unknown.
 
-    `default_topics` are those of `topics` that a parameter, the environment or the command line may replace.
+    `default_topics` is the part of `topics` that a parameter, the environment or the command line may replace.
     """
 
     id: str
@@ -83,7 +83,7 @@ class Source:
 class Sink:
     """The argument of a publish call. `span` is the call; `topics` is empty if unknown.
 
-    `default_topics` are those of `topics` that a parameter, the environment or the command line may replace.
+    `default_topics` is the part of `topics` that a parameter, the environment or the command line may replace.
     """
 
     id: str
@@ -136,7 +136,7 @@ class Finding:
 class Cut:
     """A program that exhausted its budget: some of its flows may be missing.
 
-    `path` is the file that is run. `node` is the name of its node; "" if that is not a literal.
+    `path` is the file that is run. `node` is the name of its node; "" if the name is not a literal.
     """
 
     path: str

@@ -71,7 +71,7 @@ def _put(table: dict[str, Any], path: list[str], value: Any) -> None:
 
 
 def places(name: str, node: str) -> tuple[str, ...]:
-    """Return the absolute names of a parameter in the code of a node: the one in ROS 1 and the one in ROS 2."""
+    """Return the absolute names of a parameter in the code of a node: its name in ROS 1 and its name in ROS 2."""
     namespace = node.rpartition("/")[0]
     start = {"~": f"{node}/", "/": "/"}.get(name[:1], f"{namespace}/")
     whole = start + name.lstrip("~/")

@@ -100,7 +100,7 @@ class Choices:
         return asking
 
     def entrances(self, node: int) -> Iterator[Entrance]:
-        """Yield the conditions that choose the value of a node; another function may compute it.
+        """Yield the conditions that choose the value of a node; the value may be computed in another function.
 
         `call_chains.calls` returns the calls between the frames of condition and value.
         """

@@ -14,7 +14,7 @@ Before = dict[tuple[int, int], None]
 
 
 class Surroundings:
-    """Finds context steps."""
+    """Finds the context steps of flows."""
 
     def __init__(self, texts: Texts) -> None:
         self.texts = texts

@@ -1,7 +1,7 @@
 """Statements that decide what is published, although they are on no flow.
 
-Examples are a watchdog that compares two times, a state machine that waits for a clock, and a set point that is sent
-unchanged. A repair may have to change the constants of such statements.
+There are three typical examples: a watchdog compares two times, a state machine waits for a clock, and a set point
+is sent unchanged. A repair may have to change the constants of such statements.
 """
 
 from __future__ import annotations

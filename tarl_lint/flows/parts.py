@@ -1,4 +1,4 @@
-"""What a set of nodes contributes to a taint list: statements, their order, and the calls between them.
+"""The contribution of a set of nodes to a taint list: statements, their order, and the calls between them.
 
 The flows into one publish call mostly have the same nodes. Their common part is therefore computed once, and each flow
 extends a copy of it by its other nodes.
@@ -23,8 +23,8 @@ Pairs = dict[tuple[int, int], None]  # (`id` of a statement, `id` of a statement
 class Way:
     """Calls that lead from a condition to a value that it chooses; many conditions and values share them."""
 
-    passed: Mapping[int, Written]  # `id` of a call → the call as written in the code
-    between: Pairs  # the order of the calls, as pairs of their `id`
+    passed: Mapping[int, Written]  # `id` of a call → the call, as written in the code
+    between: Pairs  # the order of the calls, as pairs of the `id` of each
     ends: tuple[int, int] | None  # `id` of the first and of the last call; None if there are no calls
 
     def joining(self, first: int | None, last: int | None) -> Iterator[tuple[int, int]]:

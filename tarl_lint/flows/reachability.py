@@ -39,7 +39,7 @@ class Tracer:
         self.machine = machine
         self.graph = machine.graph
         self.texts = Texts(machine.modules)
-        # for a launch file, every call context has its own source
+        # in a run for a launch file, every call context has its own source
         self.apart = not machine.launching
         records, sinks = machine.sources.values(), machine.sinks.values()
         self.sources = told_apart(records) if self.apart else list(records)

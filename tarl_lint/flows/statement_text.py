@@ -139,7 +139,7 @@ class Text:
         return known
 
     def span(self, written: Written) -> Span:
-        """Return the span of a statement; for a compound statement, that of its header."""
+        """Return the span of a statement; for a compound statement, the span of its header."""
         known = self.spans.get(id(written))
         if known is None:
             known = self.spans[id(written)] = self.stretch((*written.start, *self._end(written.node)))

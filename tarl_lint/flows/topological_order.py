@@ -12,10 +12,10 @@ from tarl_lint.model import Span
 def in_order(
     spans: Mapping[int, Span], precedence: Precedence, first: Collection[int] | None = None
 ) -> list[int]:
-    """Return the keys in an order in which each key follows those that precede it, as far as cycles allow.
+    """Return the keys in an order in which each key follows the keys that precede it, as far as cycles allow.
 
-    A key without predecessors is placed as late as possible, unless it is in `first`. Without `first`, every
-    key is placed as early as possible. Keys without a span are ignored.
+    A key without predecessors is placed as late as possible, except if it is in `first`. Without `first`, every key
+    is placed as early as possible. Keys without a span are ignored.
     """
     left = dict(sorted(spans.items(), key=lambda item: item[1]))
     bits = precedence.bits.union(left)

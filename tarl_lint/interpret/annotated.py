@@ -87,7 +87,7 @@ def _classes(ctx: Interpreter, module: Obj, annotation: ast.expr) -> list[Obj]:
 
 
 def named_types(annotation: ast.expr) -> Iterator[str]:
-    """Yield the names of the types in an annotation, also those in a union or a sequence."""
+    """Yield the names of the types in an annotation, including types in a union or a sequence."""
     annotation = _parsed(annotation)
     if isinstance(annotation, (ast.Name, ast.Attribute)):
         yield ast.unparse(annotation)

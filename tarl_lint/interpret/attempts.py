@@ -54,7 +54,7 @@ def _together(ctx: Interpreter, leaving: list[Leaving]) -> list[list[Leaving]]:
 
 
 def _leave(ctx: Interpreter, leaving: Leaving, frame: Frame, states: dict[int, Delta]) -> None:
-    """Continue an exception, a `return` or a jump after a `finally`."""
+    """After a `finally`, continue the exception, the `return` or the jump that it interrupted."""
     cause = leaving.cause
     if isinstance(cause, Escape):
         exceptions.leave(ctx, cause, frame, states)

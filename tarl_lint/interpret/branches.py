@@ -102,7 +102,7 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         ctx.store.cut(depth)
         again = joins.joined(ctx, [head, *backs]) if backs else head
         if again == head and waited == ctx.store.waited:
-            break  # after the first wait, one more pass reads what other entry points have stored
+            break  # after the first wait, one more pass reads the values that other entry points have stored
         if ctx.work.charged > MAX_STATEMENTS:
             ctx.cut[ctx.program] = None
             ctx.store.reads.whole = False
@@ -150,7 +150,7 @@ def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame, *, ea
 
 
 def _leaves(body: Sequence[ir.Stmt]) -> bool:
-    """Return whether a statement may leave an iteration early."""
+    """Return whether a statement may leave an iteration of a loop early."""
     inner = [
         part for s in body for name in ("body", "orelse", "final") for part in (getattr(s, name, ()) or ())
     ]

@@ -23,13 +23,13 @@ MAX_STATEMENTS = 25_000
 SEPARATE_STATEMENTS = 3_000
 # maximum number of calls of a function in separate contexts; further calls share one context
 SEPARATE_CALLS = 8
-# after this number of statements of a program, only roots that never ran are run; after twice this number, no root is
-# run
+# after this number of statements of a program, the only roots to run are those that have not run yet; after twice
+# this number, no root is run
 PROGRAM_LIMIT = 80_000
 # maximum number of statements in one run of a root, after its program has reached PROGRAM_LIMIT
 LATE_RUN_LIMIT = 400
-# maximum number of statements in an irrelevant call: a call that passes no data and leads into a module that neither
-# subscribes nor publishes
+# maximum number of statements in an irrelevant call, which passes no data and enters a module that does not
+# subscribe or publish
 IRRELEVANT_CALL_LIMIT = 200
 IRRELEVANT_CALLS_LIMIT = 1_000  # maximum number of statements in all irrelevant calls of one run of a root
 MAX_ROUNDS = 40  # maximum number of fixpoint rounds over the roots

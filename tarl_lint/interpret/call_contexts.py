@@ -60,7 +60,7 @@ def invoke(
     call: ir.Call,
     owner: Obj | None = None,
 ) -> Value:
-    """Call a function. Limit the budget if its module neither subscribes nor publishes and the call passes no data."""
+    """Call a function. If the call passes no data and the module does not subscribe or publish, limit the budget."""
     before, start = ctx.work.call_limit, ctx.work.spent
     matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(ctx, arguments)
     if not matters and before is not None and start > before:
@@ -178,7 +178,8 @@ def _execute(
     ends = [lasting(d, frame, [*v.pts, *handed], ctx.given, reads) for d, v in frame.returns]
     frame.thrown = None
     if frame.escapes:
-        raising = {id(e.state): e.state for e in frame.escapes}  # exceptions of one statement share a state
+        # exceptions that one statement raises share a state
+        raising = {id(e.state): e.state for e in frame.escapes}
         frame.thrown = joins.joined(
             ctx, [lasting(d, frame, handed, ctx.given, reads) for d in raising.values()]
         )

@@ -71,7 +71,7 @@ def _noted(
 
 
 def one_by_one(ctx: Interpreter, value: Value) -> list[Value] | None:
-    """Return the arguments of `*value`, joined over its possible sequences; None if their lengths differ."""
+    """Return the arguments of `*value`, joined over the possible sequences; None if these have different lengths."""
     ways = [sizes.unpacked(ctx, Value(value.deps, frozenset([o]))) for o in value.objects]
     lengths = {-1 if way is None else len(way) for way in ways}
     if -1 in lengths or len(lengths) != 1:

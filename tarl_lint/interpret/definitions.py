@@ -98,7 +98,7 @@ def _of_known_package(value: Value) -> bool:
 
 
 def _note_library(ctx: Interpreter, functions: Sequence[Obj]) -> None:
-    """Note that a decorator of a library, or an unknown one, may have added attributes to functions."""
+    """Note that a decorator of a library, or an unknown decorator, may have added attributes to functions."""
     for one in functions:
         if one.kind == "closure":
             ctx.store.put((one, attribute_of(DECORATED)), const(value=True))
@@ -173,7 +173,7 @@ def _make_members(ctx: Interpreter, cls: Obj, statement: ir.Class, frame: Frame)
 
 
 def _subclassed(ctx: Interpreter, cls: Obj, statement: ir.Class, frame: Frame) -> None:
-    """Call the `__init_subclass__` of the first base class that has one, which may register the class."""
+    """Call the `__init_subclass__` of the first base class that has one, because this method may register the class."""
     for base in lineage(cls)[1:]:
         hook = ctx.store.get((base, "__init_subclass__"))
         if hook is not None:

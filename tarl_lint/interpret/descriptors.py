@@ -16,7 +16,10 @@ METHODS: Final = frozenset(["__get__", "__set__", "__set_name__", "__setattr__"]
 
 
 def note(ctx: Interpreter, name: str) -> None:
-    """Record that a class defines a method; only then are its attributes searched for descriptors."""
+    """Record that a class defines a method.
+
+    Attributes of classes are searched for descriptors only if such a method is recorded.
+    """
     if name in METHODS:
         ctx.nullness.setters.add(name)
 
@@ -39,7 +42,7 @@ def read(ctx: Interpreter, base: Value, value: Value, name: str, frame: Frame, p
 
 
 def write(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, pos: ir.Pos) -> bool:
-    """Pass a stored value to `__setattr__`, a property or a descriptor; return whether the class has one of these."""
+    """Pass a stored value to `__setattr__`, a property or a descriptor. Return whether the class has any of them."""
     given = [const(name), value]
     done = _used(ctx, "__setattr__") and (
         dunder_methods.special(ctx, base, "__setattr__", given, frame, pos) is not None

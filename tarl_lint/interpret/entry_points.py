@@ -40,7 +40,7 @@ def start_programs(ctx: Interpreter) -> None:
 
 
 def _handed_over(ctx: Interpreter) -> None:
-    """Run the functions that a package outside the files may call, since its decorator registered them."""
+    """Run the functions that a package outside the files may call, because its decorator registered them."""
     for target in sorted(ctx.handed_over, key=lambda o: str(o.key)):
         if target.kind != "closure" or not isinstance(target.info, tuple):
             continue
@@ -81,7 +81,7 @@ def _plugin(ctx: Interpreter, statement: ir.Class, module: Obj) -> None:
 
 
 def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, starting: bool) -> None:
-    """Instantiate a class that registers something or is a node, unless the files instantiate it."""
+    """Instantiate a class that registers something or is a node. Skip a class that the files instantiate."""
     for cls in _values(ctx, ctx.module_objects[program.name], statement.name):
         if cls.kind != "class" or cls.key in ctx.made:
             continue

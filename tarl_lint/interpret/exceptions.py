@@ -1,4 +1,4 @@
-"""Exceptional control flow from a `raise` or a failing call to handlers in callers."""
+"""Exceptional control flow from a `raise` or a failing call to the handlers in the callers."""
 
 from __future__ import annotations
 
@@ -52,7 +52,8 @@ def _state(ctx: Interpreter, depth: int, states: dict[int, Delta]) -> Delta:
 def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
     """Make later statements depend on whether a library call raises for its arguments `deps`.
 
-    Applies only if the function or a caller handles the exception; with `named`, only if it does so by name.
+    Applies only if the function or a caller handles the exception; with `named`, only if the handler names the
+    exception.
     """
     statement = frame.statement
     if not deps or statement is None or frame.cls is not None:

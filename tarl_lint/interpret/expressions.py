@@ -296,7 +296,8 @@ def _yield(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
     value = ctx.carry(value, ctx.node(frame, ("yield", expr.pos), "return"))
     frame.yielded = join(frame.yielded, value)
     if frame.caller is not None and frame.caller.statement is None:
-        ctx.ops.wait(ctx, frame)  # a library runs the generator, and anything may happen before it goes on
+        # a library runs the generator, and anything may happen before the generator continues
+        ctx.ops.wait(ctx, frame)
         return UNKNOWN
     if expr.kind == "from":
         return generators.delegated(ctx, expr, inner, frame)
@@ -345,7 +346,7 @@ def default_value(ctx: Interpreter, parameter: ir.Parameter, closure: Obj, frame
 
 
 def _likely(stars: list[str], name: str) -> str:
-    """Guess the module that a name comes from: message modules for capitalised names, others otherwise."""
+    """Guess the module of a name: message modules for capitalised names, other modules otherwise."""
     message = name[:1].isupper() and not name.isupper()
     likely = [s for s in stars if (s.rpartition(".")[2] in DEFINITIONS) is message]
     return (likely or stars)[-1]

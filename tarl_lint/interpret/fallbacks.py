@@ -14,7 +14,7 @@ CONVERSIONS: Final = frozenset(["float", "int"])
 
 
 def of_entry(ctx: Interpreter, expr: ir.Expr, value: Value) -> ir.Const | None:
-    """Return the default in `table.get("gain", 0.3)` if it is a number, and the table is the value of a parameter."""
+    """Return the default in `table.get("gain", 0.3)` if the default is a number and `table` is a parameter's value."""
     default = _default(expr)
     if default is None or value.pts or not value.deps:
         return None

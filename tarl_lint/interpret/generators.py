@@ -26,7 +26,8 @@ def mailbox(ctx: Interpreter, frame: Frame) -> Obj:
 def send(ctx: Interpreter, generator: Obj, value: Value) -> None:
     """Send a value to a generator; the roots that have executed its body run again if the value is new.
 
-    A root that runs again does not see its own stores, so `ctx.posted` also holds the data that each root sends.
+    A root that runs again does not see its own stores. For this reason, `ctx.posted` holds the data that each root
+    sends.
     """
     box = generator.info
     if not isinstance(box, Obj):
@@ -41,7 +42,7 @@ def send(ctx: Interpreter, generator: Obj, value: Value) -> None:
 
 
 def suspended(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
-    """Return the value of a `yield`; the caller goes on here if anything is ever sent to the generator."""
+    """Return the value of a `yield`; if a value is ever sent to the generator, the caller continues here."""
     box, statement = mailbox(ctx, frame), frame.statement
     ctx.receivers.setdefault(box, {})[ctx.store.root] = None
     ctx.store.reads.ask(ctx.sendings, box)

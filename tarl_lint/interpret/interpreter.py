@@ -162,11 +162,11 @@ class Interpreter:
 
     @property
     def exact(self) -> bool:
-        """Return whether the run is for one launched node; its constants are then followed one by one."""
+        """Return whether the run is for one launched node. In such a run, constants are followed one by one."""
         return self.launched is not None or bool(self.command_line)
 
     def end_key(self, path: str, pos: ir.Pos, frame: Frame) -> tuple[Hashable, ...]:
-        """Return the key of a flow's end; for a launch, also by call context and iteration of an unrolled loop."""
+        """Return the key of a flow's end. For a launch, it includes call context and iteration of an unrolled loop."""
         return (path, pos, frame.id, *frame.turn) if self.launching else (path, pos)
 
     def source_key(
@@ -354,7 +354,7 @@ class Interpreter:
         return frozenset([node]) if self.thorough else self.reached(node)
 
     def reached(self, node: int) -> Nodes:
-        """Return a node as dependency of a value; empty if no source reaches it or its decisions."""
+        """Return a node as dependency of a value; empty if no source reaches the node or its decisions."""
         graph = self.graph
         live = graph.live
         if node in live:

@@ -137,7 +137,8 @@ def _one_by_one_of(
 ) -> Value:
     """Unroll a comprehension over few known elements; return the sequence or mapping that it makes.
 
-    `name` is the name of the sequence. An element stays in it unless a condition is certainly false.
+    `name` is the name of the sequence. An element stays in the sequence if none of the conditions is certainly
+    false.
     """
     kind = "mapping" if expr.key is not None else "sequence"
     obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
@@ -167,7 +168,7 @@ def _one_by_one_of(
 def _of_rows(
     ctx: Interpreter, expr: ir.Comprehension, elements: list[Value], length: Nodes, frame: Frame
 ) -> Value:
-    """Unroll a comprehension over elements whose order is unknown; its conditions may hold for each of them."""
+    """Unroll a comprehension over elements whose order is unknown; the conditions may hold for each element."""
     kind = "mapping" if expr.key is not None else "sequence"
     obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
     turn, (target, _, conditions) = frame.turn, expr.loops[0]

@@ -28,7 +28,7 @@ def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes |
 
 
 def _absence(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Nodes | None:
-    """Return the nodes that decide whether a value is set; None if data may decide it."""
+    """Return the nodes that decide whether a value is set; None if data may decide this."""
     if isinstance(expr, ir.Call):
         ctx.store.reads.ask(ctx.nullness.of_result, expr)
         if expr in ctx.nullness.came_out:

@@ -59,7 +59,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def call_later(self, ctx: Ctx, target: Obj, values: Sequence[Value]) -> None:
-        """Queue a function as root; its other arguments are unknown."""
+        """Queue a function as root; the other arguments of the function are unknown."""
         ...
 
     def call_library(
@@ -152,7 +152,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def narrow_part(self, ctx: Ctx, test: ir.Expr, frame: Frame, *, holds: bool) -> Former:
-        """Narrow variables for the rest of an expression; return their former and their new values."""
+        """Narrow variables for the rest of an expression. Return the values from before, and the new values."""
         ...
 
     def note_origins(self, ctx: Ctx, frame: Frame, given: Sequence[Origin]) -> None:
@@ -207,7 +207,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def widen(self, ctx: Ctx, former: Former) -> None:
-        """After an expression, give each variable that it has not assigned its former value again."""
+        """After an expression, restore the value of each narrowed variable to which the expression has not assigned."""
         ...
 
     def wait(self, ctx: Ctx, frame: Frame) -> None:

@@ -145,7 +145,7 @@ def tested(ctx: Interpreter, name: str, value: Value, frame: Frame, slot: tuple[
 
 
 def membership(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes:
-    """Return the nodes that decide membership in a container; for a mapping, those of its keys."""
+    """Return the nodes that decide membership in a container; for a mapping, the nodes of its keys."""
     mappings = frozenset(o for o in value.pts if o.kind == "mapping")
     deps = ctx.use(Value(value.deps, value.pts - mappings))
     for obj in in_order(mappings):

@@ -116,21 +116,21 @@ def decide(ctx: Interpreter, s: ir.If, frame: Frame, narrowed: Narrowed, *, hold
 
 
 def restore(ctx: Interpreter, before: Narrowed, ways: Sequence[tuple[Narrowed, Delta]]) -> None:
-    """After both branches of an `if`, give each variable that neither has assigned its former value again."""
+    """After both branches of an `if`, restore the value of each narrowed variable to which no branch has assigned."""
     for key, value in before.items() if len(ways) > 1 else ():
         if all(key not in state or state[key] is narrowed.get(key) for narrowed, state in ways):
             ctx.store.put(key, value)
 
 
 def narrow_part(ctx: Interpreter, test: ir.Expr, frame: Frame, *, holds: bool) -> Former:
-    """Narrow variables for the rest of an expression; return their former and their new values."""
+    """Narrow variables for the rest of an expression. Return the values from before, and the new values."""
     before: Narrowed = {}
     found = narrow(ctx, test, frame, before, holds=holds)
     return [(key, before[key], value) for key, value in found.items() if key in before]
 
 
 def widen(ctx: Interpreter, former: Former) -> None:
-    """After an expression, give each variable that it has not assigned its former value again."""
+    """After an expression, restore the value of each narrowed variable to which the expression has not assigned."""
     for key, before, value in reversed(former):
         if ctx.store.get(key) is value:
             ctx.store.put(key, before)

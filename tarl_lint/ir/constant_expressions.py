@@ -12,8 +12,8 @@ CONSTANTS: Final = frozenset(["pi", "tau", "e"])  # names in math and numpy
 def computed(expr: ir.Expr) -> ir.Pos | None:
     """Return the position of a number computed from literals; None for other expressions.
 
-    If the number is computed from a single literal, the position is that of the literal; otherwise, it is
-    that of the whole expression.
+    If the number is computed from a single literal, this is the position of the literal. Otherwise, it is the
+    position of the whole expression.
     """
     if not isinstance(expr, (ir.Operation, ir.Call)) or not of_literals(expr):
         return None

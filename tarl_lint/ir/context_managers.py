@@ -34,7 +34,7 @@ class _Parts(NamedTuple):
 
 
 def divided(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Sequence[ast.stmt]:
-    """Return the body of a function; if it is the generator of a context manager, in two parts."""
+    """Return the body of a function; if the function is the generator of a context manager, return it in two parts."""
     if not any(last_name(d) in DECORATORS for d in node.decorator_list) or _yields(node.body) != 1:
         return node.body
     return _rebuilt(node.body, node) or node.body
@@ -66,7 +66,7 @@ def _rebuilt(
 
 
 def _with_end(before: Sequence[ast.stmt], made: list[ast.stmt]) -> list[ast.stmt]:
-    """Return statements with others in the place of `_HERE`, which may be inside a `with` or `try`."""
+    """Return statements in which other statements replace `_HERE`, which may be inside a `with` or `try`."""
     return [one for statement in before for one in _ended(statement, made)]
 
 

@@ -58,7 +58,7 @@ class Control:
 class Iteration:
     """Control dependence inside one iteration of a loop, on branches of the same iteration only.
 
-    `direct`, `closure` and `always` are those of the statements in the loop's body, as in `Control`. `onward` are the
+    `direct`, `closure` and `always` are as in `Control`, for the statements in the loop's body. `onward` are the
     branches that decide whether the next iteration begins.
     """
 
@@ -205,7 +205,7 @@ def _raising(graph: _Graph, s: ir.Stmt, name: str, exits: _Exits) -> None:
 
 
 def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
-    """Add a `try`; its own statement represents the unknown choice of a handler. Return its number."""
+    """Add a `try`; the `try` statement represents the unknown choice of a handler. Return its number."""
     after = _block(graph, s.final, follow, exits)
     handlers = [_block(graph, body, after, exits) for _, _, body in s.handlers]
     own = tuple((handled_by(types), entry) for (types, _, _), entry in zip(s.handlers, handlers, strict=True))
@@ -222,7 +222,7 @@ def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
 def _run_anyway(attempt: ir.Try, direct: dict[int, frozenset[Branch]]) -> None:
     """Remove the dependence of a `finally` on branches inside its `try`, since a `finally` always runs.
 
-    Statements after it that depend on a branch in the `finally` still depend on those branches.
+    Statements after the `finally` that depend on a branch in it still depend on the branches inside the `try`.
     """
     blocks = [attempt.body, attempt.orelse, *(body for _, _, body in attempt.handlers)]
     inside = {s.id for block in blocks for s in _all(block)}
@@ -313,7 +313,7 @@ def _direct(graph: _Graph, order: Sequence[int], nearest: Mapping[int, int]) -> 
 
 
 def _closure(direct: Mapping[int, frozenset[Branch]]) -> dict[int, frozenset[Branch]]:
-    """Return for each statement all branches on which it depends; if there are very many, the nearest."""
+    """Return all branches on which each statement depends; if there are very many, only the nearest ones."""
     closed: dict[int, frozenset[Branch]] = {}
     for node, branches in direct.items():
         found = dict.fromkeys(sorted(branches))

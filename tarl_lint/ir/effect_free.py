@@ -38,9 +38,9 @@ ACTING: Final = (ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
 
 
 def only_tells(expr: ast.expr, prints: bool) -> bool:
-    """Return whether an expression statement only prints or logs, without any other effect.
+    """Return whether an expression statement prints or logs and has no other effect.
 
-    `prints` says that `print` is Python's built-in function.
+    `prints` means that `print` is Python's built-in function.
     """
     if not isinstance(expr, ast.Call) or not _tells(expr.func, prints):
         return False

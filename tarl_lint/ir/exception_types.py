@@ -81,12 +81,12 @@ class ExceptionTypes:
         return None if above & self.several or not all(map(self._is_class, handled)) else False
 
     def of_libraries(self, handled: Handled) -> list[str]:
-        """Return the classes of a handler that are neither builtin nor of the files, sorted by name."""
+        """Return the classes of a handler that belong neither to Python nor to the files, sorted by name."""
         unknown = {UNKNOWN, OTHER, PARTS, *self.bases}
         return sorted(n for n in handled if n not in unknown and n.removeprefix(".") not in BUILTIN)
 
     def names(self, handled: Handled, name: str) -> bool:
-        """Return whether a handler catches a builtin exception by its name or by that of a special base class."""
+        """Return whether a handler catches a builtin exception by its name, or by the name of a special base class."""
         return GENERAL not in handled and self.catches(handled, name) is True and bool(handled)
 
     def _above(self, name: str) -> tuple[frozenset[str], bool]:

@@ -59,7 +59,7 @@ class Expressions:
 
     def __init__(self, module: str) -> None:
         self.module = module
-        # first argument of the latest call of a function that may stop before the end of it
+        # first argument of the latest call of a function that may stop before the end of this argument
         self.lazy: ast.expr | None = None
 
     def expr(self, node: ast.expr, scope: Scope) -> ir.Expr:

@@ -56,7 +56,7 @@ class Slice:
 
     parts: Sequence[Expr]
     pos: Pos
-    bounds: Sequence[Expr | None] = ()  # `lower`, `upper` and `step`; None for each one that is left out
+    bounds: Sequence[Expr | None] = ()  # `lower`, `upper` and `step`; None for a bound that is left out
 
 
 @dataclass(slots=True, eq=False)
@@ -272,7 +272,7 @@ class Loop(Stmt):
     end: int = 0  # of a `for`: its own number and those of the statements in its body are below this one
 
     def has(self, number: int) -> bool:
-        """Return whether a number is that of this `for` or of a statement in its body."""
+        """Return whether a number is the number of this `for`, or of a statement in its body."""
         return self.id <= number < self.end
 
 

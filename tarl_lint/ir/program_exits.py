@@ -18,7 +18,7 @@ BUILTIN_EXITS: Final = frozenset(["exit", "quit"])
 def ends_program(expr: ast.expr, *, builtin: bool) -> bool:
     """Return whether an expression is a call that ends the program.
 
-    `builtin` says that `exit` and `quit` are Python's own functions in this file.
+    `builtin` means that `exit` and `quit` are Python's own functions in this file.
     """
     if not isinstance(expr, ast.Call):
         return False

@@ -1,4 +1,4 @@
-"""The blackboard of py_trees: all clients share its keys, each below the namespace of the client."""
+"""The blackboard of py_trees: all clients share its keys, and each client sees the keys below its own namespace."""
 
 from __future__ import annotations
 

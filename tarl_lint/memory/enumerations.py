@@ -1,9 +1,9 @@
 """Members of enumerations: their values, and what their classes define for them.
 
 A member of a `StrEnum`, an `IntEnum` or a `Flag` is represented by its value, and `auto()` by a number. A member of
-another enumeration is a marked instance of its class; if its value is a list or tuple, such as
-`SCAN = ("/scan", LaserScan)`, this sequence is marked, so that the properties and methods of the class are found on it.
-Marked members are keys of their own in mappings.
+another enumeration is a marked instance of its class. If the value of the member is a list or tuple, such as `SCAN
+= ("/scan", LaserScan)`, this sequence is marked instead, so that the properties and methods of the class are found
+on the sequence. Marked members are keys of their own in mappings.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ KINDS: Final = frozenset(["sequence", "instance"])
 
 
 def mark(ctx: Interpreter, cls: Obj) -> Iterator[tuple[Obj, list[Value]]]:
-    """Replace members of an enumeration by marked ones; yield each of them with the arguments of its `__init__`."""
+    """Replace members of an enumeration by marked members; yield each with the arguments of its `__init__`."""
     ctx.store.look(cls)
     mixed = not MIXED.isdisjoint(_bases(cls))
     for name, value in _number(ctx, cls):

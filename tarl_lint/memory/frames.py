@@ -9,7 +9,8 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.exception_types import ExceptionTypes, Handled
 from tarl_lint.memory.values import BOTTOM, Branches, Key, Obj, Value
 
-Former = list[tuple[Key, Value, Value]]  # narrowed variables with their former and their new values
+# narrowed variables, with their values before and after the narrowing
+Former = list[tuple[Key, Value, Value]]
 Turns = tuple[tuple[ir.Loop, int], ...]  # loops, outer ones first, with the number of the current iteration
 
 
@@ -34,7 +35,7 @@ class Attempt:
         return True if True in answers else None if None in answers else False
 
     def names(self, name: str, types: ExceptionTypes) -> bool:
-        """Return whether one of the handlers catches a builtin exception by its name or that of a base class."""
+        """Return whether one of the handlers catches a builtin exception by its name, or by that of a base class."""
         return any(types.names(handled, name) for handled in self.handlers)
 
     def caught(self, handled: Handled, types: ExceptionTypes) -> dict[str, Value]:
@@ -90,7 +91,7 @@ Origin = tuple[int | str, Value, str | Value | None]
 
 
 def inside(statement: ir.Stmt | None, turns: Turns) -> Turns:
-    """Return those of the loops that contain a statement; a loop contains itself, since it binds its target."""
+    """Return the loops in which a statement is. A loop counts as inside itself, since it binds its target."""
     if not turns or statement is None:
         return ()
     return tuple(turn for turn in turns if turn[0].has(statement.id))

@@ -1,4 +1,4 @@
-"""Attributes of functions, which bound methods and wrappers made with `functools.wraps` show too."""
+"""Attributes of functions. Bound methods, and wrappers made with `functools.wraps`, have them as well."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ NAMED: Final = "__name__"
 WRAPPED: Final = "__wrapped__"  # attribute of a wrapper that holds the wrapped function
 # pseudo-attribute of a function that a library's decorator was applied to, and which may have added attributes
 DECORATED: Final = "decorated by a library"
-# kinds of callables of which attributes are not followed
+# kinds of callables whose attributes are not followed
 OPAQUE: Final = frozenset(["method", "partial", "weak"])
 MAX_WRAPPERS: Final = 8  # maximum number of nested wrappers through which an attribute is searched
 
@@ -58,8 +58,8 @@ def may_have_more(ctx: Interpreter, value: Value) -> bool:
 def with_default(ctx: Interpreter, base: Value, name: str, found: Value, default: Value) -> Value:
     """Return the attribute that was found, or the default of `getattr`.
 
-    A function with the attribute has no default. An attribute that is not set is unknown if a library may have added
-    it to the callable.
+    A function with the attribute has no default. If a library may have added an attribute to the callable, an
+    attribute that is not set is unknown.
     """
     if not found.pts and found.consts == frozenset() and may_have_more(ctx, base):
         return Value(found.deps | default.deps, default.pts)

@@ -18,7 +18,8 @@ from tarl_lint.memory.values import Obj, in_order
 
 # maximum number of objects of one site in a chain; the last object represents all further ones
 MAX_ALIKE: Final = 3
-MAX_CLOSURES: Final = 4  # maximum number of closures in a chain, each made while the one before runs
+# maximum number of closures in a chain; each closure is made while the previous one runs
+MAX_CLOSURES: Final = 4
 
 # an object's allocation site and the object, from the oldest maker to the object itself
 Chain = tuple[tuple[Hashable, Obj], ...]

@@ -419,7 +419,7 @@ def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:
 
 
 def attribute_of_item(obj: Obj, key: object) -> str:
-    """Return the field that `vars(obj)[key]` accesses: an attribute, unless the object is a dictionary."""
+    """Return the field that `vars(obj)[key]` accesses: for a dictionary, an element; else an attribute."""
     if (obj.kind == "closure" or obj.name == NAMESPACE) and isinstance(key, str):
         return key
     if obj.kind == "instance" and isinstance(key, str) and isinstance(obj.info, Obj):

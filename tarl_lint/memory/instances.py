@@ -9,7 +9,7 @@ from typing import Final
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory.values import BOTTOM, Obj, Value, join, lineage, pointer
 
-INSTANCES: Final = "<instances>"  # field of a class: its instances, also those of its subclasses
+INSTANCES: Final = "<instances>"  # field of a class: its instances, including the instances of its subclasses
 # names of library methods that return an existing object of the class among their arguments
 LOOKS_UP: Final = re.compile(r"(?:query|find|get|resolve|look_?up|locate|fetch|try_component)(?:_|[A-Z]|$)")
 
@@ -32,7 +32,7 @@ def looked_up(ctx: Interpreter, name: str, values: Iterable[Value]) -> Value:
 
 
 def of_class(ctx: Interpreter, cls: Obj) -> Value:
-    """Return the instances of an analysed class, also those of its subclasses."""
+    """Return the instances of an analysed class, including the instances of its subclasses."""
     if cls not in ctx.looked_up:
         ctx.looked_up.add(cls)
         for obj in [*ctx.objects.values()]:

@@ -94,7 +94,7 @@ def _unset(ctx: Interpreter, key: Key, value: Value) -> bool:
 
 
 def _former(ctx: Interpreter, key: Key, made: Made) -> Value | None:
-    """Return the value of a key in a continuation that does not store to it."""
+    """Return the value of a key in a continuation that does not change the key."""
     value = ctx.store.former(key, made)
     if value is not None:
         return value

@@ -196,7 +196,7 @@ def _inside_all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit, depth: 
 
 
 def _laden(ctx: Interpreter, objects: frozenset[Obj], visit: Visit) -> Sequence[Obj]:
-    """Return the objects that may contain data, in order of creation; record that the others contain none."""
+    """Return the objects that may contain data, in order of creation; record that the other objects contain no data."""
     store = ctx.store
     split = store.split.get(objects)
     if split is None or split.loaded != store.shared.loaded:

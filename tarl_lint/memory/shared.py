@@ -122,7 +122,7 @@ class Shared:
             current.inside.clear()
 
     def _appeared(self, obj: Obj, root: Root) -> None:
-        """Re-run the roots that have read the set of fields of this object or of an enclosing one."""
+        """Re-run the roots that have read the set of fields of this object, or of an enclosing object."""
         inside: Obj | None = obj
         while inside is not None:
             self.dirty |= self._others(self.watchers.get(inside), root)

@@ -119,7 +119,7 @@ class Store:
         return self._first(key)
 
     def _first(self, key: Key) -> Value | None:
-        """Return the initial value of a key that this root has neither stored nor read so far."""
+        """Return the initial value of a key that this root has not yet stored or read."""
         local = key[0].kind == "frame" and private(key)
         value = self.found[key] = None if local else self.shared.entry(key, self.root)
         return value
@@ -165,7 +165,7 @@ class Store:
         return obj.kind in CLEARED and (obj, BORN) in self.now
 
     def _heed(self, key: Key, value: Value) -> None:
-        """Take in stores of other roots at this key from now on; re-run this root if there are any."""
+        """Take in stores of other roots at this key from now on. If other roots store there, run this root again."""
         self.root.heeds.add(key)
         self.unheard.append(key)
         self.exchanged.pop(key, None)

@@ -13,7 +13,7 @@ MACHINE_FIELD = "userdata"  # attribute of a state machine that holds the shared
 
 
 def userdata(ctx: Interpreter, state: Obj | None = None) -> Value:
-    """Return the userdata of a state; without a state, that of the machine itself."""
+    """Return the userdata of a state; without a state, the userdata of the machine."""
     if state is None:
         return pointer(recency.intern(ctx, "record", MACHINE_FIELD, MACHINE_FIELD))
     view = recency.intern(ctx, VIEW, (MACHINE_FIELD, state))

@@ -48,7 +48,7 @@ class Arrival:
 
     nodes: Nodes
     consulted: dict[int, int]
-    grown: int  # value of `Graph.grown` when this result was last found valid
+    grown: int  # value of `Graph.grown` when this result was last known to be valid
 
 
 @dataclass(slots=True, eq=False)
@@ -132,7 +132,7 @@ class Graph:
                 self._choose(dep, theirs - mine, node)
 
     def unchosen(self, dep: int) -> int:
-        """Return a copy of a node without its branches, for values that do not depend on the path."""
+        """Return a copy of a node without its branches, for values that are equal on all paths."""
         if dep in self.stands_for:
             return dep
         node = self.node((dep, "unchosen"), self.places[dep], frozenset())
@@ -167,14 +167,14 @@ class Graph:
     def merged(self, key: Hashable, deps: Nodes, frame: Frame) -> Nodes:
         """Return the merged node of a field with weak updates, with edges to all of `deps`.
 
-        Readers of the field depend on this node, so a later value adds an edge without changing the field.
+        Readers of the field depend on this node, so a later value adds an edge and leaves the field unchanged.
         """
         node = self.node(("merged", key), Place(frame, None, MERGED, (0, 0, 0, 0)), frozenset())
         self.flow([dep for dep in deps if dep != node], node)
         return frozenset([node])
 
     def choice(self, deps: Iterable[int], node: int) -> None:
-        """Make `node` depend on the choices that selected `deps`, but not on the data of `deps`."""
+        """Make `node` depend on the choices that selected `deps`, but not on the data in `deps`."""
         mine = self.branches[node]
         for dep in deps:
             if not self.branches[dep] <= mine:
@@ -364,7 +364,7 @@ class Graph:
     def _carry(self, carrier: int, item: int) -> int:
         """Return the carry node of `item`, passed on inside an object by `carrier`.
 
-        A carried item keeps its origin, so there is at most one carry node for a pair of carrier and origin.
+        A carried item keeps its origin. Each pair of carrier and origin therefore has at most one carry node.
         """
         known = self.passed_on.get((carrier, item))
         if known is not None:

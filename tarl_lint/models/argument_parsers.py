@@ -109,7 +109,7 @@ def _as_the_library(declared: list[Declared], texts: list[str]) -> tuple[argpars
 
 
 def _texts(ctx: Interpreter, it: Invocation) -> list[str] | None:
-    """Return the arguments to parse: those passed to the call, or those of the launched node without ROS's own."""
+    """Return the arguments to parse: those of the call, or else those of the launched node that are not for ROS."""
     if not ctx.command_line:
         return None
     given = it.arguments[0][:1] or [it.arguments[1][name] for name in ("args",) if name in it.arguments[1]]

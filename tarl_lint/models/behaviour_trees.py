@@ -100,7 +100,7 @@ def adds(ctx: Interpreter, target: Obj, name: str) -> bool:
 
 
 def add(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
-    """Add children to a composite, also to an instance of a class that inherits from one."""
+    """Add children to a composite, or to an instance of a class that inherits from a composite."""
     group = parts.group_of(ctx, target, _new_group(_kind(target) or ""))
     for value in (*it.arguments[0][:1], *it.arguments[1].values()):
         for child in _listed(ctx, value) if it.name == "add_children" else value.objects:

@@ -161,7 +161,7 @@ def _next_place(ctx: Interpreter, base: Value, values: list[Value], frame: Frame
 
 
 def _appended(ctx: Interpreter, base: Value, news: Sequence[Value], frame: Frame, call: ir.Call) -> bool:
-    """Append objects of analysed classes at their own indices; return whether these are known."""
+    """Append objects of analysed classes at their own indices. Return whether the indices are known."""
     first = object_lists.place(ctx, base, news)
     if first is None:
         return False
@@ -198,7 +198,7 @@ def _append_subscriber(ctx: Interpreter, base: Value, subscriber: Value, frame: 
 
 
 def flag(ctx: Interpreter, it: Invocation) -> None:
-    """Set or clear an event, or notify a condition; later queries of it depend on the conditions of this call."""
+    """Set or clear an event, or notify a condition; later queries of the event depend on this call's conditions."""
     events = Value(it.base.deps, frozenset(o for o in it.base.pts if o.kind == "lib"))
     news = through_statement(ctx, const(it.name != "clear"), it.frame, it.call)
     updates.write_field(ctx, events, waiting.FLAG, news)
@@ -351,7 +351,7 @@ def _write_entry(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def elements_of_any(ctx: Interpreter, base: Value) -> Value:
-    """Return any element, also of a mapping."""
+    """Return any element of containers; for a mapping, any value."""
     return join_all(heap.arrive(ctx, heap.read_any(ctx, o), base.deps) for o in base.pts)
 
 
@@ -384,7 +384,7 @@ def _in_turn(ctx: Interpreter, elements: Sequence[Value], it: Invocation) -> Val
 
 
 def _of_class(it: Invocation, obj: Obj) -> Value:
-    """Return a sequence of attributes; a loop over those of a class is executed element by element."""
+    """Return a sequence of attributes. A loop over the attributes of a class is executed element by element."""
     if any(o.kind == "class" for o in it.base.pts):
         obj.name = heap.MEMBERS
     return pointer(obj)

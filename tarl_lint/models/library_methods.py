@@ -145,8 +145,8 @@ def _wait(ctx: Interpreter, it: Invocation) -> None:
 def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
     """Store arguments in an object.
 
-    An object of a library may also call them, such as callbacks for a marker, and return a result, as the `update` of
-    a controller does.
+    An object of a library may also call the arguments, for example callbacks for a marker. It may return a result,
+    as the `update` of a controller does.
     """
     kind = target.kind if target is not None else ""
     if kind == "lib":

@@ -88,7 +88,8 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
                 return seen(ctx, value, this, base)
         return BOTTOM
     if obj.name in containers.PROCESSES and name in containers.STREAMS:
-        # all streams share one object, which stands for the process: data written to one may be read from another
+        # all streams share one object, which represents the process: data written to one stream may be read from
+        # another stream
         return pointer(obj)
     if obj.kind == "ext" and name == "argv" and obj.name == "sys" and ctx.command_line:
         return command_line.arguments(ctx)

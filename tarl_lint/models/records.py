@@ -150,7 +150,7 @@ def replaced_record(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _put(ctx: Interpreter, obj: Obj, name: str, value: Value) -> None:
-    """Store a field of a copy; keep the former value as well if the copy stands for several objects."""
+    """Store a field of a copy. If the copy stands for several objects, keep the previous value as well."""
     if obj.many:
         updates.weaken(ctx, obj, name, value)
     else:
@@ -174,7 +174,7 @@ def as_mapping(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def as_sequence(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the tuple of fields made by `astuple(x)`."""
+    """Return the tuple of fields that `astuple(x)` makes."""
     return _listing(ctx, it, "sequence")
 
 

@@ -20,7 +20,7 @@ OURS = frozenset(["instance", "class", "closure", "module"])
 
 
 def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
-    """Return an attribute of which at least the beginning of the name is known."""
+    """Return an attribute whose name is known, or at least the beginning of the name."""
     plain = it.arguments[0]
     names = plain[1].texts() if len(plain) > 1 else ()
     if not names and plain and not it.call.arguments:

@@ -51,7 +51,7 @@ def repeated(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: F
 
 
 def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
-    """Return `a + b`; its elements are tracked separately if those of both are known."""
+    """Return `a + b`. Its elements are tracked separately if the elements of both operands are known."""
     known = [unpacked(ctx, v) for v in values]
     element = join_all(heap.elements(ctx, v) for v in values)
     longer = length(ctx, values[0]) | length(ctx, values[1])

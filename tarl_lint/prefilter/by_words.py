@@ -70,7 +70,7 @@ def groups(modules: Sequence[M], config: Config, *, clients: bool = False) -> li
 
 
 def reached(start: Iterable[M], others: Sequence[M]) -> list[M]:
-    """Return those of `others` that the modules import, directly or indirectly."""
+    """Return the modules in `others` that the modules import, directly or indirectly."""
     first = list(start)
     index = Index([*first, *others])
     wanted = {m.path for m in others}

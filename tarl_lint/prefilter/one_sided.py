@@ -62,7 +62,7 @@ class Rule(Protocol):
 
 
 def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) -> bool:
-    """Return whether a group of modules can contain neither a flow nor a hazard of an enabled rule."""
+    """Return whether a group of modules can contain no flow and no hazard of an enabled rule."""
     if config.named:
         return False
     texts = [code(m.text) for m in modules]

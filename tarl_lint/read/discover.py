@@ -69,7 +69,7 @@ class Discovery:
 def find(paths: Sequence[Path], config: Config, stdin: Stdin | None = None) -> Discovery:
     """Return the Python files at and below `paths`. A path in `paths` itself is included even if patterns exclude it.
 
-    Raises UsageError for a path that does not exist, unless its text comes from standard input.
+    Raises UsageError if a path does not exist and its text does not come from standard input.
     """
     walk = _Walk(config)
     for path in paths:
@@ -112,7 +112,7 @@ class _Walk:
         self._search(directory, _ignores_above(directory))
 
     def take(self, path: str, real: str = "") -> None:
-        """Add a file, unless it was found under another name.
+        """Add a file, if it was not found before under another name.
 
         `real` is the path of the file without links, if known.
         """

@@ -17,7 +17,7 @@ KNOWN: Final = (
 
 
 def unfollowed(classes: Iterable[str]) -> tuple[str, ...]:
-    """Return the classes that belong neither to Python nor to the ROS packages in the catalog."""
+    """Return the classes that do not belong to Python or to the ROS packages in the catalog."""
     return tuple(name for name in classes if name.partition(".")[0] not in KNOWN)
 
 

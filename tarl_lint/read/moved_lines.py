@@ -38,8 +38,8 @@ def moved_lines(old: str, new: str, reading: Reading) -> Mapping[int, int] | Non
         return None
     changed = comparison.changed
     if changed and any(_qualnames(tree)[name] > 1 for tree in (former, latter) for name in changed):
-        # if several functions have one name, equal statements are numbered across all of them, so a changed function
-        # affects the others
+        # if several functions have one name, equal statements are numbered across all of them, so a change to one
+        # function affects the other functions
         return None
     places = sorted(comparison.lines.items())
     return dict(places) if all(a < b for (_, a), (_, b) in pairwise(places)) else None

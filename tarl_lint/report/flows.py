@@ -87,7 +87,7 @@ def subscription(flow: Flow) -> str:
 def taint_list(flow: Flow, view: View) -> Iterator[Line]:
     """Yield the steps of a flow: line, role, dependence on the source, code.
 
-    A long list is reduced to its shortest chain unless all steps are requested.
+    A long list is reduced to its shortest chain, except if all steps are requested.
     """
     steps = shown_steps(flow, view)
     beside = flow.sink.span.path

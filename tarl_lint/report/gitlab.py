@@ -1,4 +1,4 @@
-"""GitLab code quality: new findings; GitLab compares them with those of the target branch."""
+"""GitLab code quality: new findings; GitLab compares them with the findings of the target branch."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ def _topic(name: str, flows: Sequence[Flow], margin: int, view: View) -> Iterato
     carried = {_few(flow.source.topics) for flow in flows if flow.kind == "explicit"}
     deciding = {_few(flow.source.topics) for flow in flows} - carried
     head = name + " " * (margin - columns(name))
-    if columns(name) > margin:  # a long name gets its own line, so that the others stay aligned
+    if columns(name) > margin:  # a long name gets its own line, so that shorter names stay aligned
         yield (("  ", ""), (name, "strong"))
         head = " " * margin
     parts: list[tuple[str, Style, set[str]]] = [

@@ -34,7 +34,7 @@ def harmless(text: str) -> str:
 
 
 def wants_colour(stream: TextIO, environment: Mapping[str, str] = os.environ) -> bool:
-    """Return whether to use colours: on a capable terminal, unless NO_COLOR (https://no-color.org) is set."""
+    """Return whether to use colours: on a capable terminal without NO_COLOR (https://no-color.org)."""
     if environment.get("NO_COLOR") or environment.get("TERM") == "dumb":
         return False
     return bool(environment.get("FORCE_COLOR")) or stream.isatty()

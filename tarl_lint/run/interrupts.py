@@ -1,4 +1,4 @@
-"""Ctrl-C in a terminal reaches every process: the main process prints a message, the others end silently."""
+"""Ctrl-C in a terminal reaches every process. The main process prints a message; the others end silently."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def uninterrupted() -> Iterator[None]:
 
 
 def end_silently() -> None:
-    """Make Ctrl-C end this process without a traceback, unless the process ignores Ctrl-C, as background jobs do."""
+    """Let Ctrl-C end this process without a traceback. This changes nothing if the process ignores Ctrl-C."""
     import signal
 
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:

@@ -190,7 +190,7 @@ def _result(report: Report, files: _Files, config: Config) -> Result:
 
 
 def _in_vain(comment: Suppression, config: Config) -> bool:
-    """Return whether all rules are enabled that a comment may silence.
+    """Return whether all rules that a comment may silence are enabled.
 
     A comment without a code silences the default rules. Rules of architecture need `--launch`.
     """

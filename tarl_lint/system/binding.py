@@ -46,9 +46,9 @@ def private_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mappin
 
 
 def fixed(names: Sequence[str], values: Mapping[str, Any], full_name: str) -> Mapping[str, object]:
-    """Return the values of parameters in a launched node by their names in the code; DEFAULT for parameters not set.
+    """Return the values of parameters in a launched node, by their names in the code; DEFAULT for parameters not set.
 
-    Parameters whose value is known only on the robot, or is neither scalar nor a list of scalars, are left out.
+    A parameter is left out if its value is known only on the robot, or is not a scalar or a list of scalars.
     """
     found: dict[str, object] = {}
     for name in (one for one in names if one != ARGUMENTS):

@@ -1,4 +1,4 @@
-"""The expressions that a module binds to a name, and the expressions of which a value is made."""
+"""The expressions that a module binds to a name, and the parts of which a value is made."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ class Request:
 
     @cached_property
     def root(self) -> Path:
-        """Return the folder of the workspace: the given path, or else that of the launch file or the current one."""
+        """Return the folder of the workspace: the given path, or the launch file's folder, or the current folder."""
         if self.paths:
             return self.paths[0]
         path = Path(self.launch)

@@ -118,8 +118,8 @@ def _named(path: Path, text: str) -> Iterator[Endpoint]:
 def _of_message(written: str, text: str) -> str:
     """Return the name of a type of messages; "" for an alias, which stands for another type.
 
-    `std_msgs::msg::Bool` and `std_msgs::Bool` are not aliases, nor is `arm::Grip` if the file includes `arm/Grip.h`. A
-    name without a package is an alias if the file defines it as one.
+    `std_msgs::msg::Bool` and `std_msgs::Bool` are not aliases. `arm::Grip` is not an alias either if the file
+    includes `arm/Grip.h`. A name without a package is an alias if the file defines it as an alias.
     """
     package, _, name = written.removeprefix("::").rpartition("::")
     first = package.partition("::")[0]

@@ -1,4 +1,4 @@
-"""The strings of a program, which include the names of its parameters, and whether it reads no other parameters."""
+"""The strings of a program, which include the names of its parameters. Also: whether it reads other parameters."""
 
 from __future__ import annotations
 

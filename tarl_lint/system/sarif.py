@@ -14,7 +14,7 @@ from tarl_lint.system.chains import chains
 from tarl_lint.system.drawing import drawing_of
 from tarl_lint.system.model import Chain, System, place_of
 
-CATEGORY: Final = "tarl-lint/launch"  # keeps these results apart from those of a run without launch files
+CATEGORY: Final = "tarl-lint/launch"  # separates these results from the results of a run without launch files
 
 
 def report(systems: Sequence[System], result: Result, origin: str = "", target: str = "") -> Iterator[Line]:

@@ -120,7 +120,7 @@ def _actions(value: Any) -> bool:
 
 
 def _one_of_actions(values: list[tuple[str, Any]], line: int) -> Any:
-    """Return the actions that are in all values, and the others as conditional actions."""
+    """Return the actions that are in all values, and all other actions as conditional actions."""
     lists = [_listed(one) for _, one in values]
     groups = [one[0] for one in lists if len(one) == 1 and _plain_group(one[0])]
     if len(groups) == len(values) and len({id(one) for one in groups}) > 1:

@@ -161,7 +161,8 @@ class BranchingInterpreter(Interpreter):
     ) -> None:
         """Raise the exception that represents both branches, each of which ended early.
 
-        A branch that ends with `break` or `continue` represents both, since statements follow it.
+        A branch that ends with `break` or `continue` represents both branches, since statements follow such a
+        branch.
         """
         if isinstance(left, Raised):
             raise other

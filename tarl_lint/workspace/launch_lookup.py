@@ -29,7 +29,7 @@ def unknown_argument(launch: Launch, names: Iterable[str]) -> str:
 
 
 def is_launch_name(name: str) -> bool:
-    """Return whether a file's name is that of a launch file."""
+    """Return whether a file has the name of a launch file."""
     return name.endswith((*ENDINGS, "_launch.py", "_launch.xml", "_launch.yaml", "_launch.yml"))
 
 

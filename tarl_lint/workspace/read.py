@@ -44,7 +44,8 @@ class _Found:
 def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
     """Return the description of the workspace below a folder. Nothing is executed or written.
 
-    Packages below a marker such as COLCON_IGNORE are hidden, unless the marked folder contains one of `kept`.
+    Packages below a marker such as COLCON_IGNORE are hidden, except if the marked folder contains one of the
+    folders in `kept`.
     """
     markers: list[Path] = []
     unread: list[Problem] = []

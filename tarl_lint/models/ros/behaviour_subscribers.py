@@ -24,7 +24,7 @@ HANDLER: Final = "py_trees_ros.subscribers.Handler"  # base class whose objects 
 
 
 def behaviour(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a behaviour that subscribes, and note what it does with the messages."""
+    """Return a behaviour that subscribes, and note how the behaviour uses the messages."""
     made = recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
     part = parts.part_of(ctx, made, it.frame)
     arriving = subscriptions.receive(ctx, it)

@@ -73,7 +73,7 @@ class SinkRecord:
 
 @dataclass(slots=True, eq=False)
 class Acceptance:
-    """The decision of an action server whether a goal runs: what its `goal_callback` returns.
+    """The decision of an action server whether a goal runs: the return value of its `goal_callback`.
 
     `node` is the decision. `answers` are the nodes of the returned values, with the name or constant of each.
     """

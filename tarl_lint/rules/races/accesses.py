@@ -97,7 +97,7 @@ def _locals(function: ast.AST) -> set[str]:
 
 
 def _own(function: ast.AST) -> Iterator[ast.AST]:
-    """Yield the syntax nodes of a function, without those of nested functions."""
+    """Yield the syntax nodes of a function, except the nodes of nested functions."""
     body = getattr(function, "body", [])
     pending: list[ast.AST] = list(body) if isinstance(body, list) else [body]
     while pending:

@@ -32,7 +32,7 @@ def always_or_never_guarded(modules: Sequence[Module]) -> bool:
 
 
 def _under_locks(outline: Outline) -> Iterator[ast.Call]:
-    """Yield the calls that run while a lock is held, except those of the methods of locks."""
+    """Yield the calls that run while a lock is held; calls of methods of locks are left out."""
     return (
         call
         for calls in outline.calls.values()

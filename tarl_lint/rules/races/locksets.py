@@ -256,7 +256,7 @@ def _receiver_name(frame: Frame) -> str:
 
 
 def _making(frame: Frame, receiver: Obj) -> bool:
-    """Return whether the object is under construction; no other thread can then access it."""
+    """Return whether the object is under construction; other threads cannot access it then."""
     current: Frame | None = frame
     while current is not None:
         if current.function.name == "__init__" and _receiver(current) is receiver:

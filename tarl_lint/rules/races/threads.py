@@ -1,6 +1,7 @@
 """Find the thread of a function.
 
-Each rospy callback has a thread of its own; rclpy callbacks share one thread unless executor and groups allow more.
+Each rospy callback has a thread of its own; rclpy callbacks share one thread, if the executor and the groups do not
+allow more.
 """
 
 from __future__ import annotations

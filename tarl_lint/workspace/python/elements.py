@@ -211,7 +211,7 @@ def _leaves(value: Any, most: int) -> Iterator[Any]:
 def as_data(value: Any, depth: int = 0) -> Any:
     """Convert a value to lists, tuples and dicts, as functions of other libraries expect it.
 
-    A list that needs no conversion is returned itself, so that elements that are added later are included.
+    A list that needs no conversion is returned as it is, so that the result includes elements that are added later.
     """
     if isinstance(value, Stream | Unique | deque) and not (isinstance(value, Stream) and value.endless):
         return [as_data(one, depth + 1) for one in listed(value)]

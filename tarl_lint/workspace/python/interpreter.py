@@ -122,7 +122,7 @@ class Interpreter(Evaluator):
         return Unknown(line, name)
 
     def problem(self, line: int, reason: str, *, hides: bool = True) -> None:
-        """Record a problem, once. `hides` says that nodes may be missing because of it."""
+        """Record a problem, once. `hides` means that nodes may be missing because of the problem."""
         one = Problem(self._calls.file, line, reason, hides)
         if one not in self.problems:
             self.problems.append(one)

@@ -68,7 +68,7 @@ class Class:
         return found
 
     def all_fields(self) -> tuple[str, ...] | None:
-        """Return the fields of a data class with those of its bases; None for other classes."""
+        """Return the fields of a data class, including the fields of its bases; None for other classes."""
         known = [one.fields for one in reversed(self.order()) if one.fields is not None]
         return tuple(dict.fromkeys(name for one in known for name in one)) if known else None
 

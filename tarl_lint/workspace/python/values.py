@@ -42,7 +42,7 @@ MANY: Final = Unknown(0, "too many values")
 
 
 class Scope:
-    """The names of a module, class, function or comprehension, within those of the scopes around it."""
+    """The names of a module, class, function or comprehension, inside the scopes around it."""
 
     __slots__ = ("around", "elsewhere", "inner", "names", "of_class")
 
@@ -56,8 +56,9 @@ class Scope:
     ) -> None:
         self.names, self.around = names, around
         self.elsewhere: dict[str, Scope] = {}  # names that `global` and `nonlocal` bind in another scope
-        self.inner = inner  # whether the scope is that of a comprehension
-        self.of_class = of_class  # whether the scope is that of a class, which functions inside it do not see
+        self.inner = inner  # whether this is the scope of a comprehension
+        # whether this is the scope of a class; functions inside the class do not see its names
+        self.of_class = of_class
 
     def find(self, name: str) -> tuple[Any] | None:
         """Return a tuple with the value of a name; None if no scope has the name."""
