@@ -160,7 +160,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def origins(self, ctx: Ctx, caller: Frame, call: ir.Call, passed: Arguments) -> tuple[Origin, ...]:
-        """Return the arguments that are parts of one of several objects, or one of several objects themselves."""
+        """Return the arguments that are one of several objects, or a part of one of several objects."""
         ...
 
     def read_item(self, ctx: Ctx, base: Value, index: Value) -> Value:

@@ -17,7 +17,7 @@ from tarl_lint.memory.values import Value, const
 
 
 def origins(ctx: Interpreter, caller: Frame, call: ir.Call, passed: Arguments) -> tuple[Origin, ...]:
-    """Return the arguments that are parts of one of several objects, or one of several objects themselves."""
+    """Return the arguments that are one of several objects, or a part of one of several objects."""
     written = call_contexts.written(call, passed[0])
     found = [*_positional(ctx, caller, call, written), *_named(ctx, caller, call)]
     if (mapping := passed[1].get("**")) is not None and tags.several(mapping):

@@ -56,7 +56,7 @@ class Registrations:
         return found
 
     def calls_element(self, code: Hashable, target: ir.Expr | None, nodes: Sequence[ast.AST]) -> bool:
-        """Return whether code calls a variable of the loop around it, which may be a class."""
+        """Return whether code calls a variable of the loop around the code. The variable may hold a class."""
         found = self.calling.get(code)
         if found is None:
             names = _names(target)

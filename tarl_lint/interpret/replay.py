@@ -1,7 +1,7 @@
 """Replay calls: skip a call whose reads are all unchanged since its last run in the same context.
 
-The context is the same, so the call's nodes, objects and entry points exist already; only its stores are repeated.
-`memory/reads.py` records the reads.
+Because the context is the same, the call's nodes, objects and entry points exist already, and only the stores of
+the call are repeated. `memory/reads.py` records the reads.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Run:
 def run(
     ctx: Interpreter, frame: Frame, passed: Arguments, parts: tuple[Origin, ...], execute: Callable[[], Delta]
 ) -> Run:
-    """Return the last run of a frame if a new one would give the same result, else execute the frame."""
+    """Return the last run of a frame if a new run would give the same result; otherwise execute the frame."""
     mode = _mode(ctx)
     last = frame.recorded
     same = isinstance(last, Run) and last.parts == parts and _same(ctx, last, passed, mode)

@@ -45,7 +45,7 @@ def conditions(ctx: Interpreter, frame: Frame) -> Branches:
 def enter(ctx: Interpreter, frame: Frame, caller: Frame, passed: Arguments) -> Arguments:
     """Add a call to a shared context; return the joined arguments of all its calls so far.
 
-    Each parameter has one node for its data, so another call adds an edge without changing a value.
+    Each parameter has one node for its data, so a further call adds an edge and changes no value.
     """
     ((called, _),) = conditions(ctx, frame)
     above = ctx.branches(caller, caller.statement) | frozenset(ctx.guards)

@@ -20,7 +20,7 @@ MAX_ASKED: Final = 16  # maximum number of objects whose methods are called one 
 def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Value:
     """Return the container that a comprehension makes.
 
-    If it is lazy and calls methods of known objects, each element depends on the results of the earlier ones.
+    If it is lazy and calls methods of known objects, each element depends on the results of the earlier elements.
     """
     (target, source, tests) = expr.loops[0]
     if expr.lazy and len(expr.loops) == 1 and calls_method_of(target, (expr.node, *expr.tests)):

@@ -93,7 +93,7 @@ def _outcomes(ctx: Interpreter, obj: Obj) -> frozenset[str]:
 
 
 def _depend(ctx: Interpreter, one: Dependence[Obj]) -> bool:
-    """Add the edges of a dependence to the value-flow graph. Return whether any of them is new."""
+    """Add the edges of a dependence to the value-flow graph. Return whether any of the edges is new."""
     frame = next(iter(ctx.frames.values()))
     runs = part_of(ctx, one.part, frame).runs
     if one.outcomes == frozenset():  # the part is a member of a fork: it runs whenever the fork runs

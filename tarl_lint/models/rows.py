@@ -22,7 +22,7 @@ def of(ctx: Interpreter, source: Value) -> list[Value]:
 
 
 def hold_classes(ctx: Interpreter, source: Value) -> bool:
-    """Return whether containers, or the containers inside them, may hold analysed classes."""
+    """Return whether containers, or inner containers, may hold analysed classes."""
     if any(o.kind not in CONTAINERS for o in source.pts):
         return False
     for obj in heap.elements(ctx, source).objects:

@@ -130,7 +130,7 @@ def _between(ctx: Interpreter, base: Value, index: ir.Slice, bounds: list[Value]
 
 
 def constants(ctx: Interpreter, value: Value) -> list[Value] | None:
-    """Return the elements of a sequence if each of them is one known constant, else None."""
+    """Return the elements of a sequence if each element is one known constant, else None."""
     elements = unpacked(ctx, value)
     if elements is None or not all(one.fixed() and one != ABSENT and not one.deps for one in elements):
         return None

@@ -20,7 +20,8 @@ KINDS: Final[Mapping[str, Kind]] = {
     "Iterator": "machine",
     "Concurrence": "fork",
 }
-MODULES: Final = {"StateMachine": "state_machine"}  # module of each class, if it has another name
+# class → its module, if the module's name is not that of the class
+MODULES: Final = {"StateMachine": "state_machine"}
 MACHINES: Final = tuple(
     f"smach.{path}{name}" for name in KINDS for path in ("", f"{MODULES.get(name, name.lower())}.")
 )
@@ -54,7 +55,7 @@ def _texts(ctx: Interpreter, listed: Value) -> list[str]:
 
 
 def add_state(ctx: Interpreter, it: Invocation) -> Value:
-    """Add a state to the machine of the innermost `with`; `remapping` maps its names to shared fields."""
+    """Add a state to the machine of the innermost `with`; `remapping` maps names of the state to shared fields."""
     opened = [o for value in reversed(ctx.opened) for o in value.objects if holds_states(ctx, o)]
     add(ctx, opened[0] if opened else None, it)
     return UNKNOWN

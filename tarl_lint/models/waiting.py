@@ -17,7 +17,8 @@ from tarl_lint.memory.values import NONE, Nodes, Obj, Value
 from tarl_lint.models import removal
 
 FLAG: Final = "<flag>"  # field of an event: whether it is set
-# method that takes an element out of a container → the exception that it raises if there is none; "" if unknown
+# method that takes an element out of a container → the exception that the method raises if there is no element; ""
+# if unknown
 RAISED: Final = {"get_nowait": "", "pop": "IndexError", "popleft": "IndexError"}
 
 

@@ -144,7 +144,8 @@ class Holding:
     values: dict[str, Value] = field(default_factory=dict)
     fields: dict[tuple[str, str], Value] = field(default_factory=dict)  # (variable, field) → value
 
-    fresh: dict[str, bool] = field(default_factory=dict)  # variable → whether the observed run wrote it
+    # variable → whether the observed run wrote to the variable
+    fresh: dict[str, bool] = field(default_factory=dict)
 
     delivered: set[Obj] = field(default_factory=set)  # messages that have just arrived
 
@@ -240,7 +241,7 @@ def _attributes(machine: Linker, owner: str, value: Value) -> Iterator[tuple[str
 
 
 def _dotted(obj: Obj) -> str:
-    """Return the access path of an object within its message, elements by number: `ranges.0`."""
+    """Return the access path of an object within its message, with elements given by number: `ranges.0`."""
     return obj.path().replace("[", "").replace("]", "")
 
 

@@ -247,7 +247,7 @@ def _mentions(path: str, words: tuple[bytes, ...]) -> bool:
 
 
 def _head(path: str, size: int) -> bytes:
-    """Return the first bytes of a regular file; empty for others, since opening a named pipe would block."""
+    """Return the first bytes of a regular file; empty for other files, since opening a named pipe would block."""
     if not Path(path).is_file():
         return b""
     try:

@@ -62,7 +62,7 @@ class Ignore:
 def ignored(path: str, ignores: Sequence[Ignore], *, is_directory: bool) -> bool:
     """Return whether a path is excluded.
 
-    The nearest .gitignore file with a match decides; it is the last in `ignores`.
+    The nearest .gitignore file with a match decides; in `ignores`, it comes last.
     """
     verdicts = (ignore.verdict(path, is_directory=is_directory) for ignore in reversed(ignores))
     return next((v for v in verdicts if v is not None), False)

@@ -86,7 +86,7 @@ class _Comparison:
                 yield getattr(one, part, None), getattr(other, part, None)
 
     def _place(self, one: ast.AST, other: ast.AST) -> None:
-        """Pair the lines of two nodes; of a compound statement, only the lines of its header."""
+        """Pair the lines of two nodes; for compound statements, pair only the lines of the headers."""
         first, there = getattr(one, "lineno", None), getattr(other, "lineno", None)
         if first is None or there is None:
             return
@@ -105,7 +105,7 @@ class _Comparison:
     def _header(self, first: int, there: int, body: int) -> None:
         """Pair the first line of a header, and the following lines as far as they are equal.
 
-        The nodes in a header pair their own lines. One of the other lines may contain the colon of the header.
+        The nodes in a header pair their own lines. A further line may contain the colon of the header.
         """
         self._pair(first, there)
         for line in range(first + 1, body):

@@ -25,7 +25,7 @@ def level(code: str, result: Result) -> Level:
 
 
 def told_apart(findings: Sequence[Finding]) -> Iterator[tuple[Finding, str]]:
-    """Yield findings with unique identities: the fingerprint, numbered if several findings share it."""
+    """Yield findings with unique identities: the fingerprint, with a number if several findings share it."""
     seen: Counter[str] = Counter()
     for finding in findings:
         base = finding.fingerprint or digest((finding.code, finding.span.path, finding.message))

@@ -248,7 +248,7 @@ def location(span: Span, end: Source | Sink | None = None) -> dict[str, Any]:
 
 
 def _artifact(path: str) -> dict[str, str]:
-    """Return the location of a file: relative to the source root, or absolute if it is elsewhere."""
+    """Return the location of a file: relative to the source root, or absolute if the file is elsewhere."""
     if Path(path).is_absolute():
         return {"uri": Path(path).as_uri()}
     return {"uri": quote(path.encode("utf-8", "surrogateescape")), "uriBaseId": ROOT}

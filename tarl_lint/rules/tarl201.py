@@ -184,7 +184,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
-    """Return an access in another thread that holds a lock, if at least one of the two accesses writes."""
+    """Return an access in another thread that holds a lock, if one of the two accesses writes."""
     others = (u for u in uses if u.thread != use.thread and (u.writes or use.writes))
     return min(others, key=lambda u: (not u.writes, u.spots[0].path, u.spots[0].pos), default=None)
 

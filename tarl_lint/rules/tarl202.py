@@ -216,7 +216,7 @@ def _hazardous(flow: Flow) -> bool:
 
 
 def _sensor(source: Source) -> bool:
-    """Return whether a source is a sensor, by its message type or, for plain numbers, by its topic."""
+    """Return whether a source is a sensor, judged by its message type or, for plain numbers, by its topic."""
     if not on_topic(source.api) or not ("ubscri" in source.api or "wait_for_message" in source.api):
         return False
     types = (source.type or "").split(" | ")

@@ -232,6 +232,9 @@ def _unread(names: set[str], functions: list[tuple[Function, str]], evidence: Ev
 
 
 def _defined(name: str, evidence: Evidence) -> bool:
-    """Return whether a function has the name; it may be the setter of a property, which does more than store."""
+    """Return whether a function has the name.
+
+    Such a function may be the setter of a property, which does more than store a value.
+    """
     marker = f"def {name}("
     return any(m.contains(marker) for m in evidence.machine.modules.values())

@@ -57,8 +57,8 @@ class Report:
 class Cache:
     """Reports by key, and plans: the keys of a whole run. Without a file, nothing is stored.
 
-    `spare` is the number of entries that are kept although a run does not use them. With `adapts`, reports are
-    adapted to edits.
+    `spare` is the number of entries that are kept although a run does not use them. With `adapts`, the cache adapts
+    reports to edits.
     """
 
     adapts = False

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import Final, TypeVar
 
 MAX_RECURSION: Final = 5_000
-HALF_A_CHUNK: Final = 2**18  # size of the stack in words; pages of it that are never used take no memory
+HALF_A_CHUNK: Final = 2**18  # size of the stack in words; unused pages of the stack take no memory
 
 Result = TypeVar("Result")
 

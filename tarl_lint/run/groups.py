@@ -150,7 +150,7 @@ def _known(task: Task, key: str, cache: Cache) -> Report | None:
 
 
 def _workers(tasks: Sequence[Task], jobs: int | None) -> int:
-    """Return the number of processes, which is limited by the number of groups and the size of the largest group."""
+    """Return the number of processes, limited by the number of groups and the size of the largest group."""
     wanted = sum(task.analyse for task in tasks)
     if jobs is None:
         lines = [task.lines for task in tasks]

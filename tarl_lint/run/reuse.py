@@ -35,7 +35,7 @@ class _Analysis:
 class Analyses:
     """The last analyses of each program in an editor session, by the path of its last file, newest first.
 
-    Several analyses are kept because edits are often undone: the restored text then equals that of an earlier
+    Several analyses are kept because edits are often undone: the restored text is then the text of an earlier
     analysis.
     """
 

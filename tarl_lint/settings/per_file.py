@@ -30,7 +30,7 @@ class FileIgnores:
         return bool(codes) and finding.code.startswith(codes)
 
     def _ask(self, path: str) -> tuple[str, ...]:
-        """Return the codes that are disabled in a file, by patterns for the file and for its directories."""
+        """Return the codes that are disabled in a file, by patterns that match the file or one of its directories."""
         return tuple(code for ignore, codes in self._rules if self._matches(ignore, path) for code in codes)
 
     def _matches(self, ignore: gitignore.Ignore, path: str) -> bool:

@@ -94,7 +94,7 @@ def _reached_by_all(
 def _calls_of(
     qualname: str, modules: Sequence[Module], outlines: Mapping[str, Outline]
 ) -> Iterator[tuple[str, ast.Call]]:
-    """Yield the calls that may call a function, by its name, or for `__init__` by the name of its class."""
+    """Yield the calls that may call a function, found by its name; for `__init__`, by the name of the class."""
     *around, name = qualname.split(".")
     names = {name, around[-1]} if name == _INIT and around else {name}
     for module in modules:

@@ -19,7 +19,7 @@ from tarl_lint.system.statistics import statistics
 def concise(
     systems: Sequence[System], result: Result, view: View, origin: str = "", target: str = ""
 ) -> Iterator[Line]:
-    """Yield one line per hazard and one per flow across nodes, then the closing lines."""
+    """Yield one line per hazard and one line per flow across nodes, then the closing lines."""
     yield from errors(result)
     yield from map(heading, result.new)
     found = [shown_chains(system.hops, origin, target, view.most_flows) for system in systems]

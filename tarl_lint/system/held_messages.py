@@ -30,7 +30,7 @@ _ELEMENT: Final = "[]"  # end of the part of a path that stands for an element o
 
 
 class Held(NamedTuple):
-    """A message, or the part of it that the path names; `poses[]` is an element of `poses`."""
+    """A message, or a part of a message that the path names; `poses[]` is an element of `poses`."""
 
     type: str
     path: tuple[str, ...] = ()

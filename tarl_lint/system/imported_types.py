@@ -62,7 +62,7 @@ class ImportedTypes:
             self.ros = "1" if "rospy" in found else "2"
 
     def _import(self, local: str, kind: str) -> None:
-        """Store the type of a name; a name that stands for one of several types is unknown."""
+        """Store the type of a name. If a name stands for one of several types, its type is unknown."""
         self._classes[local] = kind if self._classes.get(local, kind) == kind else ""
 
     @property

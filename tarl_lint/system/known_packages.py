@@ -214,7 +214,7 @@ def _multiplexed(group: str, values: Mapping[str, Any]) -> list[str] | None:
 
 
 def identity(node: LaunchedNode) -> tuple[str, str]:
-    """Return package and program; of a nodelet or component, the package of its class."""
+    """Return package and program; for a nodelet or component, the package of its class."""
     if node.package == "nodelet" and node.executable == "nodelet":
         words = plain(node.arguments, for_ros2=False)
         if words and words[0] == "manager":

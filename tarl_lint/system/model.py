@@ -150,7 +150,7 @@ class Instance:
     unread: str = ""
     known: Seen = Seen()  # known facts about a node that could not be read
     silent: bool = False  # whether the node is known to publish nothing that other nodes subscribe to
-    # if the code of the node could not be read: the remappings of its launch groups that it can use
+    # if the code of the node could not be read: those remappings of its launch groups that the node can use
     meant: tuple[tuple[str, str], ...] = ()
     broken: SourceError | None = None
 
@@ -198,7 +198,7 @@ class Instance:
         yield from self._launched(self.certain, role)
 
     def named(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
-        """Yield the endpoints of a role; for an unread node, those that its C++ source or its arguments name."""
+        """Yield the endpoints of a role. For an unread node, its C++ source or its arguments name them."""
         yield from self._launched(self.seen if self.interface is None else self.certain, role)
 
     def _launched(self, ends: Iterable[Endpoint], role: Role) -> Iterator[tuple[str, Endpoint]]:

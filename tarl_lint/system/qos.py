@@ -259,7 +259,7 @@ def _policy(expr: ast.expr | None, otherwise: str) -> str:
 
 
 def _changed(qos: Qos, outline: Outline, name: str) -> Qos:
-    """Return a profile whose policies are set after its creation; a policy that is set several times is unknown."""
+    """Return a profile whose policies are set after its creation. If a policy is set several times, it is unknown."""
     stated: dict[str, list[ast.expr]] = {}
     for node in ast.walk(outline.tree):
         if isinstance(node, ast.Assign):

@@ -107,7 +107,7 @@ def _squeezed(name: str) -> str:
 
 
 def _within(few: list[str], many: list[str]) -> bool:
-    """Return whether another namespace contains all parts of this one, in the same order."""
+    """Return whether another namespace contains all parts of this namespace, in the same order."""
     rest = iter(many)
     return all(part in rest for part in few)
 

@@ -63,7 +63,8 @@ class Program:
         self._handlers = {_last(name) for name in callbacks}
         self._timed: set[str] = set()  # functions that timers call
         self._ticks: list[ast.expr] = []  # callbacks of timers that are lambdas
-        self._named: dict[str, set[str]] = {}  # function → names in it, which may be properties and methods
+        # function → names in its code, which may be properties and methods
+        self._named: dict[str, set[str]] = {}
         self._texts = {module.path: module.text for module in modules}
         self._trees = {module.path: module.tree for module in modules}
         self._functions: dict[str, list[tuple[str, _Function | ast.Module]]] = {}

@@ -1,4 +1,4 @@
-"""Text report of systems: a table of nodes, flows across nodes, hazards, and what was not read."""
+"""Text report of systems: a table of nodes, flows across nodes, hazards, and the files that were not read."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ SENDING: Final = frozenset(
     ["__call__", "call", "call_async", "send_goal", "send_goal_and_wait", "send_goal_async"]
 )
 RESULT, FEEDBACK = "result", "feedback"
-# Callbacks of a goal, and what each of them gets: `send_goal` calls `done_cb` with the state and the result
+# Callbacks of a goal, and the arguments of each: `send_goal` calls `done_cb` with the state and the result
 _CALLBACKS: Final[Mapping[str, Mapping[tuple[int, str], tuple[str, ...] | str]]] = {
     "send_goal": {(1, "done_cb"): (RESULT, RESULT), (2, "active_cb"): (), (3, "feedback_cb"): FEEDBACK},
     "send_goal_async": {(1, "feedback_callback"): FEEDBACK},

@@ -34,7 +34,7 @@ Fresh = Sequence[tuple[Obj, str, Value]]
 
 
 def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
-    """Record a subscription; its place is the outermost call that supplies the callback."""
+    """Record a subscription. Its place is the outermost call that supplies the callback."""
     place, pos, statement, via = it.frame, it.call.pos, it.frame.statement, []
     while place.caller is not None and place.call is not None and _supplied(place, callback):
         via.append((place.program.path, pos))
@@ -107,7 +107,7 @@ def configured_source(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def feedback(ctx: Interpreter, it: Invocation) -> Value:
-    """Subscribe the callbacks of a marker or of a menu entry to the feedback topic of the server, if it is known."""
+    """Subscribe the callbacks of a marker or of a menu entry to the server's feedback topic, if the server is known."""
     spaces = [heap.read_field(ctx, obj, NAMESPACE) for obj in it.base.objects if obj.kind == "lib"]
     topics = frozenset(f"{name}/feedback" for space in spaces for name in space.names())
     for given in (*it.arguments[0], *it.arguments[1].values()):

@@ -77,7 +77,7 @@ class Magnitudes:
         return written is not None and self.evidence.limited(written.node)
 
     def _holds_below(self, condition: int, way: str, node: int) -> bool:
-        """Return whether a node is reached only if a condition bounds its value from above."""
+        """Return whether a node is reached only under a condition that bounds its value from above."""
         test = self._test(condition)
         if test is None or not any(comparisons(test)) or not self._about(condition, test, node):
             return False

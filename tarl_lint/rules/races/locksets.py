@@ -185,9 +185,10 @@ class Harm:
     """
 
     def __init__(self, uses: Mapping[State, Sequence[Use]]) -> None:
-        self._times: dict[object, set[Pos]] = {}  # (state, function) → positions of its accesses
-        self._read: dict[object, set[State]] = {}  # function → state that it reads without a lock
-        self._written: dict[object, set[State]] = {}  # function → state that it writes under a lock
+        # (state, function) → positions of the function's accesses to the state
+        self._times: dict[object, set[Pos]] = {}
+        self._read: dict[object, set[State]] = {}  # function → state that the function reads without a lock
+        self._written: dict[object, set[State]] = {}  # function → state that the function writes under a lock
         self._locked: set[object] = set()  # (state, function) pairs with an access under a lock
         for state, every in uses.items():
             for use in every:
