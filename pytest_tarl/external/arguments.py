@@ -23,7 +23,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Setup:
-    """The arguments of `tarl.external` after they were checked. That function documents them."""
+    """The checked arguments of `tarl.external`, which documents them."""
 
     command: tuple[str, ...]
     folder: Path
@@ -80,7 +80,7 @@ def setup(
 
 
 def _generation() -> str:
-    """Return the installed ROS, by which the guardian connects to the simulator. Raise SettingsError without one."""
+    """Return the installed ROS, which connects the guardian to the simulator. Raise SettingsError without one."""
     for library, name in (("rclpy", "ros2"), ("rospy", "ros1")):
         if PathFinder.find_spec(library) is not None:
             return name

@@ -18,7 +18,7 @@ _IGNORED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def outlive_the_test() -> None:
-    """Ignore the signals that end the test, because this process must end after the simulator."""
+    """Ignore the signals that end the test, because this process must outlive the simulator in order to end it."""
     for number in _IGNORED:
         signal.signal(number, signal.SIG_IGN)
 

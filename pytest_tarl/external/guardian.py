@@ -28,7 +28,7 @@ from pytest_tarl.rosmaster import Master
 
 LOOK = 0.05  # time between two checks of the ROS graph in the first CALM seconds (s); afterwards it is 1 s
 CALM = 5.0  # time during which the ROS graph is checked every LOOK seconds (s)
-LAST = 20.0  # time from the end of the test until the simulator is killed if the middleware hangs (s)
+LAST = 20.0  # if the middleware hangs, the simulator is killed this long after the end of the test (s)
 
 
 class Guardian:
@@ -59,7 +59,7 @@ class Guardian:
     def watch(self) -> None:
         """Wait for the end of the test's process; runs in a thread.
 
-        Forked children of the test may keep stdin open, so the end of stdin is not sufficient.
+        Forked children of the test may keep stdin open, so the end of stdin does not show that the test has ended.
         """
         try:
             wait_for_end_of_parent()

@@ -15,21 +15,24 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-# number of consecutive attempts without a message after which the queue counts as empty; a single attempt may have
-# handled another event
+# The queue counts as empty after this number of consecutive attempts without a message. One attempt is not enough,
+# because it may have handled another event.
 IDLE = 3
 UNKNOWN = (
-    "_NODE_NAME_UNKNOWN_"  # rclpy's name of a node of which so far only a publisher or subscription is known
+    # the name that rclpy gives a node as long as only a publisher or subscription of it is known
+    "_NODE_NAME_UNKNOWN_"
 )
-NAMING = 10.0  # maximum time until the name of a node is known; what is not a node of ROS 2 never has one (s)
-ASKING = 10.0  # maximum time until a node tells its parameters; then it is not asked again (s)
+# maximum time until the name of a node is known (s); a program that is not a ROS 2 node never gets a name
+NAMING = 10.0
+# maximum time for a node to answer a parameter request (s); a node that takes longer is not asked again
+ASKING = 10.0
 
 Say = Callable[[dict[str, Any]], None]
 
 
 @dataclass(frozen=True)
 class Turn:
-    """A service for parameters that was called, the time until it must answer, and what follows."""
+    """A call of a parameter service: the service, the time until it must answer, and the function to call then."""
 
     service: str
     deadline: float
@@ -63,18 +66,18 @@ class Link:
         self._calls: list[dict[str, Any]] = []  # calls of services that do not exist yet
         self._receivers: dict[
             str, list[str]
-        ] = {}  # topic → services for parameters of the nodes that subscribe to it
+        ] = {}  # topic → parameter services of the nodes that subscribe to it
         self._seen: dict[str, float] = {}  # topic → when a subscription to it was first seen
-        self._asking: Turn | None = None  # the service for parameters that has not answered yet
-        self._silent: set[str] = set()  # services for parameters that did not answer in time
+        self._asking: Turn | None = None  # the call of a parameter service that has not been answered yet
+        self._silent: set[str] = set()  # parameter services that did not answer in time
         self._sent: Counter[str] = Counter()  # topic → number of commands since the last call
         self._known: dict[str, Any] = {}
-        # answers of services that have not been passed on to the test yet
+        # answers of services that were not passed on to the test yet
         self._answers: list[dict[str, Any]] = []
         self._handled = 0  # number of messages handled so far
 
     def spin(self, seconds: float) -> None:
-        """Wait up to `seconds` for an event and handle it. Messages sent before an answer are handled before it.
+        """Wait up to `seconds` for an event and handle it; handle messages sent before an answer before the answer.
 
         In each cycle, rclpy's executor takes one message from each subscription and then the answers. An answer can
         therefore overtake the second message on a topic, which may be the state after a step.
@@ -114,15 +117,15 @@ class Link:
             self._sent[topic] += 1
 
     def call(self, asked: dict[str, Any]) -> None:
-        """Call a service as soon as it exists and the simulator handles the commands so far before the call.
+        """Call a service once it exists, in such a way that the simulator first handles all commands sent so far.
 
         Commands arrive before the call, because both go by UDP to one port of the simulator's participant. That is not
-        enough: in each cycle, an executor looks for messages, then for requests, and takes one message from each
-        subscription. So it can miss a command that arrives in between, and handle the request before the second
-        command on a topic. Therefore, the nodes that subscribe to the commands are first asked for no parameters, once
-        for each command. When they have answered, and the executor finds the call, it has just taken the last command.
-        Nodes without services for parameters, or that do not answer, are not asked. Waiting for acknowledgements would
-        not be enough, and would cost 0.8 s per call, which is the period of the middleware's heartbeats.
+        enough. In each cycle, an executor looks for messages, then for requests, and takes one message from each
+        subscription. It can therefore miss a command that arrives in between, or handle the request before the second
+        command on a topic. To prevent this, each node that subscribes to the commands first gets an empty parameter
+        request for each command. Once the node has answered all of them, its executor has taken the last command before
+        it finds the call. Nodes that have no parameter services or do not answer are skipped. Waiting for
+        acknowledgements would not be enough, and would cost 0.8 s per call, the period of the middleware's heartbeats.
         """
         self._calls.append(asked)
         self._start_calls()
@@ -202,7 +205,7 @@ class Link:
             self._ask(names, partial(self._start, client, asked))
 
     def _asked_first(self) -> list[str]:
-        """Return the services for parameters to call first, once for each command to their node."""
+        """Return the parameter services to call before a service call, each once for every command sent to its node."""
         times = Counter[str]()
         for topic, commands in self._sent.items():
             for name in self._receivers.get(topic, ()):
@@ -213,7 +216,7 @@ class Link:
         return [name for name in asked for _ in range(times[name])]
 
     def _ask(self, names: list[str], then: Callable[[], None]) -> None:
-        """Call the services for parameters one after the other, then call `then`."""
+        """Call the parameter services one after the other, then call `then`."""
         self._asking = None
         names = [name for name in names if name not in self._silent]
         if not names:
@@ -229,7 +232,7 @@ class Link:
             turn.then()
 
     def _skip_silent(self) -> None:
-        """Go on without a node that does not answer: its executor may only run within a step."""
+        """Continue without a node that does not answer; its executor may run only within a step."""
         turn = self._asking
         if turn is not None and monotonic() > turn.deadline:
             self._silent.add(turn.service)
@@ -258,7 +261,7 @@ class Link:
 
 
 def _parameters(end: Any) -> str:
-    """Return the name of the service of a node that returns its parameters."""
+    """Return the name of the service through which a node returns its parameters."""
     return f"{end.node_namespace.rstrip('/')}/{end.node_name}/get_parameters"
 
 

@@ -24,9 +24,9 @@ DEPTH = 1000
 LOST = "transport error"  # the start of rospy's error message for a broken connection
 PATIENCE = 5.0  # maximum time until a service reports its type (s)
 READING = 10.0  # maximum time until the simulator has read all commands (s)
-LOOK = 0.001  # time between two looks at what it has not read (s)
-# pause (s) between a command and a service call, enough on an idle machine; the call has its own connection and could
-# otherwise arrive first
+LOOK = 0.001  # time between two checks of the bytes that the simulator has not read (s)
+# pause (s) between a command and a service call on an idle machine; without it, the call could arrive first, because it
+# has its own connection
 PAUSE = 0.005
 
 Say = Callable[[dict[str, Any]], None]
@@ -96,7 +96,8 @@ class LinkROS1:
     def call(self, asked: dict[str, Any]) -> None:
         """Call a service now, or as soon as it exists.
 
-        First wait until the simulator has read the commands so far, and pause, so that it also handles them first.
+        First wait until the simulator has read all commands sent so far. Then pause, so that it also handles them
+        before the call.
         """
         if self._sent:
             deadline = monotonic() + READING
@@ -108,7 +109,7 @@ class LinkROS1:
         self._start_calls()
 
     def _connections(self) -> Iterator[tuple[int, int]]:
-        """Yield the own port and the simulator's port of each connection for commands."""
+        """Yield, for each connection for commands, this process's port and the simulator's port."""
         for publisher in self._publishers.values():
             for connection in list(publisher.impl.connections):
                 with suppress(OSError, AttributeError):  # closed in the meantime
@@ -150,7 +151,7 @@ class LinkROS1:
         if kind == "*" or topic in self._publishers:
             return
         with warnings.catch_warnings():
-            # rospy warns about the missing queue, but a queue would let a later service call overtake the message
+            # rospy warns if there is no queue, but with a queue, a later service call could overtake the message
             warnings.simplefilter("ignore", SyntaxWarning)
             self._publishers[topic] = rospy.Publisher(topic, _class(kind), tcp_nodelay=True, queue_size=None)
 

@@ -1,4 +1,4 @@
-"""Convert messages of ROS 1 and ROS 2 to and from plain data, which the test and the guardian exchange."""
+"""Convert messages of ROS 1 and ROS 2 to and from the plain data that the test and the guardian exchange."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ class Simulator:
         self._topics = dict.fromkeys((*setup.ready, *setup.every_step, *watched))
         self._heard: dict[
             str, int
-        ] = {}  # topic → time when its newest message was sent, in ns of this machine's clock
+        ] = {}  # topic → time at which the newest message was sent, in ns of this machine's clock
         self._latest: dict[str, Any] = {}
         self._graph: dict[str, set[str]] = {"published": set(), "subscribed": set(), "connected": set()}
         self._forwarded: set[str] = set()
@@ -46,10 +46,10 @@ class Simulator:
         self._tick = 0
         self._waiting: (
             list[Event] | None
-        ) = []  # messages to deliver later; if None, messages are delivered immediately
+        ) = []  # messages to deliver later, or None while messages are delivered immediately
         # whether the simulator can be used again, because its last step ended without an error
         self._usable = False
-        # whether arriving events come from the simulator of this episode, not from an earlier one
+        # whether arriving events come from the simulator of this episode and not from an earlier one
         self._current = False
 
     @property
@@ -60,7 +60,7 @@ class Simulator:
     def latest(self, topic: str) -> Any | None:
         """Return the simulator's newest message on a topic, or None before the first one.
 
-        A topic that no node, sensor or argument names is only received after the first call for it.
+        If no node, sensor or argument names the topic, its messages are received only after the first call.
         """
         if topic not in self._topics:
             self._want([topic])
@@ -84,7 +84,7 @@ class Simulator:
         if self.setup.step is not None:
             self._stepped(self.setup.step)
         else:
-            # the simulator has passed the target, because it keeps running while the test does something else
+            # the simulator is already past this time, because it keeps running while the test does something else
             if self._target <= self._time:
                 self._target = self._time + nanoseconds(dt)
             self._deliver(self._released())
@@ -147,7 +147,7 @@ class Simulator:
         return True
 
     def _forget(self) -> None:
-        """Drop the time of the simulator before its start or reset, so that it does not count as ready at once."""
+        """Forget the simulator's time before a start or reset, so that the simulator is not ready at once."""
         self._heard.clear()
         self._clock = None
         self._waiting = []
@@ -213,14 +213,14 @@ class Simulator:
     def _over(self, before: int, asked: int) -> bool:
         """Return whether a step has ended: the clock moved, and each topic of `every_step` had a message.
 
-        Messages that were sent before the step was requested may still arrive; they do not count.
+        Messages that were sent before the step was requested may still arrive; they are ignored.
         """
         return self._time > before and all(
             self._heard.get(topic, 0) >= asked for topic in self.setup.every_step
         )
 
     def _released(self) -> list[Event]:
-        """Return the waiting messages in an order that is independent of the network."""
+        """Return the waiting messages, sorted so that their order does not depend on the network."""
         waiting, self._waiting = self._waiting or [], None
         return sorted(waiting, key=lambda event: str(event["topic"]))
 
@@ -342,7 +342,7 @@ class Simulator:
         )
 
     def _lost(self, text: str, why: str) -> SimulatorLostError:
-        """Return an error whose reason in brief contains the last line of the simulator's output."""
+        """Return an error; its brief reason contains the last line of the simulator's output."""
         last = self._client.last_words().rpartition(" | ")[2]
         return SimulatorLostError(text, f"{why} (last output: {last})" if last else why)
 

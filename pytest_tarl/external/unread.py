@@ -1,4 +1,4 @@
-"""Bytes that were sent to another process of this machine and that it has not read yet, from Linux's TCP tables."""
+"""Count bytes that were sent to another process of this machine but that it has not read, by Linux's TCP tables."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ TABLES = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 
 
 def unread(connections: Iterable[tuple[int, int]]) -> int:
-    """Return how many bytes on connections (own port, other port) the other ends have not read; 0 without the tables.
+    """Return how many bytes the other ends of connections have not read; 0 if there are no tables.
 
-    Such bytes are in the own end's queue of sent bytes, or in the other end's queue of received bytes.
+    A connection is a pair: the own port and the other port.
+
+    Such bytes are in the send queue of the own end, or in the receive queue of the other end.
     """
     own = {*connections}
     others = {(there, here) for here, there in own}

@@ -22,7 +22,7 @@ Replay = Callable[[Path, int], EpisodeRun]
 
 @dataclass(frozen=True)
 class Bagged:
-    """A bag's mission: its ID, which only copies of the bag share, and its start in seconds since 1970."""
+    """A bag's mission: its ID, which is the same only in copies of the bag, and its start in seconds since 1970."""
 
     mission: int
     time: float
@@ -47,7 +47,7 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
     for one in bag.messages():
         digest.update(f"{one.time} {one.topic} {len(one.data)}\n".encode())
         digest.update(one.data)
-    # the bag is truncated: the mission ID must not be taken from it, since the complete bag has another one
+    # the bag is truncated; no mission ID can be computed from it, because the complete bag has another ID
     if bag.notes:
         raise LogError(
             f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore the index of the "

@@ -1,9 +1,9 @@
 """Robots with similar drifts: clusters of the residual maps of the robots named as drifted.
 
 A residual map holds the mean residual of a visit to each cell. The distance between two robots is the largest
-difference between their maps in any common cell, in standard errors of that difference, so noise alone does not
-separate robots. Robots are joined by complete linkage as long as no distance within a cluster is significant after a
-correction for the numbers of cells and pairs (Bonferroni).
+difference between their maps in a common cell. It is measured in standard errors of the difference, so noise alone does
+not separate robots. Robots are joined by complete linkage as long as no distance within a cluster is significant. The
+significance is corrected for the numbers of cells and pairs (Bonferroni).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.sensors import Cell
 
-# maximum number of robots to compare; if there are more, those with the most evidence are chosen
+# maximum number of robots to compare; if more robots were reported, those with the most evidence are compared
 MOST = 300
 
 
@@ -62,11 +62,11 @@ def clustered(
 def of(
     maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell], alpha: float, left_out: int = 0
 ) -> Clusters:
-    """Return the clusters of maps.
+    """Return the clusters of robots with these residual maps.
 
-    `recorded`, of shape (cells,), is the variance of the recording's own mean residual in each cell.
+    `recorded`, of shape (cells,), is the variance of the mean residual of the recording in each cell.
     """
-    # use sorted order, because the last bits of sums depend on the order
+    # sort the robots, because the last bits of sums depend on the order
     ordered = sorted(maps, key=lambda one: one.robot)
     clear = [one for one in ordered if _standing_out(one.mean, one.variance + recorded, alpha).size]
     unclear = tuple(sorted({one.robot for one in maps} - {one.robot for one in clear}))
@@ -95,7 +95,7 @@ def distances(maps: Sequence[ResidualMap]) -> Floats:
 
 
 def _linked(distance: Floats, cells: int, alpha: float) -> list[list[int]]:
-    """Return clusters of rows by complete linkage."""
+    """Return clusters by complete linkage; a cluster lists rows of `distance`."""
     groups = [[n] for n in range(len(distance))]
     pairs = max(1, len(groups) * (len(groups) - 1) // 2)
     apart = distance.copy()

@@ -1,7 +1,8 @@
 """Variance components: how much of the variance of missions lies between versions, sites, seasons and robots.
 
-The model of a mission's reward is y = Σ effects of its version, site and season + effect of its robot + residual. The
-effects of factors are fixed numbers, one for each level; those of robots are random, with variance σ_r².
+The model of a mission's reward y is a sum: the effects of its version, site and season, the effect of its robot, and a
+residual. The effects of versions, sites and seasons are fixed numbers, one for each level. The effects of robots are
+random, with variance σ_r².
 
 - σ_e² (residual) and σ_r² are estimated by fitting constants (Henderson 1953, "Estimation of variance and covariance
   components", Biometrics 9:226-252, method 3). The residual sums of squares with and without effects of robots are set
@@ -29,7 +30,7 @@ REPLICATES = 200
 FEWEST = 30  # minimum number of robots for which an interval is given
 RANDOM = 2  # number of random components: between robots, and residual (between missions)
 CONFOUNDED = (
-    # a contrast cannot be estimated if its part outside the row space of the design is larger than this share
+    # a contrast cannot be estimated if a larger share of it than this lies outside the row space of the design
     1e-6
 )
 SINGULAR = 1e-9  # eigenvalues below this share of the largest count as 0
@@ -52,7 +53,7 @@ class Totals:
 
 @dataclass(frozen=True)
 class Component:
-    """A variance with its two-sided interval; NaN if the missions do not determine it."""
+    """A variance and its two-sided interval; both are NaN if the missions do not determine the variance."""
 
     name: str
     variance: float
@@ -66,7 +67,7 @@ class Component:
 @dataclass(frozen=True)
 class _Fit:
     variances: Floats  # variance of each factor, of robots and of residuals
-    noise: Floats  # the part of each entry of `variances` that estimation errors cause
+    noise: Floats  # the part of each entry of `variances` that is due to estimation errors
     effects: Floats  # effects of all levels of all factors
 
 
@@ -97,11 +98,12 @@ def components(
 def _interval(found: _Fit, replicates: Floats, confidence: float) -> tuple[Floats, Floats]:
     """Return the ends of the intervals from replicates, shape (replicates, components).
 
-    The effects estimated from a replicate contain the errors of the sample as well as the replicate's own errors; the
-    intervals subtract both. A sample drawn with replacement has fewer distinct robots at a site, which lowers the
-    variance between them. The replicates of the random components are therefore scaled so that their mean is the
-    estimate, and their interval is a basic bootstrap interval of the logarithm. If some replicates are not positive,
-    the interval spans the percentiles of the original, the shifted and the scaled replicates.
+    A replicate is a sample of robots drawn with replacement. The effects estimated from it contain the errors of the
+    original sample and the errors of the replicate; the intervals subtract both. A replicate has fewer distinct robots
+    at a site, which lowers the variance between them. The replicates of the random components are therefore scaled so
+    that their mean is the estimate, and their interval is a basic bootstrap interval of the logarithm. If some
+    replicates are not positive, the interval instead spans the percentiles of the original, the shifted and the scaled
+    replicates.
     """
     value, mean = found.variances, np.mean(replicates, axis=0)
     random = np.arange(value.size) >= value.size - RANDOM
@@ -127,7 +129,7 @@ def _resampled(robots: int, rng: np.random.Generator) -> list[Floats]:
 
 
 class _Design:
-    """The sums of squares and products of a data set, for given weights of the robots."""
+    """The sums of squares and products of a data set; the robots can be weighted."""
 
     def __init__(self, totals: Totals) -> None:
         self.totals = totals

@@ -1,8 +1,8 @@
-"""Load the missions that a query asks for into an in-memory DuckDB, without duplicates, by robot, time and mission ID.
+"""Load the selected missions into an in-memory DuckDB, without duplicates, sorted by robot, time and mission ID.
 
 The database has one row for each mission; the rows of cells stay in their files (partitions.py). DuckDB only counts
-integers and sorts rows. Sums of floats are computed elsewhere, from rows in a fixed order. Results are therefore the
-same to the last bit, whatever the files, partitions or threads.
+integers and sorts rows. Sums of floats are computed elsewhere, from rows in a fixed order. To the last bit, results
+therefore do not depend on the files, partitions or threads.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ BY = {
     "month": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%Y-%m')",  # UTC
     "week": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%G-W%V')",  # ISO 8601, UTC
 }
-# An empty table that adds the columns that files of schema 1 lack.
+# An empty table whose columns include those that files of schema 1 lack.
 EMPTY = "SELECT '' AS repair, MAP {'': 0.0::DOUBLE} AS formulas WHERE false"
 KEY = r"regexp_extract(filename, 'test=[^/]*/version=[^/]*/date=[^/]*/[^/]*$', 0)"
 
@@ -51,7 +51,7 @@ class Filter:
 
 
 class Database:
-    """Missions numbered from 0 by robot, time and mission ID; `wanted` says which file holds which missions."""
+    """The selected missions, numbered from 0 by robot, time and mission ID; `wanted` lists them for each file."""
 
     def __init__(self, connection: Any, wanted: Sequence[Wanted]) -> None:
         self._connection = connection
@@ -130,7 +130,7 @@ def _spilled() -> Iterator[str]:
 
 
 def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: Filter) -> None:
-    """Load the missions; if one occurs several times, keep the copy that sorts first by version, robot and site."""
+    """Load the missions; if one occurs several times, keep the first copy in the order of version, robot and site."""
     grouped = ", ".join(f"{BY[one]} AS by_{one}" for one in by)
     order = ", ".join(f"by_{one}" for one in by) or "1"
     since = -1.0

@@ -1,4 +1,4 @@
-"""The files of a data set: which recording each belongs to, and which missions it holds."""
+"""The files of a data set: the recording to which each file belongs, and the missions in it."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def parts(where: Store) -> list[Part]:
 
 
 def known(where: Store, folder: str, date: str) -> Iterator[tuple[int, str]]:
-    """Yield ID and robot of each mission of a day in the test's partition."""
+    """Yield the ID and the robot of each mission of one day in the partition of a test."""
     for path in where.files(f"missions/test={folder}"):
         if f"/date={date}/" in path:
             table = columns(where, path, ["mission", "robot"])

@@ -13,7 +13,7 @@ from pytest_tarl.seeds import generator
 
 CONFIDENCE = 0.95
 PORTION = 200_000  # number of missions read at a time
-MONTHS = 3  # minimum number of months to use months as seasons; with fewer, weeks are used
+MONTHS = 3  # months are the seasons if missions span at least this number of months; otherwise, weeks are
 
 CODES = """
     CREATE OR REPLACE TEMP TABLE of_{name} AS
@@ -39,7 +39,7 @@ class Decomposition:
 
     @property
     def total(self) -> float:
-        """Return the sum of the components that are known and positive."""
+        """Return the sum of all components that are known and positive."""
         return sum(max(0.0, one.variance) for one in self.components if one.variance == one.variance)
 
 
@@ -63,7 +63,7 @@ def _count(database: Database, column: str) -> int:
 
 
 def _totals(database: Database, factors: dict[str, str], sizes: tuple[int, ...]) -> Totals:
-    """Return the sums; the mean is subtracted from the rewards, so that their squares lose no digits."""
+    """Return the sums; the mean reward is subtracted from each reward, so that squares lose no digits."""
     joins = " ".join(f"JOIN of_{name} ON of_{name}.name = {column}" for name, column in factors.items())
     codes = ", ".join(f"of_{name}.code AS {name}_code" for name in factors)
     query = MISSIONS.format(codes=codes, joins=joins)
@@ -80,7 +80,7 @@ def _totals(database: Database, factors: dict[str, str], sizes: tuple[int, ...])
 
 
 def summed(robot: Ints, levels: Ints, reward: Floats, sizes: tuple[int, ...]) -> Totals:
-    """Return the sums over missions of each robot and combination of levels; each argument has one row per mission."""
+    """Return the sums for each robot and combination of levels; the arrays have one row per mission."""
     key = np.ravel_multi_index((robot, *levels.T), (int(robot.max()) + 1, *sizes))
     _, first, row = np.unique(key, return_index=True, return_inverse=True)
     return Totals(

@@ -1,10 +1,10 @@
 """Run tasks with Dask, on threads of this process or on a cluster.
 
-Tasks are pure functions of their arguments, and results keep the order of the tasks. A result therefore depends neither
-on the number of workers nor on workers that die: the scheduler runs their tasks on other workers. Workers read the
-files that a task names. Without a cluster, only threads are started, and none for a single worker. Each task uses one
-thread for linear algebra: more threads would compete with other tasks and change the order of sums, and thus the last
-bits of a result.
+Tasks are pure functions of their arguments, and results keep the order of the tasks. A result therefore does not depend
+on the number of workers. If a worker dies, the scheduler runs its tasks on other workers. Workers read the files that a
+task names. Without a cluster, tasks run in threads, or directly if there is a single worker. Each task uses one thread
+for linear algebra: more threads would compete with other tasks and change the order of sums, and thus the last bits of
+a result.
 """
 
 from __future__ import annotations

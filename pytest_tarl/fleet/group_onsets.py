@@ -1,7 +1,7 @@
-"""Find the groups whose world differs from the recorded one, and the time since when it differs.
+"""Find the groups whose world differs from the recorded one, and the time at which the difference began.
 
-All missions of a group, of all its robots, pass through one monitor in the order of their times, as in `tarl watch`. A
-change that is too small or too short to be detected in one robot (such as a season at a site) can be detected in all
+The missions of all robots of a group pass through one monitor in the order of their times, as in `tarl watch`. Some
+changes, such as a season at a site, are too small or too short to be detected in one robot. They can be detected in all
 robots of the group together.
 """
 
@@ -25,7 +25,7 @@ IN_TIME = "SELECT number FROM missions ORDER BY group_number, time, mission"
 def judged(
     database: Database, first: Monitor, scores: Scores, engine: Engine, groups: Sequence[Group], q: float
 ) -> Robots:
-    """Return the evidence on each group, in order, and the groups that e-BH reports at the false discovery rate `q`."""
+    """Return the evidence on each group, and the groups that e-BH reports at the false discovery rate `q`."""
     order = np.asarray(database.columns(IN_TIME)["number"]).astype(np.int64)
     ends = np.cumsum([group.missions for group in groups])
     names = [" ".join(group.values) for group in groups]

@@ -49,7 +49,7 @@ class Group:
     reward: float  # mean total reward of the missions
     success: Bound
     mean: Bound
-    # number of totals outside the declared range; if there are any, the bound of the mean is approximate
+    # number of totals outside the declared range; if it is not 0, the bound of the mean is only approximate
     outside: int
     compared: int
     verdict: Verdict | None
@@ -69,9 +69,9 @@ def judged(
     tolerance: float | None,
     seed: int = 0,
 ) -> tuple[Group, ...]:
-    """Return all groups in order; verdicts are corrected for the number of groups (Holm).
+    """Return all groups in order, with verdicts that are corrected for the number of groups (Holm).
 
-    `cells` are the cells of the recording, then all others.
+    `cells` lists the cells of the recording, then all other cells.
     """
     columns = ", ".join((*(f"any_value(by_{one})" for one in by), "count(*)", "count(DISTINCT robot_number)"))
     rows = database.names(f"SELECT {columns} FROM missions GROUP BY group_number ORDER BY group_number")  # noqa: S608 - from BY
@@ -153,7 +153,7 @@ def _compared(
     tolerance: float | None,
     seed: int,
 ) -> tuple[int, Difference | None]:
-    """Return how many missions of a group were compared, and the difference if they are enough."""
+    """Return how many missions of a group were compared, and the difference, or None with too few missions."""
     if sample.episodes < FEWEST:
         return sample.episodes, None
     return sample.episodes, compare(

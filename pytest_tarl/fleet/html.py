@@ -26,7 +26,7 @@ from pytest_tarl.report.json_result import finite
 from pytest_tarl.report.regions import Vocabulary
 from pytest_tarl.sensors import Cell
 
-# maximum number of groups on the map; groups that differ come first, then those with the lowest reward
+# maximum number of groups on the map; groups that differ are chosen first, then those with the lowest reward
 MOST_GROUPS = 2000
 MOST_CELLS = 12  # maximum number of cells listed for the fleet, and for each robot
 NAMES = 30  # maximum number of links to the robots of a cluster
@@ -268,14 +268,14 @@ def _named(answer: Answer, one: Robot, vocabulary: Vocabulary) -> dict[str, Any]
 
 
 def _differing(answer: Answer, one: Robot) -> tuple[Cell, ...]:
-    """Return the cells in which a robot differs: those of its status, or else those of its cluster."""
+    """Return the cells in which a robot differs: those in its status or, if there are none, those of its cluster."""
     if one.status is not None and one.status.cells:
         return one.status.cells
     return next((group.cells for group in answer.clusters.found if one.name in group.robots), ())
 
 
 def _residuals(answer: Answer, found: ResidualMap | None, vocabulary: Vocabulary) -> list[dict[str, Any]]:
-    """Return the cells of a map with the largest residuals in standard errors."""
+    """Return the cells of a residual map with the largest residuals, measured in standard errors."""
     if found is None:
         return []
     rows = [
@@ -293,7 +293,7 @@ def _residuals(answer: Answer, found: ResidualMap | None, vocabulary: Vocabulary
 
 
 def _cells(answer: Answer, named: list[Robot], vocabulary: Vocabulary) -> list[dict[str, Any]]:
-    """Return the cells in which most named robots and groups differ."""
+    """Return the cells in which the largest numbers of named robots and groups differ."""
     changed = _changed(answer)
     robots = Counter(cell for one in named for cell in _differing(answer, one))
     groups = Counter(

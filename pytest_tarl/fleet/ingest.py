@@ -44,7 +44,7 @@ class Order:
 
 @dataclass(frozen=True)
 class Ingested:
-    """What a log added: new missions, missions that the data set already had, or why the log was not read."""
+    """The result for one log: how many of its missions are new and how many are known, or why it was not read."""
 
     log: Path
     robot: str
@@ -124,13 +124,13 @@ def named(order: Order, log: Path) -> str:
 
 
 def keep_origin(to: Store, given: str, repair: str) -> None:
-    """Store the test and the drift for which a patch of TARL was accepted; the change itself is not stored."""
+    """Store the test and the drift for which a patch of TARL was accepted; the patch itself is not stored."""
     if not given.endswith(PATCH):
         return
     try:
         facts = dict(read(Path(given)).facts)
     except RepairError:
-        return  # another program wrote the patch, so nothing but its name is known
+        return  # another program wrote the patch, so only its name is known
     known = {key: facts[key] for key in REPAIRS_KEEP if key in facts}
     to.write(repair_path(repair), json.dumps(known, ensure_ascii=False, sort_keys=True).encode())
 

@@ -24,7 +24,7 @@ BYTES = 8
 
 
 def logged_samples(log: Path, fixture: Fixture) -> Iterator[tuple[float, Sample]]:
-    """Yield start and statistics of each finished mission with rewards, from a log and its rotated files.
+    """Yield the start and the statistics of each finished mission with rewards in a log and its rotated files.
 
     The start is in seconds since 1970. A mission that violates a formula of the recording counts as failed. Raise
     LogError if the log does not belong to the recording or has no rewards.
@@ -42,7 +42,7 @@ def logged_samples(log: Path, fixture: Fixture) -> Iterator[tuple[float, Sample]
 
 
 def requirements_of(fixture: Fixture) -> Requirements:
-    """Return the formulas of a recording, or none if their parser does not support this Python."""
+    """Return the formulas of a recording, or no formulas if their parser does not support this Python."""
     if fixture.sample.judgements is None:
         return NOTHING_REQUIRED
     sensors = (sensor.name for sensor in fixture.sensors if not sensor.categories)
@@ -55,7 +55,7 @@ def requirements_of(fixture: Fixture) -> Requirements:
 
 
 def plan_of(fixture: Fixture) -> Plan:
-    """Return the sites of a recording as a plan that lacks their positions in the source."""
+    """Return the sites of a recording as a plan, without the positions of the sites in the source."""
     places = {place.id: place for one in fixture.lists for place in one.sites}
     number = {site: n for n, site in enumerate(places)}
     members = tuple(tuple(number[place.id] for place in one.sites) for one in fixture.lists)

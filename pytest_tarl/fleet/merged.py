@@ -23,7 +23,7 @@ from pytest_tarl.observing.frames import MAGIC
 
 @dataclass(frozen=True)
 class Part:
-    """A merged file: its number of episodes or missions, and how many of them earlier files had already contained."""
+    """A merged file: its number of episodes or missions, and how many of them were already in earlier files."""
 
     path: Path
     episodes: int
@@ -88,7 +88,7 @@ def _check(first: Path, design: Fixture, path: Path, other: Fixture) -> None:
 
 
 def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) -> Fixture:
-    """Return the recording of the episodes; hashes of modules that differ between recordings are left out."""
+    """Return the recording of all episodes; hashes of modules are left out if they differ between recordings."""
     worlds = [one.world for one in recordings] or [design.world]
     world = {path: found for path, found in worlds[0].items() if all(w.get(path) == found for w in worlds)}
     return replace(
@@ -110,7 +110,7 @@ def utilities(whole: Sample) -> tuple[Floats, ...]:
 
 
 def _stated(before: Guarantee | None, whole: Sample) -> Guarantee | None:
-    """Return the bounds for all episodes together, at the confidence of the recording.
+    """Return bounds for future episodes, computed from all episodes together, at the confidence of the recording.
 
     Raise FixtureError if a total lies outside the declared range.
     """

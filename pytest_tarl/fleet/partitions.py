@@ -1,7 +1,7 @@
 """The tasks that workers run close to the data: score missions, or read the transitions of some missions.
 
-A worker reads the files itself. The worker returns one byte for each score of a mission (the bin of the
-score), or the transitions of the missions that are compared with the recording.
+A worker reads the files itself. It returns one byte for each score of a mission (the bin of the score), or the
+transitions of those missions that are compared with the recording.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Wanted:
     numbers: Ints
 
     def only(self, chosen: NDArray[np.bool_]) -> Wanted:
-        """Return those of these missions for which `chosen`, of shape (missions,), is true."""
+        """Return the missions for which `chosen`, of shape (missions,), is true."""
         return replace(self, identities=self.identities[chosen], numbers=self.numbers[chosen])
 
 
@@ -54,7 +54,10 @@ class Transitions:
     reward: Floats
 
     def chain(self, numbers: Ints) -> Chain:
-        """Return the transitions as a chain; a mission's index is its place in `numbers`: (missions,), ascending."""
+        """Return the transitions as a chain; the index of a mission is its place in `numbers`.
+
+        `numbers` has shape (missions,) and is ascending.
+        """
         episode: Ints = np.asarray(np.searchsorted(numbers, self.number), np.int64)
         return Chain(
             episode, self.cell, self.next_cell, self.count, self.reward, np.zeros((self.cell.size, 0))
@@ -75,7 +78,7 @@ class Transitions:
 
 @dataclass(frozen=True)
 class Scored:
-    """Bins of missions, shape (missions, scores), and their visits to cells that the recording lacks."""
+    """The bins of missions' scores, shape (missions, scores), and the visits to cells that the recording lacks."""
 
     numbers: Ints
     bins: NDArray[np.int8]
@@ -179,7 +182,7 @@ def sorted_rows(some: Sequence[Transitions]) -> Transitions:
 
 
 def watched_chain(chain: Chain, recorded: int) -> Chain:
-    """Return a chain over the recorded cells and one cell for all others, with values rounded as in a recording."""
+    """Return the chain with all unrecorded cells replaced by one cell, and with values rounded as in a recording."""
     return represented_chain(_without_others(chain, recorded))
 
 
@@ -206,7 +209,7 @@ def _without_others(chain: Chain, recorded: int) -> Chain:
 
 
 def _codes(column: Any, number: Mapping[str, int]) -> Ints:
-    """Return the codes of a column of cell names: END for null, -2 for a cell that `number` lacks."""
+    """Return the codes of a column of cell names: END for null, and -2 for a cell that is not in `number`."""
     parts = [np.empty(0, np.int64)]
     for chunk in _encoded(column).chunks:
         code = np.array([*(number.get(name, -2) for name in chunk.dictionary.to_pylist()), END], np.int64)

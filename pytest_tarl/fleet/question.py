@@ -109,7 +109,7 @@ def answer(question: Question) -> Answer:
 
 
 def _accepted(where: Store, effects: Sequence[repairs.Effect]) -> dict[str, str]:
-    """Return the drift for which each repair was accepted, if its patch stated one at ingest."""
+    """Return the drift for which each repair was accepted, if the patch named it when the missions were ingested."""
     found = {}
     for repair in sorted({one.repair for one in effects}):
         path = repair_path(repair)
@@ -176,7 +176,7 @@ def _lowest(database: Database) -> tuple[Mission, ...]:
 
 
 def _recording(question: Question, where: Store, parts: Sequence[Part]) -> tuple[Fixture, Origin]:
-    """Return the named recording, or the one in the data set."""
+    """Return the recording that the question names or, if it names none, the one in the data set."""
     if question.fixture is not None:
         fixture = load(question.fixture)
         return fixture, origin(fixture, question.fixture.read_bytes())

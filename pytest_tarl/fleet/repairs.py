@@ -1,10 +1,10 @@
 """The effect of each repair on the missions of each group, compared with missions without a repair.
 
-A staged roll-out has missions of both kinds at the same time. Missions are compared only within a stratum (one group,
-site and week), so differences between seasons or sites do not count as an effect (stratification; Cochran 1968,
-Biometrics 24:295-313). The effect is the weighted mean of the strata's differences; the weights n₁n₀/(n₁ + n₀) minimise
-its variance. Missions of one robot are alike, so the interval is computed by Tukey's jackknife over robots (Miller
-1974, Biometrika 61:1-15) with Student's t.
+A staged roll-out has missions with and without the repair at the same time. Missions are compared only within a stratum
+(one group, site and week), so differences between seasons or sites do not count as an effect (stratification; Cochran
+1968, Biometrics 24:295-313). The effect is the weighted mean of the strata's differences; the weights n₁n₀/(n₁ + n₀)
+minimise its variance. Missions of one robot are alike, so the interval is computed by Tukey's jackknife over robots
+(Miller 1974, Biometrika 61:1-15) with Student's t.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pytest_tarl.learning.tables import Floats, Ints, sum_by
 from pytest_tarl.model import Bound
 
 FEWEST = 4  # minimum number of robots with the repair, and of robots without it, for an interval
-ALPHA = 0.05  # probability that any interval of any repair is wrong
+ALPHA = 0.05  # probability that at least one interval of one repair is wrong
 OUTCOMES = ("total", "passed")
 
 
@@ -29,8 +29,8 @@ OUTCOMES = ("total", "passed")
 class Effect:
     """The effect of a repair in a group; `reward` and `success` are differences per mission.
 
-    Both are NaN if no stratum has missions with and without the repair. `missions` and `robots` are counted
-    only in strata that have both kinds.
+    Both are NaN if no stratum has both missions with the repair and missions without it. `missions` and `robots` are
+    counted only in strata that have both kinds of missions.
     """
 
     repair: str
@@ -67,7 +67,7 @@ class Strata:
 
 
 def effects(database: Database, by: Sequence[str]) -> tuple[Effect, ...]:
-    """Return the effect of each repair in each group; groups are formed by the columns `by` except the repair's own."""
+    """Return the effect of each repair in each group; the columns `by`, except that of the repair, form the groups."""
     columns = tuple(one for one in by if one != "repair")
     repairs = [
         one for (one,) in database.names("SELECT DISTINCT repair FROM missions WHERE repair <> '' ORDER BY 1")
@@ -163,7 +163,7 @@ def _estimated(rows: Strata, sums: Floats, fewest: int, confidence: float) -> tu
 
 
 def _difference(count: Floats, total: Floats) -> tuple[Floats, Floats]:
-    """Return the weight of each row and its weighted difference; both are 0 if one side has no missions."""
+    """Return the weight and the weighted difference of each row; both are 0 in a row with one kind of missions."""
     both = count.min(axis=1) > 0.5
     safe = np.where(both[:, None], count, 1.0)
     weight = np.where(both, safe[:, 0] * safe[:, 1] / safe.sum(axis=1), 0.0)

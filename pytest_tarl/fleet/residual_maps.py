@@ -1,7 +1,8 @@
 """The residual map of a robot: for each cell, how much more or less a visit earns than in the recording.
 
 Each value has a variance. The residual of a visit is the Bellman residual of the recorded utility
-(learning/residuals.py), so it shows the cells in which the world changed, not the cells before them.
+(learning/residuals.py), so it shows the cells in which the world changed, and not the cells that a robot visits before
+them.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ class ResidualMap:
 
 @dataclass(frozen=True)
 class Designed:
-    """The recorded world: its model, and the variances of the mean residual of a cell and the residual of a visit."""
+    """The recorded world: its model, the variance of each cell's mean residual, and that of a visit's residual."""
 
     model: Model
     variance: Floats
@@ -60,8 +61,8 @@ def residual_maps(
 ) -> list[ResidualMap]:
     """Return the residual map of each robot, over its missions since the onset of its difference.
 
-    The residuals of a robot with few missions may vary too little by chance. The variance of its map is therefore at
-    least the variance that the same number of recorded visits would have.
+    The few residuals of a robot with few missions may be similar by chance, which makes their variance too small. The
+    variance of a map is therefore at least the variance that the same number of recorded visits would have.
     """
     query = "SELECT min(number) AS first, max(number) + 1 AS ends FROM missions WHERE robot = ?"
     spans = []
@@ -81,7 +82,7 @@ def _map(name: str, sample: Sample, world: Designed) -> ResidualMap:
 
 
 def since(robot: Robot) -> int:
-    """Return the number of missions before the onset, from the process with more evidence; 0 if it is unknown."""
+    """Return the number of missions before the onset, according to the process with more evidence; 0 if unknown."""
     if robot.status is None:
         return 0
     below = lower(robot.status)

@@ -1,13 +1,13 @@
-"""Find the robots whose world differs from the recorded one, and since when.
+"""Find the robots whose world differs from the recorded one, and the time at which the difference began.
 
 Each robot has its own monitor, as in `tarl watch`. An e-value measures evidence against a hypothesis: its expectation
-is at most 1 if the hypothesis is true. For each process of a monitor there are two e-values. The last value of the
-process is an e-value if the number of missions does not depend on their results; it is large if the robot still
-differs. The adjusted running maximum (monitoring/e_bh.py) is an e-value at any time; it is large if the robot differed
-at some time. The mean of the two, averaged over the processes with weights proportional to their shares of α, is an
-e-value, too. e-BH over the robots keeps the expected share of false reports at or below q, even if robots are
-dependent; therefore all monitors may use the same recording. For the tests of bounds, the share may be larger by the
-probability that a recorded bound is wrong.
+is at most 1 if the hypothesis is true. For each process of a monitor there are two e-values. The first is the last
+value of the process. It is an e-value if the number of missions does not depend on their results, and it is large if
+the robot still differs. The second is the adjusted running maximum (monitoring/e_bh.py). It is an e-value at any time,
+and it is large if the robot differed at some time. The mean of the two is averaged over the processes, with weights
+proportional to their shares of α; the result is an e-value, too. e-BH over the robots keeps the expected share of false
+reports at or below q, even if robots are dependent; therefore all monitors may use the same recording. In the tests of
+bounds, the expected share may be larger than q by the probability that a recorded bound is wrong.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ PORTION = 50_000  # number of missions judged in one task
 
 @dataclass(frozen=True)
 class Robot:
-    """The evidence on one robot, as log2 of e-values: `world` that missions differ, `bound` that they violate a bound.
+    """The evidence on one robot, as log2 of e-values: `world` for a difference, `bound` for the violation of a bound.
 
     `status` is None if neither e-value reaches 1/q, the minimum for e-BH to reject a hypothesis.
     """
@@ -143,8 +143,7 @@ def fresh(first: Monitor) -> Monitor:
 def evidence(monitor: Monitor, peak: Floats, latest: Floats) -> tuple[float, float]:
     """Return the evidence that missions differ, and that they violate a bound, as log2 of e-values.
 
-    `peak` and `latest`, of shape (processes,), are log2 of the largest and the last evidence of each process of a
-    monitor.
+    `peak` and `latest`, of shape (processes,), are log2 of the largest and of the last evidence of each process.
     """
     stated = len(monitor.bounds)
     each = np.logaddexp2(e_bh.adjusted(peak), latest) - 1.0

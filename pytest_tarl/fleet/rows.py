@@ -115,7 +115,7 @@ def _cells(rows: Sequence[Row]) -> dict[str, Any]:
 
 
 def _statements(rows: Sequence[Row], lists: Sequence[TaintList]) -> dict[str, Any]:
-    """Return the visits to statements; the first cell of a mission counts as the start, not as a visit."""
+    """Return the visits to statements; the start of a mission is not a visit."""
     names = _Names()
     size: list[int] = []
     owner, place, cells = [], [], []

@@ -71,7 +71,10 @@ def _grouped(rows: Columns, every: Transitions, cells: tuple[Cell, ...]) -> Samp
 def following(
     database: Database, where: Store, engine: Engine, cells: Sequence[Cell], spans: Sequence[tuple[int, int]]
 ) -> Iterator[Sample]:
-    """Yield the missions of each span of numbers. These samples have the recording's `cells` and one more cell."""
+    """Yield the missions of each span of numbers.
+
+    These samples have the recording's `cells`, and one more cell that stands for all others.
+    """
     numbers = [np.arange(low, high) for low, high in spans]
     every: Ints = np.unique(np.concatenate([np.empty(0, np.int64), *numbers]))
     found = transitions(database, where, cells, engine, every)

@@ -1,7 +1,7 @@
-"""Monitor many robots at once; each gets exactly the state that its own monitor would have.
+"""Monitor many robots at once; the state of each robot is exactly that of a monitor of its own.
 
-All robots start with the same pool, and the random numbers that break ties depend only on the index of the mission. The
-n-th missions of many robots are therefore judged in one step.
+All robots start with the same pool, and the random numbers that break ties depend only on the index of a mission.
+Therefore, the n-th missions of many robots can be judged in one step.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Watched:
 def watched(
     first: Monitor, scores: Scores, ends: Ints, some: Ints | None = None, onsets: bool = True
 ) -> Iterator[Watched]:
-    """Judge the missions of robots, and yield robots with similar numbers of missions together.
+    """Judge the missions of robots; yield the results of robots with similar numbers of missions together.
 
     The missions of robot n end before `ends[n]`; `ends` has shape (robots,). `first` is a monitor that has not seen any
     mission. `some`, of shape (chosen,), are the indices of the robots to judge (default: all). Without `onsets`, the

@@ -37,7 +37,7 @@ class Store:
         return sorted(one[start:] for one in found if one.endswith(".parquet"))
 
     def write(self, path: str, content: bytes) -> None:
-        """Write a file atomically: readers see all of it or nothing. Raise FleetError if the file cannot be written."""
+        """Write a file atomically, so readers never see a part of it. Raise FleetError if that fails."""
         try:
             if self.protocol == "file":
                 write_atomically(Path(self.root) / path, content)

@@ -181,7 +181,7 @@ def _counted(count: int, what: str) -> str:
 
 
 def notes(answer: Answer) -> Iterator[str]:
-    """Yield the conditions under which the numbers hold."""
+    """Yield the conditions under which the numbers of the report hold."""
     confidence = answer.groups[0].success.confidence
     yield (
         f"note: ranges are one-sided bounds, each at {100 * confidence:g} %; p is corrected for "

@@ -23,7 +23,7 @@ LONGEST = 1e9  # upper limit of an episode's length (s)
 class Requirements:
     """The formulas of a test.
 
-    `cap` limits robustness if that is the reward; otherwise `cap` is None. `lasts` is the maximum length of an episode
+    If robustness is the reward, `cap` limits it; otherwise, `cap` is None. `lasts` is the maximum length of an episode
     in virtual seconds.
     """
 
@@ -32,7 +32,7 @@ class Requirements:
     names: tuple[str, ...] = ()  # names of the numeric sensors and the signals, which formulas may use
     rewarding: bool = False
     cap: float = CAP
-    # whether an episode must record signals from its beginning, because formulas refer to them
+    # whether an episode must record signals from its beginning, because there may be formulas over them
     followed: bool = False
     said: Said = NOTHING_SAID
 
@@ -86,7 +86,7 @@ def _signals(where: str, given: Any, sensors: Sequence[Sensor]) -> tuple[Signal,
 
 
 def _observed(given: Any, said: Said, declared: Sequence[Sensor | Signal]) -> tuple[Signal, ...]:
-    """Return the undeclared signals that a formula names and the test observes."""
+    """Return the signals that a formula names and the test observes, but that are not declared."""
     known = {one.name for one in declared}
     texts = " ".join(
         one for one in (*(given if isinstance(given, Sequence) else ()), *said.texts) if isinstance(one, str)

@@ -44,14 +44,14 @@ class EpisodeFormulas:
         self._judge.require(formula)
 
     def stepped(self) -> bool:
-        """Close a step; return whether formulas give its reward, which is then known only at the end of the episode."""
+        """Close a step; return whether formulas give its reward. If so, it is known only at the end of the episode."""
         if self._judge is None:
             return False
         self._judge.steps.append(self._now())
         return self._requirements.rewarding
 
     def conclude(self, *, whole: bool, alone: bool) -> None:
-        """Judge the formulas after the test body has ended; only a complete (`whole`) episode can violate them.
+        """Judge the formulas after the test body; only an episode that ran to its end (`whole`) can violate them.
 
         `alone` means a plain run of one episode, which must be long enough for every formula. Raise RequirementError if
         a formula is violated.

@@ -71,7 +71,7 @@ def words(text: str) -> tuple[list[str], list[str]]:
 
 
 def tree(text: str, names: Sequence[str]) -> Any:
-    """Parse a formula over the given names into a tree of the connectives in `semantics`. Raise ReadingError."""
+    """Parse a formula over the given names into a tree of rtamt's nodes. Raise ReadingError."""
     ast = StlAst()
     for name in names:
         ast.declare_var(name, "float")
@@ -97,7 +97,7 @@ def nodes(node: Any) -> Iterator[Any]:
 
 
 def atoms(node: Any) -> Iterator[Any]:
-    """Yield the atoms of a formula: its comparisons, and all other nodes that are not connectives."""
+    """Yield the atoms of a formula: the nodes that are not connectives, such as comparisons."""
     if not isinstance(node, CONNECTIVES):
         yield node
         return

@@ -19,10 +19,10 @@ NEGLIGIBLE = 1e-12  # smaller margins are shown as 0
 
 
 class Judged(NamedTuple):
-    """The result of one formula in an episode: its robustness, and the time (s) from which it could no longer hold.
+    """The result of one formula in an episode: its robustness, and the time (s) after which it could not hold.
 
-    The robustness is above 0 if the formula holds, and NaN if the episode ended before the formula could be judged.
-    `lost` is NaN if the formula was not violated.
+    The robustness is above 0 if the formula holds, and NaN if the episode ended too early to judge the formula. `lost`
+    is NaN unless the formula was violated.
     """
 
     formula: str
@@ -77,8 +77,8 @@ class Judge:
     def rewards(self, end: int, cap: float) -> list[float]:
         """Return the reward of each step, shape (steps,): the change of the lowest robustness so far.
 
-        The robustness is clipped to ±cap. The rewards sum to its value at the end of the episode. An episode that ends
-        before its signals are known earns -cap in total.
+        Robustness is clipped to ±cap. The sum of all rewards is the lowest robustness at the end of the episode. An
+        episode that ends before its signals are known earns -cap in total.
         """
         ends = [*self.steps[:-1], end] if self.steps else []
         if not ends:

@@ -14,8 +14,8 @@ Span = tuple[float, float]  # first and last instant in ns, both included
 def unjudged(tree: Any, end: float = math.inf) -> str:
     """Return why a formula can never be judged in an episode that ends at `end` (ns), or an empty string.
 
-    A formula is evaluated at the beginning of the episode, and its operands are evaluated at the instants that its
-    operators reach from there. The reason has no full stop.
+    A formula is evaluated at the beginning of the episode. Its operands are evaluated at the instants that the windows
+    of its operators reach from there. The reason has no full stop.
     """
     if not _temporal(tree):
         return "it is evaluated at the beginning of the episode only: put always or eventually before it"

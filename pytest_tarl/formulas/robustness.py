@@ -33,7 +33,8 @@ from pytest_tarl.formulas.semantics import (
 from pytest_tarl.formulas.signals import Samples, cut
 
 Values = Mapping[int, Samples]  # samples of a formula's atoms, by id(node)
-FARTHEST = 1e308  # magnitude that stands for the unknown future values of an atom; larger than any real value
+# magnitude that stands for the unknown future values of an atom; it is larger than any real value
+FARTHEST = 1e308
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Course:
     values: Values
 
     def until(self, end: int) -> Course:
-        """Return the course up to an instant."""
+        """Return the part of the course up to an instant."""
         return replace(self, values={key: cut(samples, end) for key, samples in self.values.items()})
 
 
@@ -74,8 +75,8 @@ def running(course: Course, ends: Sequence[int]) -> list[float]:
 def lost_at(course: Course, instants: Sequence[int]) -> int | None:
     """Return the first instant after which no future can satisfy the formula, or None if it can still be satisfied.
 
-    The instant is never too early. The instant can be too late if atoms depend on each other, because the
-    future of each atom is bounded separately.
+    The result is never too early. It can be too late if atoms depend on each other, because the future of each atom is
+    bounded separately.
     """
     low, high = 0, len(instants)
     while low < high:
@@ -143,7 +144,7 @@ def _extremes(
     window: tuple[float, float],
     extreme: Callable[[float, float], float],
 ) -> list[float]:
-    """Return, for each instant, the largest (or smallest) value so far in a window that starts at the beginning."""
+    """Return, for each instant in `ends`, the largest (or smallest) value up to it in a window from the beginning."""
     found: list[float] = []
     place, begun, seen = 0, False, samples[0][1]
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 class Said:
     """The literal names in calls of `tarl.observe`, and the literal strings in calls of `tarl.require`.
 
-    `computed` says whether the test computes some observed name, `requires` whether it calls tarl.require.
+    `computed` says whether the name in any call of `tarl.observe` is computed; `requires` says whether the test calls
+    `tarl.require`.
     """
 
     observed: tuple[str, ...] = ()

@@ -1,13 +1,13 @@
 """Evaluate formulas in dense time with rtamt, corrected where rtamt differs from its documentation.
 
-Time is counted in whole nanoseconds. Signals are constant between their changes, and so is every subformula. If a
-window extends past the known part of an episode, a subformula keeps its last value there. Before the episode, it has
-its first value. Robustness is therefore finite whenever the signals are finite.
+Time is counted in whole nanoseconds. Signals are constant between their changes, and so is every subformula. After the
+known part of an episode, a subformula keeps its last value. Before the episode, it has its first value. Robustness is
+therefore finite whenever the signals are finite.
 
-rtamt 0.4 is corrected in dense time as follows. As in discrete time, `until` and `since` do not require the left side
-to hold at the instant at which the right side holds. A comparison of equal values is slightly positive if it holds and
-slightly negative otherwise (`TRUTH`). An empty window does not give infinity. Units of bounds are converted in the
-right direction.
+rtamt 0.4 is corrected in dense time as follows. The left side of `until` and `since` need not hold at the instant at
+which the right side holds; this is rtamt's own rule in discrete time. A comparison of equal values is slightly positive
+if it holds and slightly negative otherwise (`TRUTH`). An empty window does not give infinity. Units of bounds are
+converted correctly.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ __all__ = [
     "Eventually", "Implies", "Neg", "Skeleton", "TimedAlways", "TimedEventually", "bounds", "operands",
 ]  # fmt: skip
 
-TRUTH = 1e-300  # magnitude of the robustness of a comparison of equal values, so that it is never 0
+TRUTH = 1e-300  # absolute robustness of a comparison of equal values, so that robustness is never 0
 UNITS = {"": 10**9, "s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 BOOLEAN = (Neg, Conjunction, Disjunction, Implies)
@@ -121,7 +121,8 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
     def visitTimedUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
         """Return `until` with a window.
 
-        The left side holds up to the start of the window, and `until` holds within the window.
+        This means that the left side holds up to the start of the window, and that `until` holds from there on, within
+        the window.
         """
         (left, right), (begin, end) = self._both(node), bounds(node)
         within = dense.and_operation(
@@ -186,5 +187,5 @@ def _once(sample: Samples, begin: int, end: int) -> Samples:
 
 
 def _begun(samples: Samples, operand: Samples) -> Samples:
-    """Use the operand's first value in windows that lie wholly before the beginning, where rtamt uses infinity."""
+    """Use the operand's first value, instead of rtamt's infinity, in windows that lie wholly before the beginning."""
     return [[time, operand[0][1] if i == 0 else value] for i, (time, value) in enumerate(samples)]

@@ -88,7 +88,7 @@ class Timeline:
         return next((name for name in names if not self._times[name]), None)
 
     def samples(self, names: Iterable[str]) -> dict[str, Samples]:
-        """Return the signals as rtamt expects them; a signal's first value also holds before it was set."""
+        """Return the signals as rtamt expects them; before a signal was first set, it has its first value."""
         return {
             name: [[time if i else 0, value] for i, (time, value) in enumerate(self._columns(name))]
             for name in names

@@ -54,7 +54,7 @@ class CodeCache:
 
 
 def entry_name(path: Path, depends_on: Iterable[object]) -> str:
-    """Return the entry name of a file's code: a digest of `depends_on`, whose items need an unambiguous `repr`."""
+    """Return the entry name of a file's code: a digest of `depends_on`. Its items must have an unambiguous `repr`."""
     digest = hashlib.sha256(repr(tuple(depends_on)).encode()).hexdigest()
     return f"{path.stem}-{_place(path)}-{digest[:32]}.pyc"
 

@@ -1,7 +1,7 @@
 """Build the ast nodes that record values, and set their source positions.
 
-A new node gets the position of the original code that runs at the same moment. Line events, tracebacks and their carets
-are therefore the same as in the original program.
+A new node gets the position of the original code that runs at the same moment. Therefore, line events, tracebacks and
+the carets in them are the same as in the original program.
 """
 
 from __future__ import annotations
@@ -71,8 +71,9 @@ def collapsed(at: Where) -> Where:
 def end_of(node: ast.expr, then: Where) -> Where:
     """Return a position for new code that runs after an expression and before the code at `then`.
 
-    An expression whose branches are on several lines has no single last line; in that case, return `then`. (Code
-    without a line number is no alternative, because CPython 3.13.0 copies such blocks and then runs both copies.)
+    If the branches of an expression are on several lines, the expression has no single last line; then the result is
+    `then`. (Code without a line number is no alternative, because CPython 3.13.0 copies such blocks and then runs both
+    copies.)
     """
     several = node.end_lineno != node.lineno
     return collapsed(then) if several and isinstance(node, _BRANCHING) else where(node)
@@ -115,7 +116,7 @@ def note(name: str, number: int, at: Where, *, inline: bool) -> ast.stmt:
 
 
 def note_constant(value: float, number: int, at: Where, *, inline: bool) -> list[ast.stmt]:
-    """Build the statements that record a value known beforehand: a boolean, or 0."""
+    """Build the statements that record a value known in advance: a boolean, or 0."""
     constant = ast.Constant(value, **at)
     if inline:
         return _appended(constant, number, at)
@@ -132,7 +133,7 @@ def note_all(events: Iterable[tuple[str, int]], at: Where) -> ast.stmt:
 
 
 def all_floats(inputs: Iterable[str], at: Where) -> ast.expr:
-    """Build the condition that the class of every name's value is exactly `float`."""
+    """Build the condition that every name holds a value whose class is exactly `float`."""
     tests: list[ast.expr] = [_is_float(name, at) for name in inputs]
     return tests[0] if len(tests) == 1 else ast.BoolOp(ast.And(), tests, **at)
 

@@ -1,9 +1,9 @@
 """Record sequences ("runs") of plain arithmetic on local floats with a single call.
 
-If all names that a run reads hold floats when it begins, its statements cannot fail, call no code of the program and
-produce only floats. One call at the end of the run can then record all its events, with the same result at lower cost.
-Types are known only at run time. Therefore the program contains each run twice; the copy for other types records after
-each statement.
+Suppose that all names that a run reads hold floats when it begins. Then its statements cannot fail, call no code of the
+program, and produce only floats. One call at the end of the run can then record all its events, with the same result at
+lower cost. Types are known only at run time. Therefore, the instrumented program contains each run twice: one copy for
+floats, and one for other types, which records after each statement.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ class _Gathering:
 
 
 def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
-    """Return the names that a statement reads, or None if it may assign a non-float even though they hold floats."""
+    """Return the names that a statement reads, or None if it may assign a non-float when all of them hold floats."""
     if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
         return _float(statement.value) if isinstance(statement.targets[0], ast.Name) else None
     if isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
@@ -114,7 +114,7 @@ def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
 
 
 def _float(node: ast.expr) -> frozenset[str] | None:
-    """Return the names in an expression, or None if it may yield a non-float even though they hold floats."""
+    """Return the names in an expression, or None if it may yield a non-float when all of them hold floats."""
     if isinstance(node, ast.Name):
         return frozenset((node.id,))
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
@@ -170,7 +170,7 @@ def _stored(targets: Iterable[ast.expr]) -> set[str]:
 
 
 def _unsure(function: Function) -> Iterable[str]:
-    """Yield the names that can be unbound, or that other scopes can assign."""
+    """Yield the names that may be unbound, or that other scopes may assign."""
     for node in ast.walk(function):
         if isinstance(node, (ast.Global, ast.Nonlocal)):
             yield from node.names

@@ -44,12 +44,12 @@ class AlreadyImportedWarning(UserWarning):
 
 
 class NodeImports:
-    """Compile and execute a node and its imports, for one episode.
+    """Compile and execute a node and the modules that it imports, for one episode.
 
-    `plan` holds the sites of each file; `overlay` maps files to replacement texts, in which sites keep their lines
-    where possible. As a context manager, the class handles imports of the files in both mappings; on exit, it
-    removes the project modules that a node imported. `bind` (see `Recorder.bind`) gives code its hook and its
-    buffer; without `bind`, code only gets `hook`.
+    `plan` holds the sites of each file. `overlay` maps files to replacement texts, in which sites keep their lines
+    where possible. Inside its `with` block, an object of this class handles the imports of all files in both mappings.
+    At the end of the block, it removes the project modules that a node imported. `bind` (see `Recorder.bind`) gives
+    code its hook and its buffer; without `bind`, code only gets `hook`.
     """
 
     def __init__(
@@ -74,7 +74,8 @@ class NodeImports:
         self._namespaces: list[dict[str, Any]] = []
         self._open = contextlib.ExitStack()
         self._before: set[str] = set()  # names of the modules that were imported before the episode
-        self.older: tuple[Path, ...] = ()  # edited files whose unedited text was executed; set on exit
+        # edited files of which the text before the edit was executed; set on exit
+        self.older: tuple[Path, ...] = ()
 
     def __enter__(self) -> NodeImports:
         """Start to handle imports."""
@@ -153,7 +154,7 @@ class NodeImports:
             and (path.parent / f"{package.partition('.')[0]}.py").is_file()
             and _imports_relatively(path)
         ):
-            # import the package first: beside the script is a module of the same name, which would hide the package
+            # import the package first, because a module of the same name beside the script would hide it
             import_module(package)
         on_search_path(path.parent)
         self.prepare(module, path)
@@ -182,7 +183,7 @@ class NodeImports:
         self._namespaces.append(module.__dict__)
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        """Find a file of the plan or the overlay; for other imports, only note whether a node requested them."""
+        """Find a file of the plan or the overlay; for any other import, only note whether a node requested it."""
         if fullname.rpartition(".")[2] not in self._tails:
             if fullname.partition(".")[0] not in _OURS and self._asked_by_node(sys._getframe(1)):
                 self._imported.add(fullname)
@@ -246,7 +247,7 @@ class NodeImports:
             )
 
     def _look_for_older(self, early: Mapping[Path, str]) -> None:
-        """Collect edited files that were in use but were not executed again, so that their old text ran."""
+        """Collect the edited files whose old text ran, because they were in use but were not executed again."""
         missed = {path.resolve() for path in self._overlay} - self._executed
         if missed:
             self.older = tuple(sorted({*outlived(missed), *(missed & early.keys())}))

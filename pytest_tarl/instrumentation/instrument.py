@@ -50,9 +50,9 @@ def instrument(
 ) -> ast.Module:
     """Return the module with recording at every statement or lambda body that starts at a position in `sites`.
 
-    Compile the result with `compiled`, and insert a hook and a buffer with `constants.bound`. Sites record the value of
-    their statement, with these exceptions. Sites in `publishes` and calls of methods named publish record 0. Conditions
-    record 1 or 0, the head of a function records its message parameter, and a loop records its target in each
+    Compile the result with `compiled`, and insert a hook and a buffer with `constants.bound`. A site records the value
+    of its statement, with these exceptions. Sites in `publishes` and calls of methods named publish record 0. A
+    condition records 1 or 0. The `def` of a function records its message parameter. A loop records its target in each
     iteration. With `inline`, code appends plain floats to the buffer without a call. This function modifies `tree` and
     adds recorded positions to `placed`.
     """
@@ -228,7 +228,7 @@ class _Recording(ast.NodeTransformer):
         return [*self._nothing(node, number), node]
 
     def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
-        # recorded after the assertion: a wrapped condition would move the carets in the traceback of a failure
+        # record after the assertion, because a wrapped condition would move the carets in the traceback of a failure
         return [node, *self._note_constant(1.0, number, start_of(node.test))]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
@@ -274,7 +274,7 @@ class _Recording(ast.NodeTransformer):
         return note_constant(value, number, at, inline=self._inline)
 
     def _rereadable(self) -> bool:
-        """Return whether a name can be read again without running code; false in a class body."""
+        """Return whether reading a name again is certain to run no code, which is not so in a class body."""
         return self._scope[-1] != "class"
 
     def _before_or_around(

@@ -25,9 +25,9 @@ def importable(path: Path) -> tuple[Path, str]:
 def workspace(path: Path) -> Path:
     """Return the root folder of a node's project.
 
-    The root is the first of these that exists: the git repository; the folder above `src` in a colcon or
-    catkin workspace, or the outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`; the folder
-    from which the node is imported.
+    The root is the first of these that exists: the git repository; the folder above the `src` of a colcon or catkin
+    workspace, or else the outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`; the folder from which
+    the node is imported.
     """
     file = path.resolve()
     for folder in file.parents:

@@ -109,7 +109,7 @@ def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
 
 
 def _kind(kind: type) -> tuple[Number | None, Parts | None]:
-    """Return (function that reads a number, function that lists parts) for a class; None where neither applies."""
+    """Return the functions that read a number and list the parts of a class's objects, each None if not applicable."""
     known = _KINDS.get(id(kind))
     if known is None:
         if len(_KINDS) >= _KINDS_KEPT:
@@ -175,7 +175,7 @@ def _parts(kind: type) -> Parts | None:
     """Return a function that lists the contents of a container or message, or None for other objects."""
     for container in _CONTAINERS:
         if issubclass(kind, container):
-            return container.__iter__  # do not use the method of a subclass, which can run any code
+            return container.__iter__  # not the method of a subclass, which can run any code
     if issubclass(kind, dict):
         return dict.values
     names = _fields(kind)
@@ -212,7 +212,7 @@ def _slot(kind: type, name: str) -> MemberDescriptorType | None:
 def _stored(message: object, name: str) -> object:
     """Read a field without running a property."""
     kind = type(message)
-    slot = _slot(kind, name)  # looked up each time, since storing the slot would keep the class alive
+    slot = _slot(kind, name)  # look it up each time, since storing the slot would keep the class alive
     if slot is not None:
         return slot.__get__(message, kind)
     state = _attribute(kind, "__dict__")

@@ -1,8 +1,8 @@
 """Record the events of one episode. Most of the work is done at the end, to slow the node down as little as possible.
 
-A buffer is one flat list per thread, `[site, value, site, value, …]`. Each event of the simulation (a new current cell,
-the reward of a step) is a mark in a separate list, with the length of every buffer at that moment. Marks are kept apart
-so that each buffer has a single writer. Greenlets of one thread share its buffer.
+A buffer is one flat list per thread, `[site, value, site, value, …]`. An event of the simulation is a new current cell,
+or the reward of a step. Each is a mark in a separate list, together with the length of every buffer at that moment.
+Marks have their own list so that each buffer has a single writer. Greenlets of one thread share its buffer.
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ class Recorder:
     """Record one episode.
 
     `hook` can be called from any thread. `bind` gives instrumented code a faster hook and the buffer of the thread that
-    created the recorder. That buffer assumes a single thread until a second thread starts; from then on, each thread
-    has its own entries. Each thread has its own entries from the start if `threads` is true (needed for real ROS), or
-    if another thread that may run the program already exists.
+    created the recorder. This buffer is for a single thread. When a second thread starts, each thread gets its own
+    entries. Each thread has its own entries from the start if `threads` is true (needed for real ROS), or if there
+    already is another thread that may run the program.
     """
 
     _packing = True  # whether `reward` may pack the buffer of the thread that created the recorder
@@ -82,7 +82,7 @@ class Recorder:
         self._watch, self._watching = ThreadWatch(self._share), False
 
     def __reduce__(self) -> tuple[type[_Elsewhere], tuple[()]]:
-        """Pickle as `_Elsewhere`: the program's functions may refer to a recorder; other processes record nothing."""
+        """Pickle as `_Elsewhere`: a pickled function may refer to a recorder, but other processes record nothing."""
         return _Elsewhere, ()
 
     def bind(self, code: CodeType) -> CodeType:
@@ -151,7 +151,7 @@ class Recorder:
         self._own.entries.__class__ = SharedEntries
 
     def _columns(self, buffer: _Buffer, number: int) -> tuple[Ints, Floats, Ints, Ints, Ints]:
-        """Return site, value, cell, step and thread of one thread's events, each of shape (events,)."""
+        """Return five columns of one thread's events: site, value, cell, step and thread, each of shape (events,)."""
         buffer.pack()
         site, flow, starts = joined(buffer.packed)
         before = np.searchsorted(starts, np.array(buffer.lengths, np.int64), side="left")
@@ -170,7 +170,7 @@ class Recorder:
 
 
 def _alone() -> bool:
-    """Return whether all other threads belong to test tools and therefore never run code of the program."""
+    """Return whether all other threads belong to test tools, so that they never run code of the program."""
     return all(
         _of_tool(thread) for thread in threading.enumerate() if thread is not threading.current_thread()
     )

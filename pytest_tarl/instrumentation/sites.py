@@ -34,7 +34,8 @@ class Plan:
 
     A global site number is an index into `places`; `members[i]` holds the numbers of the sites in `lists[i]`.
     `positions` holds the sites of each path, named as in the analysis; columns count characters. `forwarded` are the
-    indices of the lists whose callback is a publish call of ROS itself: no statement runs when a message passes.
+    indices of the lists whose callback is a publish method of ROS itself, so that no statement runs when a message
+    passes.
     """
 
     lists: tuple[TaintList, ...]
@@ -101,7 +102,7 @@ def _scored(flow: Flow) -> list[Step]:
 
 
 def _merged(chains: Sequence[Sequence[Step]]) -> list[Step]:
-    """Merge taint lists. Keep the order of each list as far as lists agree; break ties by position."""
+    """Merge taint lists, keeping the order of each list as far as the lists agree; otherwise, order by position."""
     best: dict[SiteId, Step] = {}
     followers: dict[SiteId, set[SiteId]] = defaultdict(set)
     waiting: dict[SiteId, int] = defaultdict(int)
@@ -136,7 +137,7 @@ def _topological(
 
 
 def _numbering(steps: Iterable[Step]) -> dict[SiteId, Step]:
-    """Return the distinct steps by site, in order of file and position; a data step replaces a control step."""
+    """Return one step per site, in order of file and position; a data step takes precedence over a control step."""
     distinct: dict[SiteId, Step] = {}
     for step in steps:
         if step.site not in distinct or step.dependence == "data":

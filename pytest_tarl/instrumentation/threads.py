@@ -8,8 +8,8 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-# threading.setprofile is unsuitable: CPython 3.11 repeats the first instruction of a profiled thread while others
-# wait for the interpreter lock, so threads that start at the same time never proceed
+# threading.setprofile is unsuitable. CPython 3.11 repeats the first instruction of a profiled thread while other
+# threads wait for the interpreter lock, so threads that start at the same time never proceed.
 _STARTERS = (
     (_thread, "start_new_thread"),
     (_thread, "start_joinable_thread"),  # Python ≥ 3.13

@@ -23,7 +23,7 @@ ENDING = ".npy"
 
 
 class DamagedError(ValueError):
-    """Raised if an archive is not a valid recording; the argument is the reason, worded as a clause."""
+    """Raised if an archive is not a valid recording; the argument is the reason, as a clause without a full stop."""
 
 
 class TooLargeError(ValueError):

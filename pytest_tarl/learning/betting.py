@@ -1,8 +1,8 @@
 """Test by betting whether a mean is above a limit (Waudby-Smith & Ramdas 2023).
 
-Each episode is a bet against the claim that the mean is at most the limit. A bettor stakes a fixed share of its wealth
-each time. If the claim is true, the probability that the wealth ever reaches 1/risk times its initial value is at most
-`risk`. This holds for any distribution of the values and any number of looks (Ville's inequality), and also for a
+Each episode is a bet against the claim that the mean is at most the limit. A bettor stakes the same share of the wealth
+in each bet. If the claim is true, the probability that the wealth ever reaches 1/risk times its initial value is at
+most `risk`. This holds for any distribution of the values and any number of looks (Ville's inequality), and also for a
 mixture of bets. Two bets share the wealth: a bold one wins early if no episode is bad, and a careful one survives a few
 bad episodes.
 """
@@ -16,7 +16,7 @@ from statistics import fmean, variance
 
 from pytest_tarl.learning.bounds import mean_of
 
-# shares of its wealth that the bold and the careful bet may lose in the worst possible episode
+# shares of their wealth that the bold bet and the careful bet may lose in the worst possible episode
 BOLD, CAREFUL = 0.95, 0.5
 # Share of the initial wealth that the test gives to the bold bet. In a simulation of 200 correct repairs that lose 3 %
 # of the reward and never fail, the test accepts 197 with 0.9 and 93 with 0.5. If correct repairs rarely fail, the test
@@ -51,7 +51,7 @@ class Bet:
         return most + log(sum(share * exp(one - most) for share, one in zip(self.shares, each, strict=True)))
 
     def powerless(self, episodes: int, risk: float) -> bool:
-        """Return whether the bets cannot win within `episodes` episodes, even if none has a loss."""
+        """Return whether the bets cannot win within `episodes` episodes, even if no episode has a loss."""
         return self.wealth([0.0] * episodes) < -log(risk)
 
     def hopeless(self, differences: Sequence[float], left: int, risk: float) -> bool:
@@ -67,7 +67,7 @@ class Bet:
 def bet(margin: float, least: float, known: Sequence[float]) -> Bet:
     """Return bets that grow fast if future differences resemble `known`, shape (episodes,).
 
-    The test must not use the `known` differences again, because the stakes depend on them.
+    The test must not use the differences in `known` again, because the stakes depend on them.
     """
     counted = [max(one, least) for one in known]
     spread = DOUBT * variance(counted) if len(counted) > 1 else 0.0
@@ -83,6 +83,6 @@ def _grown(stake: float, differences: Sequence[float], margin: float, least: flo
 
 
 def _bounded(stake: float, margin: float, least: float, share: float) -> float:
-    """Return the stake, reduced so that the worst episode loses at most `share` of the wealth."""
+    """Return the stake, reduced if necessary, so that the worst episode loses at most `share` of the wealth."""
     deepest = -least - margin
     return stake if deepest <= 0.0 else min(stake, share / deepest)

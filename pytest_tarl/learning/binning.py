@@ -10,7 +10,7 @@ import numpy as np
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.sensors import Sensor
 
-DIGITS = 4  # edges are rounded to this many decimal digits, relative to the range of the values
+DIGITS = 4  # edges are rounded to this many digits, relative to the range of the values
 
 
 def learned_edges(

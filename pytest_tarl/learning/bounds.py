@@ -1,7 +1,7 @@
 """Compute bounds for future episodes of a world: success rate, mean and quantiles of the total reward, loss.
 
-Each bound assumes that episodes are drawn independently from one world. Each bound holds on its own; the probability
-that any of several bounds is wrong is at most the sum of their risks. Further assumptions:
+Each bound assumes that episodes are drawn independently from one world. Each bound holds on its own. If several bounds
+are used, the probability that any of them is wrong is at most the sum of their risks. Further assumptions:
 
     rate          nothing                                       exact (Clopper & Pearson 1934)
     mean_of       totals lie in a declared range                exact (betting; Waudby-Smith & Ramdas 2023, Theorem 3)
@@ -12,9 +12,9 @@ that any of several bounds is wrong is at most the sum of their risks. Further a
                                                                 approximate (Welch) if one of them varies more
     detectable    -                                             approximate (normal)
 
-An acceptance test only needs to know whether a mean is above a limit; learning/betting.py tests this exactly.
-No other module computes an interval or a quantile (tests/plugin/learning/test_bounds_are_one_place.py).
-A search uses approximate bounds only to choose and rank what it tries, never to guarantee.
+An acceptance test only needs to know whether a mean is above a limit; learning/betting.py tests this exactly. No other
+module computes an interval or a quantile (tests/plugin/learning/test_bounds_are_one_place.py). A search uses
+approximate bounds only to choose and rank its candidates, never for a guarantee.
 
 "Exact" means at least the stated confidence, for any number of episodes that was fixed beforehand. If the number
 depends on the results, use `rate_sequence` or `mean_of` with `anytime`, which hold after every episode.
@@ -57,9 +57,9 @@ def rate(passed: int, episodes: int, confidence: float) -> Bound:
     return Bound(low, high, confidence, "Clopper-Pearson", True, episodes)
 
 
-@lru_cache(maxsize=4096)  # a stress search asks for the same few counts thousands of times
+@lru_cache(maxsize=4096)  # a stress search calls this with the same few counts thousands of times
 def rate_low(passed: int, episodes: int, risk: float) -> float:
-    """Return the success rate at which `passed` or more passes have the probability `risk`."""
+    """Return the success rate at which the probability of `passed` or more passes is `risk`."""
     if passed <= 0:
         return 0.0
     if passed == episodes:
@@ -77,7 +77,7 @@ def rate_sequence(passed: int, episodes: int, confidence: float) -> Bound:
 
 
 def evidence_above(passed: int, episodes: int, least: float) -> float:
-    """Return the log of an e-process against the claim that the success rate is at most `least`.
+    """Return the logarithm of an e-process against the claim that the success rate is at most `least`.
 
     An e-process measures evidence and may be read at any time. If the claim is true, the probability that the log ever
     exceeds log(1 / α) is at most α (Ville's inequality). This e-process averages the likelihood ratio uniformly over
@@ -102,7 +102,7 @@ def mean_of(
     """Return one-sided bounds on a mean, each at the confidence; exact if the range is declared.
 
     With `anytime`, they hold simultaneously after every episode. A betting bound can exceed the observed mean if a bet
-    won early; it is then clipped to the mean. Raise ValueError if a total lies outside the range.
+    won early; the bound is then clipped to the mean. Raise ValueError if a total lies outside the range.
     """
     values = np.asarray(totals, dtype=np.float64)
     if declared is None:
@@ -125,9 +125,9 @@ def mean_of(
 def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
     """Return a lower bound on the mean of `values` in [0, 1], shape (episodes,).
 
-    A bet against each candidate mean m stakes λ on values above m. If m is the mean, the wealth is a martingale, so it
-    rarely reaches 1 / risk. The bound is the largest m whose bet reached that wealth. λ depends only on earlier values.
-    λ is tuned for the given number of values; with `anytime`, for any number.
+    For each candidate mean m, a bet stakes λ on values above m. If m is the true mean, the wealth of this bet is a
+    martingale, so it rarely reaches 1 / risk. The bound is the largest m whose bet reached that wealth. λ depends only
+    on earlier values. λ is tuned for the given number of values; with `anytime`, for any number.
     """
     if not values.size:
         return 0.0
@@ -146,7 +146,7 @@ def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
 
 
 def quantile_low(totals: Sequence[float], share: float, confidence: float) -> float | None:
-    """Return a total that at least a share 1 - `share` of all episodes reaches; None if there are too few episodes.
+    """Return a total that at least the share 1 - `share` of all episodes reaches, or None with too few episodes.
 
     The bound is the k-th smallest total, for the largest k with P(Bin(n, share) < k) ≤ 1 - confidence.
     """
@@ -166,10 +166,10 @@ def loss_between(
 ) -> Bound:
     """Return one-sided bounds on mean(offline) - mean(online), each at the confidence.
 
-    Without a declared range, the result is the wider of two intervals. The first holds the shifts that a studentised
-    permutation test does not reject (Janssen 1997). This interval is exact if the totals of both worlds
-    differ by a constant, however skewed the totals are. The second is Welch's interval, for totals that are
-    about normal and may vary more in one world. Raise ValueError if a total lies outside the declared range.
+    Without a declared range, the result is the wider of two intervals. The first interval contains the shifts that a
+    studentised permutation test does not reject (Janssen 1997). It is exact if the totals of both worlds differ by a
+    constant, even if the totals are skewed. The second one is Welch's interval, for totals that are about normal and
+    may vary more in one world. Raise ValueError if a total lies outside the declared range.
     """
     episodes = min(len(offline), len(online))
     if declared is None:
@@ -186,8 +186,8 @@ def loss_between(
 def detectable_loss(offline: Floats, online: Floats, risk: float) -> float:
     """Return the loss that a test at `risk` detects with probability POWER; inputs have shape (episodes,).
 
-    The result is a normal approximation. The result is infinite if the episodes have so few permutations that
-    no loss can be significant.
+    The result is a normal approximation. It is infinite if the episodes have so few permutations that no loss can be
+    significant.
     """
     if comb(offline.size + online.size, online.size) <= 1 / risk:  # integers, since a float would overflow
         return inf

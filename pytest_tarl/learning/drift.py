@@ -1,9 +1,9 @@
 """Compare two worlds: test for a loss of performance and for a drift, and find the cells that differ.
 
-The designed world is the recorded one (`offline`), the deployed world is the one compared with it (`online`). A cell is
-a combination of sensor bins. The drift test compares Bellman residuals, which are the differences between what a step
-brings and what the recorded utility predicts. Whole episodes are permuted, and p-values are corrected over all columns
-by the largest statistic.
+The designed world is the recorded one (`offline`), and the deployed world is the one compared with it (`online`). A
+cell is a combination of sensor bins. The drift test compares Bellman residuals. A residual is the difference between
+what a step brings and what the recorded utility predicts for it. Whole episodes are permuted. P-values are corrected
+over all columns by the largest statistic.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ PASS_RATE_LOSS = 0.05  # tolerated decrease of the share of successful missions
 class Difference:
     """The result of comparing two samples of episodes.
 
-    `changes` holds, for each cell, the difference between the worlds in one part of the residual: the part (move or
-    reward) that determined the region.
+    `changes` holds, for each cell, how much one part of the residual differs between the worlds. It is the part (move
+    or reward) that determined the region.
     """
 
     verdict: Verdict
@@ -117,7 +117,7 @@ def succeed_less(success: tuple[float, float]) -> bool:
 
 
 def judged(verdict: Verdict, alpha: float) -> Verdict:
-    """Return the verdict with the result that its p-values, its loss and its success imply."""
+    """Return the verdict with its result, which follows from its p-values, its loss and its success."""
     reasons: list[Decreased] = []
     if verdict.p_loss < alpha and verdict.loss > verdict.tolerance:
         reasons.append("reward")
@@ -130,8 +130,8 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
 def corrected(verdicts: Sequence[Verdict], alpha: float) -> list[Verdict]:
     """Return the verdicts of several comparisons with p-values corrected by Holm's method, and results to match.
 
-    A comparison has one p-value for a drift and one for a worse world, which is the smaller one of loss and failures.
-    The larger one is multiplied by the same factor.
+    A comparison has one p-value for a drift, and one for a worse world. The latter is the smaller of two p-values: that
+    of a loss and that of more failures. The correction multiplies the larger one by the same factor.
     """
     drifts, worse = (holm([getattr(one, name) for one in verdicts]) for name in ("p_drift", "p_worse"))
     found = []
@@ -161,7 +161,7 @@ def _compared_without(
     sensors: Sequence[Sensor],
     found: Region,
 ) -> tuple[Region, dict[Cell, float]]:
-    """Return the region and the change of each deployed cell, computed without some sensors.
+    """Compare the worlds without some sensors; return the region and the change in each deployed cell.
 
     Leaving out sensors does not affect p_drift, so it adds no false alarms.
     """
@@ -229,8 +229,8 @@ def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
 def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the significant cells whose difference is at least MATERIAL times the largest one, shape (cells,).
 
-    The designed mean per visit has an estimation error. Where deployed episodes visit a cell more or less often, this
-    error becomes significant with enough episodes. The error stays small, so the limit removes such cells.
+    The designed mean per visit has an estimation error. If deployed episodes visit a cell more or less often than
+    designed ones, enough episodes make this error significant. The error stays small, so the limit removes such cells.
     """
     size = np.where(significant, np.abs(difference), 0.0)
     material: NDArray[np.bool_] = size >= MATERIAL * size.max(initial=0.0)

@@ -12,13 +12,13 @@ from pytest_tarl.learning.tables import Ints
 
 
 def enumerable(rows: int, chosen: int, shuffles: int) -> bool:
-    """Return whether the groups of `chosen` rows, without the observed one, are at most as many as the shuffles."""
+    """Return whether at most `shuffles` groups of `chosen` rows exist, not counting the observed group."""
     return comb(rows, chosen) - 1 <= shuffles
 
 
 @lru_cache(maxsize=8)
 def other_groups(rows: int, chosen: int) -> Ints:
-    """Return the rows of each group except that of the first rows, shape (groups - 1, chosen).
+    """Return the rows of each possible group except the observed one (the first rows), shape (groups - 1, chosen).
 
     A permutation test over these groups and the observed one is exact, and its smallest p-value is 1 / groups.
     """

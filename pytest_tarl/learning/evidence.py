@@ -21,14 +21,16 @@ NOVEL_EPISODES = 2  # minimum number of episodes that visit a novel cell
 class Evidence:
     """Columns for comparing two worlds, shape (episodes, columns); deployed episodes come first.
 
-    A drift may be strong in a few cells or weak in many. Therefore there are also columns for slabs, which sum over all
-    cells that share a bin of one sensor, and a column for the total reward of each episode.
+    A drift may be strong in a few cells or weak in many. Therefore, there are also columns for slabs and for the total
+    reward of each episode. A slab is the set of all cells that share one bin of one sensor; its column sums over these
+    cells.
     """
 
     move: Floats  # shape (episodes, cells), like the next two fields
     reward: Floats
     novel: Floats
-    move_error: Floats  # rounding errors of `move` and `reward`; values below their error are set to 0
+    # largest rounding error of each entry of `move` and `reward`; an entry below its error is set to 0
+    move_error: Floats
     reward_error: Floats
     slabs: tuple[Ints, ...]  # row numbers of the cells in each slab
     totals: Floats
@@ -74,8 +76,8 @@ def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) ->
 def slabs(cells: Sequence[Cell]) -> tuple[Ints, ...]:
     """Return the row numbers of the cells in each slab, arrays of shape (cells of the slab,).
 
-    There is a slab for every bin of every sensor, and a last slab with all cells. With a single sensor, there is only
-    the last one, because the bins are the cells themselves.
+    There is a slab for every bin of every sensor, and a last slab with all cells. If there is only one sensor, each bin
+    is a cell, so only the last slab is returned.
     """
     table = np.array(cells, dtype=np.int64).reshape(len(cells), -1)
     columns = table.T if table.shape[1] > 1 else ()

@@ -4,11 +4,10 @@ A recording is one `.npz` file: a JSON header with a format version and a hash, 
 statistics. The file is loaded without pickle. TARL writes a temporary file and then renames it. Equal
 episodes give equal bytes.
 
-Format versions:
-1  Columns of float64.
-2  Sums as logarithms (packing.py), which take a sixth of the size; Σ|f| per episode and site. If the test has
-   formulas, the header also has `formulas` and `signals`, and there are columns `robustness` and `lost`. Older
-   readers of format 2 ignore these, and also `stated` (bounds) and `world` (hashes of the test's modules).
+Format versions: 1 Columns of float64. 2 Sums as logarithms (packing.py), which take a sixth of the size; Σ|f| per
+episode and site. If the test has formulas, the header also has `formulas` and `signals`, and there are columns
+`robustness` and `lost`. Older readers of format 2 ignore these additions. They also ignore `stated` (bounds) and
+`world` (hashes of the test's modules).
 """
 
 from __future__ import annotations
@@ -122,7 +121,7 @@ def _unwritable(path: Path, problem: OSError) -> FixtureError:
 
 
 def load(path: Path) -> Fixture:
-    """Read a recording. Raise FixtureError if the file is missing, unreadable, damaged or of another format."""
+    """Read a recording. Raise FixtureError if the file is missing or unreadable, is damaged, or has another format."""
     try:
         content = read_regular(path)
     except FileNotFoundError:
@@ -189,7 +188,7 @@ def _why(problem: Exception) -> str:
 
 
 def sizes(path: Path, lists: int) -> tuple[int, ...]:
-    """Return, for each taint list, the number of bytes that its columns take on disk."""
+    """Return the number of bytes that the columns of each taint list take on disk."""
     with ZipFile(path) as archive:
         entries = archive.infolist()
     return tuple(

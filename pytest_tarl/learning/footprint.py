@@ -1,4 +1,4 @@
-"""Estimate the memory that recording episodes needs, and warn before it runs out.
+"""Estimate how much memory the recording of episodes will need, and warn before memory runs out.
 
 While episodes run, their statistics are kept as columns with 8 bytes per number. Merging, packing and writing them
 takes `PEAK` times as much memory. Both grow in proportion to the number of episodes, so the first episodes allow an
@@ -18,7 +18,7 @@ from pytest_tarl.free_memory import available
 from pytest_tarl.learning.tables import Sample
 
 PEAK = 5  # peak memory per byte of columns, in bytes (benchmarks/limits.py, case recording)
-# number of episodes before the first estimate, which is repeated whenever that number has doubled
+# number of episodes before the first estimate; a new estimate follows whenever the number has doubled
 FIRST = 3
 STRIDE = 32_000_000  # bytes of columns between two checks of the free memory
 GB = 1e9

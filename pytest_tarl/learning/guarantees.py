@@ -30,7 +30,7 @@ def stated(
     anytime: bool = False,
     varied: bool = True,
 ) -> Guarantee:
-    """Return the bounds that these episodes support; each holds on its own.
+    """Return bounds for future episodes, computed from these episodes; each bound holds on its own.
 
     Set `anytime` if the number of episodes depends on their results; then there is no bound on a quantile. Raise
     ValueError if a total lies outside the declared range.

@@ -25,7 +25,7 @@ def judgements(judged: Sequence[Judged]) -> Judgements | None:
 
 
 def together(samples: Sequence[Sample], picked: Sequence[tuple[int, int]]) -> Judgements | None:
-    """Return the rows of the picked episodes, with a column for every formula that occurs in a sample.
+    """Return one row per picked episode, with a column for every formula that occurs in any sample.
 
     A picked episode is a pair: the index of its sample and its row there. Entries are NaN where a sample lacks a
     formula.
@@ -68,7 +68,7 @@ def world(judged: Judgements | None, formula: str) -> FormulaWorld | None:
 
 
 def rows(order: Iterable[str], worlds: Mapping[str, Judgements | None]) -> tuple[FormulaRow, ...]:
-    """Return one row per formula: first the formulas in `order`, then others that any world has."""
+    """Return one row per formula: first the formulas in `order`, then the other formulas of the worlds."""
     others = sorted({name for one in worlds.values() if one is not None for name in one.formulas})
     found = []
     for formula in dict.fromkeys((*order, *others)):

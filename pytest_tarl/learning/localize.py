@@ -20,7 +20,7 @@ BELOW = 0.49  # maximum score of a site without a changeable operand, if other s
 def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints) -> tuple[Slice, ...]:
     """Sum the utility of each site over the region (Eq. 2); inputs have shape (cells, sites).
 
-    Cells that one of the worlds has not visited at a site are ignored for this site.
+    A cell is ignored for a site if the site was not visited in this cell in one of the worlds.
     """
     both = ~np.isnan(offline[region]) & ~np.isnan(online[region])
     before = np.where(both, offline[region], 0.0).sum(axis=0)
@@ -34,10 +34,11 @@ def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints)
 def prior(
     per_list: Iterable[Sequence[Slice]], changeable: Collection[str] | None = None
 ) -> tuple[tuple[SitePlace, float], ...]:
-    """Rank sites by score: the difference of a site's slices, relative to the largest one in its taint list.
+    """Rank sites by score: the difference of a site's slices, relative to the largest difference in its taint list.
 
     A site in several lists gets its best score. Sites without a difference are omitted. `changeable` holds the ids of
-    the sites with an operand that a repair can change: these sites get scores above 0.5, all others scores below.
+    the sites with an operand that a repair can change. Such sites get scores above 0.5, and all others get scores below
+    0.5.
     """
     best: dict[str, tuple[float, SitePlace]] = {}
     for ranked in per_list:
@@ -51,7 +52,7 @@ def prior(
 
 
 def _difference(one: Slice) -> float:
-    """Return the absolute difference of a slice, or 0 if it is unknown or within rounding errors."""
+    """Return the absolute difference of a slice between the worlds, or 0 if it is unknown or only a rounding error."""
     size = abs(one.difference)
     return size if size > 4 * ROUNDING * (abs(one.offline) + abs(one.online)) else 0.0
 
@@ -69,11 +70,11 @@ def culprits(
     loss: float,
     method: str = "sweep",
 ) -> tuple[Culprit, ...]:
-    """Rank sites by the effects that simulation found, or by their slices if it found none.
+    """Rank sites by the effects that were measured in simulation, or by their slices if there are no effects.
 
     `effects` maps site ids to effects in reward per episode. An effect equal to `loss` has the score 1. The sites of
-    the confirmed repair get the highest score, those with the largest effect of their own first; sites that were not
-    tried in simulation get 0. Sites whose constants changed no reward at all come last.
+    the confirmed repair get the highest score; among them, the site with the largest effect of its own comes first.
+    Sites that were not tried in simulation get 0. Sites at which no change of a constant changed the reward come last.
     """
     found = [_simulated(site, effects[site.id], loss, method) for site, _ in ranked if effects.get(site.id)]
     guessed = [Culprit(site, 0.0, "slices") for site, _ in ranked if not effects.get(site.id)]

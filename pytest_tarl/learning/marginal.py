@@ -11,7 +11,7 @@ import numpy as np
 from pytest_tarl.learning.tables import END, START, Floats, Ints, ListSample, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-# two worlds count as having no common cells if at most this share of the deployed steps is in recorded cells
+# two worlds have no common cells, for this module, if at most this share of the deployed steps is in recorded cells
 FEW = 0.05
 ENOUGH = 0.5  # sensors are left out until at least this share of the steps is in recorded cells
 
@@ -32,12 +32,12 @@ def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:
 
 
 def apart(offline: Sample, online: Sample) -> bool:
-    """Return whether hardly any deployed step was in a recorded cell."""
+    """Return whether almost no deployed step was in a recorded cell."""
     return _met(offline, online, tuple(range(len(offline.cells[0]) if offline.cells else 0))) <= FEW
 
 
 def _met(offline: Sample, online: Sample, kept: Sequence[int]) -> float:
-    """Return the share of deployed steps in recorded cells if cells consist of the sensors `kept` only."""
+    """Return the share of deployed steps that are in recorded cells if a cell consists of the sensors `kept` only."""
     known = {_shortened(offline.cells[i], kept) for i in np.unique(offline.chain.cell).tolist()}
     steps = sum_by(online.chain.cell, online.chain.count, len(online.cells))
     inside = sum(steps[i] for i, cell in enumerate(online.cells) if _shortened(cell, kept) in known)
@@ -45,7 +45,10 @@ def _met(offline: Sample, online: Sample, kept: Sequence[int]) -> float:
 
 
 def groups(cells: Sequence[Cell], without: Sequence[int]) -> tuple[tuple[Cell, ...], Ints]:
-    """Return the distinct cells without some sensors (sorted), and for each cell its row among them, shape (cells,)."""
+    """Remove the sensors `without` from all cells; return the distinct results, and the row of each cell in them.
+
+    The results are sorted; the rows have shape (cells,).
+    """
     kept = [d for d in range(len(cells[0])) if d not in without] if cells else []
     short = [_shortened(cell, kept) for cell in cells]
     found = tuple(sorted(set(short)))

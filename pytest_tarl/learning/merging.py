@@ -1,6 +1,6 @@
 """Merge samples by seed.
 
-Rows are sorted by key, so sums do not depend on which process recorded which episode.
+Rows are sorted by key. Sums therefore do not depend on which process recorded which episode.
 """
 
 from __future__ import annotations

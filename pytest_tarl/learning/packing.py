@@ -2,11 +2,12 @@
 
 Integers are stored unchanged. A sum z is stored as its sign and round(2¹⁶·log₂|z|), minus a prediction; the relative
 error is at most 5.3e-6. In this form, proportional values, such as those of `delta` and `5 * delta`, differ by a
-constant, which deflate compresses well. A sum of squares is close to the squared sum divided by the count; only the
-difference from it is stored, with an error of at most 0.14 %. Packing unpacked arrays again gives the same arrays.
+constant, which deflate compresses well. A sum of squares is close to the squared sum divided by the count. Only its
+difference from this prediction is stored, with an error of at most 0.14 %. Packing, unpacking and packing again gives
+the same arrays.
 
-Samples that are compared with a recording are rounded in the same way (`represented`). Otherwise, if rewards are
-constant, rounding alone would make the live world differ from the recorded one.
+Samples that are compared with a recording are rounded in the same way (`represented`). Without this, a live world with
+constant rewards would differ from the recorded one by rounding alone.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Arrays = dict[str, NDArray[Any]]
 Signs = NDArray[np.int8]
 
 FINE = 1  # step of the stored logarithm of a sum, in units of 2⁻¹⁶
-COARSE = 256  # step of the stored logarithm of a sum of squares, in the same units
+COARSE = 256  # step of the stored logarithm of a sum of squares, in units of 2⁻¹⁶
 UNIT = 65536.0
 ROUNDING = 5.3e-6  # maximum relative error of a packed sum: 2^(1/2 / UNIT) - 1
 
@@ -127,7 +128,7 @@ def _visited(edges: Edges) -> tuple[Ints, Ints, Ints]:
 
 
 def _before(visits: Visits, width: int) -> Ints:
-    """Return for each row the index of the previous row if cell and episode are the same, else -1; shape (rows,)."""
+    """Return the index of each row's previous row if both have the same cell and episode, else -1; shape (rows,)."""
     cell = np.where(visits.state > START, (visits.state - 1) // max(width, 1), -1)
     same = (np.diff(cell) == 0) & (np.diff(visits.episode) == 0)
     row = np.arange(cell.size, dtype=np.int64) - 1
@@ -142,7 +143,7 @@ def _logarithms(values: Floats) -> Ints:
 
 
 def _packed(values: Floats, foretold: Ints, step: int) -> tuple[Signs, Ints]:
-    """Return the signs, and the difference between each logarithm and its prediction, in steps."""
+    """Return the signs, and in steps the difference between each logarithm and its prediction `foretold`."""
     signs = np.sign(values).astype(np.int8)
     away = np.rint((_logarithms(values) - foretold) / step).astype(np.int64)
     return signs, np.where(signs == 0, 0, away)
@@ -182,9 +183,9 @@ def narrowed(whole: Ints) -> NDArray[Any]:
 
 
 def _stacked(name: str, columns: list[tuple[Signs, Ints]]) -> Arrays:
-    """Return signs, shape (columns, rows), and bytes by significance, shape (columns, 4, rows).
+    """Return the signs, shape (columns, rows), and the bytes of the numbers by significance, shape (columns, 4, rows).
 
-    Most of the more significant bytes are 0, so grouping them compresses well.
+    Most of the more significant bytes are 0. They compress well because they are stored together.
     """
     signs = np.stack([one for one, _ in columns])
     away = np.stack([one for _, one in columns])

@@ -34,8 +34,8 @@ def lost(
 ) -> Mapping[str, tuple[Cell, ...]]:
     """Return, for each part, the cells in which it is significantly lower in the deployed world.
 
-    Both samples must share one table of cells. P-values are corrected over all cells of all parts. The result includes
-    cells with a lower sum because episodes no longer reach them.
+    Both samples must share one table of cells. P-values are corrected over all cells of all parts. The result also
+    includes cells whose sum is lower only because episodes no longer reach them.
     """
     names = sorted({*offline.part_names, *online.part_names})
     if not names:

@@ -1,7 +1,7 @@
 """Permutation tests of the hypothesis that two groups of episodes are exchangeable.
 
-The tests use all groups if these are at most as many as the shuffles, so that small samples reach their smallest
-possible p-value. Otherwise, they use random groups.
+If there are at most as many groups as shuffles, a test uses all groups, so that a small sample can reach its smallest
+possible p-value. Otherwise, it uses random groups.
 
 P-values are corrected over many columns by the distribution of the largest statistic, step by step (Westfall & Young
 1993).
@@ -20,7 +20,7 @@ from pytest_tarl.learning.tables import Floats, Ints
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
 ARITHMETIC = 1e-12  # rounding error of a few sums of floats, relative to the largest of them
-# a p-value of at least this much after PERMUTATIONS shuffles is not refined by further shuffles
+# if a p-value is at least this large after PERMUTATIONS shuffles, further shuffles are skipped
 SETTLED = 0.2
 AT_ONCE = 64  # number of shuffles drawn together; few enough for the processor's cache
 
@@ -44,7 +44,8 @@ def permuted_loss(
 ) -> float:
     """Return the one-sided permutation p-value for a lower deployed mean; inputs have shape (episodes,).
 
-    Sums that differ only by rounding errors are ties and count against a loss. p-values below SETTLED use all shuffles.
+    Sums that differ only by rounding errors count as equal, which makes the p-value larger. If the p-value may be below
+    SETTLED, all shuffles are used.
     """
     pooled = np.concatenate((online, offline))
     rounding = ARITHMETIC * float(np.abs(pooled).sum())
@@ -87,11 +88,11 @@ def max_statistic(
 ) -> Floats:
     """Return the p-value of each column, corrected over all columns; shape (columns,).
 
-    The first `first` rows form one group, the other rows the second. The statistic is the difference between the group
-    means in units of the column's standard deviation; it orders columns as the pooled t statistic does. If `one_sided`,
-    only larger values in the first group count. Each column is compared with the maximum over all columns whose
-    difference is not larger (step-down). A column that varies by at most `error` of its largest entry counts as
-    constant and has the p-value 1.
+    The first `first` rows form one group, and all other rows form the second group. The statistic is the difference
+    between the group means in units of the column's standard deviation; it orders columns as the pooled t statistic
+    does. If `one_sided`, only larger values in the first group count. Each column is compared with the maximum over
+    itself and all columns with smaller statistics (step-down). A column that varies by at most the share `error` of its
+    largest entry counts as constant and has the p-value 1.
     """
     size = (lambda sums: sums) if one_sided else np.abs
     deviation = columns - columns.mean(axis=0)
@@ -124,12 +125,12 @@ def _p_values(
 ) -> Floats:
     """Return one-sided p-values, shape (counts,).
 
-    `reached` receives the sums of some shuffles and returns how many of them reach the observed value, for each
-    statistic.
+    `reached` receives the sums of some shuffles. It returns, for each statistic, how many of these shuffles reach the
+    observed value.
 
-    More than PERMUTATIONS shuffles only matter for p-values that stay significant after a correction over many
-    comparisons. If the smallest p-value is at least SETTLED after that many, the remaining shuffles are skipped.
-    Skipping never creates a p-value below SETTLED.
+    More than PERMUTATIONS shuffles are needed only for p-values that may remain significant after a correction over
+    many comparisons. If the smallest p-value is at least SETTLED after PERMUTATIONS shuffles, the remaining shuffles
+    are skipped. Skipping them never gives a p-value below SETTLED.
     """
     counts, done = None, 0
     for shuffled in shuffled_sums(values, first, generator, permutations):
@@ -142,7 +143,7 @@ def _p_values(
 
 
 def observed_sum(values: Floats, first: int) -> Floats:
-    """Return the sum over the first `first` rows, shape (...), of values of shape (rows, ...)."""
+    """Sum the first `first` rows of `values`, which has shape (rows, ...); the result has shape (...)."""
     picked = np.zeros((1, len(values)))
     picked[0, :first] = 1.0
     return np.asarray((picked @ values)[0])
@@ -153,9 +154,9 @@ def shuffled_sums(
 ) -> Iterator[Floats]:
     """Yield sums over groups of `first` rows, for several groups at once, shape (groups, ...).
 
-    `values` has shape (rows, ...). If there are at most as many groups as `permutations`, besides that of the first
-    rows, each of these is used once. Otherwise, each shuffle draws a random number for each row and picks the rows with
-    the smallest numbers.
+    `values` has shape (rows, ...). The first rows are the observed group. If there are at most `permutations` other
+    groups, each of them is used once. Otherwise, each shuffle draws a random number for each row and picks the rows
+    with the smallest numbers.
     """
     if enumerable(len(values), first, permutations):
         groups = other_groups(len(values), first)
@@ -168,17 +169,17 @@ def shuffled_sums(
 
 
 def _picked(groups: Ints, rows: int) -> Floats:
-    """Return 1 for the rows of each group, which has shape (groups, chosen), and 0 for the others."""
+    """Return a matrix of shape (groups, rows): 1 where a row belongs to a group, and 0 elsewhere."""
     picked = np.zeros((len(groups), rows))
     np.put_along_axis(picked, groups, 1.0, axis=1)
     return picked
 
 
 def _smallest(draws: Floats, first: int) -> Floats:
-    """Return 1 for the `first` smallest numbers of each row and 0 for the others, in the same shape."""
+    """Mark the smallest numbers of each row, `first` of them, with 1, and all others with 0; keep the shape."""
     limit = np.partition(draws, first, axis=1)[:, first, None]
     picked = (draws < limit).astype(np.float64)
-    # rows in which several numbers equal the limit, so that fewer than `first` are below it
+    # rows in which several numbers equal the limit, so that fewer than `first` numbers are below it
     tied = np.flatnonzero(picked.sum(axis=1) != first)
     for row in tied.tolist():
         picked[row, np.argpartition(draws[row], first)[:first]] = 1.0

@@ -1,11 +1,12 @@
 """Compute the Bellman residual of each step, in two parts: the move to the next cell, and the reward.
 
-A residual is the difference between what a step brings and what the designed utility predicts. The
-expectation of a residual is zero wherever the world is unchanged since the fit. Residuals therefore locate
-the change itself, and not the cells upstream of it (performance-difference lemma, Kakade & Langford 2002).
+A residual is the difference between what a step brings and what the designed utility predicts. The expectation of a
+residual is zero in every cell in which the world has not changed since the fit. Residuals therefore locate the change
+itself, and not the cells that a robot visits before it reaches the change (performance-difference lemma, Kakade &
+Langford 2002).
 
-A residual smaller than its error is set to 0. If the reward is constant, a residual that small reflects only rounding
-(packing.py) and the order of summation.
+A residual smaller than its error is set to 0. With a constant reward, such a small residual comes only from rounding
+(packing.py) and from the order of summation.
 """
 
 from __future__ import annotations
@@ -43,12 +44,12 @@ def in_fit(seed: int) -> bool:
 
 @dataclass(frozen=True)
 class Model:
-    """The expected contribution of a step in each cell of the designed world, shape (cells,); NaN if unknown."""
+    """The expected move and reward of a step in each cell of the designed world, shape (cells,); NaN if unknown."""
 
     utility: Floats
     move: Floats  # mean of γU(x')-U(x) over all steps except the last one of an episode
     reward: Floats
-    size: Floats  # mean |Σr| per step, the scale of the rounding error of `reward`
+    size: Floats  # mean |Σr| per step; the rounding error of `reward` is proportional to it
 
 
 def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:

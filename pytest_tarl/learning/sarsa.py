@@ -23,8 +23,8 @@ class Learner:
     """Learn q(c) of one taint list, episode by episode; subclasses implement the update rule.
 
     The learning signal is ρ = r·[last event of its step] + r·|f|/F, where f is the flow value. F, the mean of |f|, is
-    known only after the last episode. All rules are linear in ρ, so each term has its own table, and F is applied when
-    both are added. Therefore no episode has to be stored.
+    known only after the last episode. All rules are linear in ρ, so each of the two terms has its own table. When both
+    tables are added, the second one is divided by F. Therefore, no episode has to be stored.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:
@@ -65,7 +65,7 @@ class Learner:
         """Update internal counts after a sequence."""
 
     def _numbered(self, state: Ints, cells: Sequence[Cell]) -> Ints:
-        """Renumber states in the order in which their cells first occurred."""
+        """Renumber states by the order in which their cells first occurred."""
         row = np.array([self._row.setdefault(cell, len(self._row)) for cell in cells], dtype=np.int64)
         more = [0.0] * (1 + len(self._row) * self.sites - len(self._full))
         self._full += more
@@ -89,8 +89,8 @@ class Sarsa(Learner):
 class ExpectedSarsa(Learner):
     """Expected SARSA: q(c) ← q(c) + α[ρ + γΣP(c'|c)q(c') - q(c)].
 
-    P is estimated by the transition frequencies of all episodes so far. This is Sutton & Barto 2018, §6.6, except that
-    the program and the world, instead of a policy, choose the next site and cell.
+    P is estimated by the transition frequencies of all episodes so far. This is expected SARSA as in Sutton & Barto
+    2018, §6.6, with one difference: the next site and cell are chosen by the program and the world instead of a policy.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:

@@ -1,4 +1,4 @@
-"""The events of one taint list in an episode, in order, and the reward that each event receives.
+"""The events of one taint list in an episode, in their order, each with the reward that it receives.
 
 An event is one execution of a site, a statement of the taint list.
 """
@@ -36,10 +36,10 @@ class EventSequence:
 def event_sequences(trace: Trace, members: Sequence[int]) -> tuple[EventSequence, ...]:
     """Return the events of a taint list; its n-th site has the global number `members[n]`, or -1 if unknown.
 
-    There is one sequence per thread, and at least one, because events of two threads in one step have no order. The
-    reward of a step goes to its last event; if several threads have events in the step, they get equal shares. The
-    reward of a step without events goes to the latest earlier step with events, or to the start of the first sequence.
-    The rewards therefore sum to the total of the episode. Events before the first cell are dropped.
+    There is one sequence per thread, because events of two threads in one step have no order; there is at least one
+    sequence. The reward of a step goes to its last event; if several threads have events in the step, they get equal
+    shares. The reward of a step without events goes to the latest earlier step with events, or to the start of the
+    first sequence. The rewards therefore sum to the total of the episode. Events before the first cell are dropped.
     """
     index = _places(trace, members)
     known = (index >= 0) & (trace.event_cell >= 0)
@@ -62,7 +62,7 @@ def event_sequences(trace: Trace, members: Sequence[int]) -> tuple[EventSequence
 
 
 def _begun(unclaimed: float, state: Ints, given: Floats, scaled: Floats, flow: Floats) -> EventSequence:
-    """Prepend the start, which receives the rewards of all steps before the first event."""
+    """Put the start before the events; the start receives the rewards of all steps before the first event."""
     whole = np.empty(state.size + 1, np.int64)
     whole[0], whole[1:] = START, state
     columns = [np.empty(state.size + 1) for _ in range(3)]

@@ -1,7 +1,7 @@
-"""Group-sequential testing: a comparison may end early at planned looks, which share its risk (alpha spending).
+"""Group-sequential testing: a comparison may end early at planned looks, which divide its risk (alpha spending).
 
 After a share t of the episodes, α·t² of the risk α is spent (Lan & DeMets 1983). The shares of all looks sum to α. By
-the union bound, the risk of a false alarm is then at most α, however the looks depend on each other.
+the union bound, the risk of a false alarm is then at most α, even though the looks depend on each other.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Look:
 
 
 def planned(episodes: int, looks: int) -> tuple[Look, ...]:
-    """Return at most `looks` looks; each has twice as many episodes as the one before, and the last has all of them."""
+    """Return at most `looks` looks; each has twice as many episodes as the one before, and the last one has all."""
     return spending([episodes >> k for k in reversed(range(looks)) if episodes >> k >= min(FEWEST, episodes)])
 
 
@@ -42,10 +42,10 @@ def certain(difference: Difference) -> bool:
 
 
 def concluded(seen: Sequence[tuple[Look, Difference]], alpha: float) -> Difference:
-    """Return the result of the last look, with p-values and interval adjusted for all looks.
+    """Return the result of the last look; its p-values and its interval are adjusted for all looks.
 
-    The adjusted p-value is the smallest p / share. The interval is computed with the risk of the last look, so it is
-    valid at whichever look the comparison ends.
+    An adjusted p-value is the smallest p / share over the looks. The interval is computed with the risk of the last
+    look, so it is valid no matter at which look the comparison ends.
     """
     last = seen[-1][1]
     p_drift, p_loss, p_failures = (

@@ -19,7 +19,8 @@ from pytest_tarl.seeds import generator
 
 COARSE = 30  # number of bisection steps; p-values from shuffles are too coarse to need more
 LEAST_PERMUTATIONS = 999
-PER_RISK = 20  # expected number of shuffles whose statistic is beyond the observed one, at the requested risk
+# expected number of shuffles with a more extreme statistic than the observed one, at the requested risk
+PER_RISK = 20
 MOST_PERMUTATIONS = 40_000
 AT_ONCE = 2_000  # number of shuffles drawn together; takes a few MB
 
@@ -30,7 +31,7 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
     The inputs have shape (episodes,). The interval is infinite if there are too few permutations to reject anything.
     """
     difference = float(offline.mean() - online.mean())
-    # after a shift by more than this value, the two groups do not overlap
+    # if one group is shifted by more than this value, the two groups do not overlap
     unit = float(np.ptp(offline) + np.ptp(online))
     if unit <= ARITHMETIC * float(np.abs(np.concatenate((offline, online))).max()):
         return difference - unit, difference + unit
@@ -55,7 +56,7 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
 def _drawn(rows: int, chosen: int, shuffles: int) -> Ints:
     """Return the rows that form the first group in each shuffle, shape (groups, chosen).
 
-    The observed group is left out. There are fewer groups than shuffles if the samples have no more groups.
+    The observed group is left out. The result has fewer groups than `shuffles` if the samples do not have that many.
     """
     if enumerable(rows, chosen, shuffles):
         return other_groups(rows, chosen)
@@ -69,10 +70,10 @@ def _drawn(rows: int, chosen: int, shuffles: int) -> Ints:
 
 @dataclass(frozen=True)
 class _Sums:
-    """Sums over rows of x and of d, which is 1 for deployed episodes and 0 for others.
+    """Sums over the rows of a group: x is the value of a row, and d is 1 for a deployed episode, else 0.
 
-    The sums have shape (shuffles,), or () for a single group. Since d² = d, they give the sums of x + t·d and
-    of its square for every shift t.
+    The sums have shape (shuffles,), or () for a single group. Since d² = d, the sums of x + t·d and of (x + t·d)² can
+    be computed from them for every shift t.
     """
 
     rows: int

@@ -1,8 +1,8 @@
-"""Divide a fixed number of episodes among several comparisons: further episodes go to an undecided one.
+"""Divide a fixed number of episodes among several comparisons: remaining episodes go to an undecided comparison.
 
-The looks of every comparison are planned before the first episode, and together spend its whole α. The sum of their
-shares bounds the error of a comparison, whichever look it ends at. The choice of the comparison that continues may
-therefore depend on all data, including those of other comparisons.
+The looks of every comparison are planned before the first episode. Together, they spend the whole α of the comparison.
+The sum of their shares bounds the error of the comparison, no matter at which look it ends. All data, including those
+of other comparisons, may therefore be used to choose the comparison that continues.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class Stage:
 
 @dataclass(frozen=True)
 class Standing:
-    """A comparison after a look: its number of episodes, and whether it is decided.
+    """The state of a comparison after a look: its number of episodes, and whether it is decided.
 
-    `p_worse` is the p-value of a loss or, if smaller, of more failures.
+    `p_worse` is the smaller of two p-values: that of a loss, and that of more failures.
     """
 
     episodes: int
@@ -38,8 +38,8 @@ class Standing:
 def schedule(total: int, comparisons: int, looks: int) -> tuple[Look, ...]:
     """Return the looks of each comparison; the first looks of all comparisons fit into `total` episodes.
 
-    Each comparison first gets the looks that fit into an even share of the episodes. One more look follows after MOST
-    times that share, provided that every other comparison can still reach its first look.
+    Each comparison gets the looks that fit into an even share of the episodes, and one more look at MOST times that
+    share. The last look is planned only if every other comparison can still reach its first look.
     """
     even = total // comparisons
     ends = [look.episodes for look in planned(even, looks)]
@@ -57,8 +57,8 @@ def next_look(standing: Standing, looks: Sequence[Look]) -> Look | None:
 def chosen(standings: Sequence[Standing], looks: Sequence[Look], left: int) -> int | None:
     """Return the index of the comparison that continues, or None if none can reach its next look.
 
-    `left` is the number of episodes left. The undecided comparison with the smallest p-value continues,
-    since it is nearest to a decision; if several have the same p-value, the first one.
+    `left` is the number of episodes left. The undecided comparison with the smallest p-value continues, since it is
+    nearest to a decision. If several have the same p-value, the first of them continues.
     """
     able = [
         number

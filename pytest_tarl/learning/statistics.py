@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from pytest_tarl.instrumentation.trace import Trace
 
 CANCELLED = 1e-13  # a sum below this share of the sum of magnitudes counts as a rounding error
-DENSE = 4  # maximum number of possible pairs per row for counting pairs in a table; otherwise they are sorted
+# if there are at most this many possible pairs per row, pairs are counted in a table; otherwise, they are sorted
+DENSE = 4
 
 
 def sample(trace: Trace, seed: int, passed: bool, lists: Sequence[Sequence[int]]) -> Sample:
@@ -84,10 +85,10 @@ def total_reward(reward: Floats) -> float:
 
 
 def total_rewards(reward: Floats, ends: Ints) -> Floats:
-    """Return the same bits as `total_reward`, for each episode.
+    """Return the total reward of each episode, identical to the last bit to the result of `total_reward`.
 
     `ends` has shape (episodes + 1,) and holds the boundaries of the episodes. Episodes of equal length are summed
-    together: numpy sums each row of a matrix to the same bits as the row alone.
+    together, because numpy sums a row of a matrix to the same bits as the row alone.
     """
     lengths = np.diff(ends)
     found = np.zeros(lengths.size)
@@ -150,7 +151,7 @@ def _followers(state: Ints) -> Ints:
 
 
 def _flows(state: Ints, flow: Floats, width: int) -> Floats:
-    """Return the sum of |f| of each site over all cells, shape (1, sites)."""
+    """Return, for each site, the sum of |f| over all cells, shape (1, sites)."""
     events = state != START
     return sum_by((state[events] - 1) % max(width, 1), flow[events], width)[None, :]
 

@@ -48,7 +48,7 @@ class Edges:
 
 @dataclass(frozen=True)
 class Visits:
-    """Sums per state of one taint list: of r, of r·|f|, and of the squares of both; columns have shape (rows,)."""
+    """For each state of one taint list, the sums of r, of r·|f|, and of their squares; columns have shape (rows,)."""
 
     episode: Ints
     state: Ints

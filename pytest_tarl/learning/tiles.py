@@ -17,7 +17,7 @@ from pytest_tarl.learning.tables import END, START, Chain, Floats, Ints, ListSam
 from pytest_tarl.learning.utility import GAMMA_EVENT, GAMMA_STEP, batch, chain_utility, gradients
 from pytest_tarl.sensors import Cell, Sensor
 
-# multiple of the mean number of visits that is added to the diagonal, because tilings leave some weights undetermined
+# this multiple of the mean number of visits is added to the diagonal, because tilings leave some weights undetermined
 RIDGE = 1e-6
 DENSE = 1500  # maximum number of weights for a direct solution
 
@@ -46,8 +46,8 @@ def tiled(cells: Sequence[Cell], sensors: Sequence[Sensor]) -> Tiles | None:
 def _grid(table: Ints, sensors: Sequence[Sensor], grid: int) -> Ints:
     """Return the tile of each cell in one grid, shape (cells,).
 
-    The grid shifts each sensor by its number times a different odd number of bins, so that tile boundaries do not
-    coincide.
+    The shift of a sensor is the number of the grid times an odd number of bins, a different odd number for each sensor,
+    so that tile boundaries do not coincide.
     """
     columns = []
     for d, sensor in enumerate(sensors):
@@ -85,7 +85,7 @@ def tiled_batch(
 
 
 def expected(cell: Ints, count: Ints, brought: Floats, cells: int, tiles: Tiles | None) -> Floats:
-    """Return the mean contribution of a visit in each cell, shape (cells,); `brought` is summed over `count` visits."""
+    """Return the mean contribution of a visit in each cell, shape (cells,); `brought` is a sum over `count` visits."""
     total, visits = sum_by(cell, brought, cells), sum_by(cell, count, cells)
     if tiles is None:
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -102,7 +102,7 @@ def _fitted(state: Ints, next_state: Ints, count: Ints, reward: Floats, of: Ints
     start, end, weight = state[inside], next_state[inside], gamma * count[inside]
 
     def spread(values: Floats) -> Floats:
-        """Add the number of each state, shape (states,), to all of its tiles; return shape (weights,)."""
+        """Add the value of each state, shape (states,), to all tiles of this state; return shape (weights,)."""
         return sum_by(of.ravel(), np.repeat(values, grids), size)
 
     def system(weights: Floats) -> Floats:

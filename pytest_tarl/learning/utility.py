@@ -17,11 +17,11 @@ GAMMA_EVENT = 0.95
 GAMMA_STEP = 0.97
 DENSE = 150  # maximum number of states for a direct solution
 PRECISE = 1e-12  # sweeps end when no utility changes by more than this share of the largest utility
-STEPS = 300  # maximum number of biconjugate gradient steps; sweeps then improve the solution
+STEPS = 300  # maximum number of biconjugate gradient steps, after which sweeps improve the solution
 
 
 def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamma: float) -> Floats:
-    """Solve q = ρ̄ + γPq from transition counts, shape (states,); NaN if a state was never left.
+    """Solve q = ρ̄ + γPq from transition counts, shape (states,); NaN for a state that was never left.
 
     `reward` is the summed reward by state, shape (states,). Transitions to `END` end the episode.
     """
@@ -30,7 +30,7 @@ def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamm
     seen = np.flatnonzero(visits)
     place = np.full(states + 1, -1, dtype=np.int64)
     place[seen] = np.arange(seen.size)
-    inside = place[next_state] >= 0  # END is -1 and thus selects the last entry, which stays -1
+    inside = place[next_state] >= 0  # END is -1, so it selects the last entry, which stays -1
     start, end, mean = place[state[inside]], place[next_state[inside]], visits[seen]
     weight = gamma * count[inside] / mean[start]
     solve = _solved if gamma >= 1.0 or seen.size <= DENSE else _approached
@@ -56,9 +56,8 @@ def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
 def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
     """Solve q = ρ̄ + Wq by biconjugate gradients (van der Vorst 1992), then by sweeps q ← ρ̄ + Wq.
 
-    The method needs memory only for the transitions, not for all pairs of states. Each sweep reduces the
-    error by the factor
-    γ: one or two suffice if the gradients converged, more are needed if they broke down.
+    The method needs memory only for the transitions, not for all pairs of states. Each sweep reduces the error by the
+    factor γ. If the gradients converged, one or two sweeps suffice; if they broke down, more are needed.
     """
 
     def ahead(values: Floats) -> Floats:

@@ -59,18 +59,18 @@ class Assembly:
 
     expected: Expected
     path: Path
-    # progress when the log was opened; `refused` is the reason why later missions are not counted
+    # the progress when the log was opened; its `refused` says why later missions are not counted
     begun: Progress
     place: int
     missions: int = 0
     unfinished: int = 0
-    # the last record of the latest mission, or a later record that is not part of any mission
+    # the last record of the latest mission, or a later record that belongs to no mission
     _last: Spot | None = None
     _latest: Spot | None = None  # the last record read
     # start time (in s since 1970) and steps of the unfinished mission
     _mission: tuple[float, list[Steps]] | None = None
     _table: Table = field(default_factory=lambda: Table([], np.array([-1]), ()))
-    _text: bytes = b""  # JSON from which `_table` was read, if it came from a mission in consecutive records
+    _text: bytes = b""  # JSON from which `_table` was read, if that was a mission in consecutive records
 
     @property
     def progress(self) -> Progress:
@@ -119,7 +119,7 @@ class Assembly:
         return Mission(passed, time, steps, new, self.begun, spot, self.missions, self.unfinished)
 
     def _take(self, record: Record, before: Spot | None) -> None:
-        """Process a record that does not end a counted mission; `before` is the record before it, or None."""
+        """Process a record that does not end a counted mission; `before` is the previous record, or None."""
         kind, last, refused = record["kind"], self._latest, self.begun.refused
         torn, self._mission = self._mission is not None and kind != "end", None
         if kind == "mission":

@@ -79,7 +79,7 @@ def end_of(spot: Spot) -> int:
 
 
 def next_block(file: BinaryIO, place: int, size: int = BLOCK) -> Block:
-    """Return the complete records in the `size` bytes from `place` on, or one longer record; it may be empty."""
+    """Return the complete records in the `size` bytes from `place` on, or a single longer record; there may be none."""
     file.seek(place)
     data = file.read(max(size, HEAD))
     texts: list[bytes] = []

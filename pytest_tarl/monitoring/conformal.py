@@ -1,9 +1,9 @@
 """Conformal test martingales: test whether new missions are exchangeable with held-out recorded ones.
 
 The pool starts with the scores of the held-out recorded missions. Each new mission is ranked in the pool and then joins
-it. While missions are exchangeable, the smoothed rank of a new score is exactly uniform and independent of all earlier
-ranks, for any number of recorded missions (Vovk, Gammerman & Shafer 2005, theorem 8.1). A fixed pool would not work:
-it holds few missions, and whatever is peculiar to them would accumulate as evidence.
+the pool. While missions are exchangeable, the smoothed rank of a new score is exactly uniform and independent of all
+earlier ranks, for any number of recorded missions (Vovk, Gammerman & Shafer 2005, theorem 8.1). A fixed pool would not
+work: it would hold few missions, and their peculiarities would accumulate as evidence.
 
 Scores are rounded to bins. The edges of the bins come from the other half of the recorded missions, so the bin is a
 fixed function of the score. The pool is then a row of counts, and its size does not grow with the number of missions.
@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.tables import Floats, Ints
 
 BINS = 64
-TAIL = 8  # number of bins beyond the fitted scores at each end; each is twice as wide as its inner neighbour
+# number of bins beyond the fitted scores at each end; each bin is twice as wide as its inner neighbour
+TAIL = 8
 TOGETHER = 64  # number of missions ranked together; a multiple of 8 below 256, see `_counted`
 CLOSE = 1e-4  # values that differ by less than this share of a score's unit count as equal
 
@@ -27,8 +28,8 @@ CLOSE = 1e-4  # values that differ by less than this share of a score's unit cou
 def edges(fitted: NDArray[np.float64], unit: float) -> Floats:
     """Return the edges of the bins, shape (BINS - 1,), given the fitted scores, which are not in the pool.
 
-    Edges lie midway between neighbouring values, so rounding errors do not move a value into another bin. `unit` is the
-    magnitude of the terms of which a score is the sum. Unused bins have infinite edges and stay empty.
+    Edges lie midway between neighbouring values, so rounding errors do not move a value into another bin. A score is a
+    sum, and `unit` is the magnitude of its terms. Unused bins have infinite edges and stay empty.
     """
     unit = unit or 1.0
     values = np.unique(np.rint(fitted / (CLOSE * unit))) * (CLOSE * unit)
@@ -99,10 +100,10 @@ def joined(pool: Ints, bins: Ints) -> Ints:
 def factors(low: Floats, high: Floats, found: Floats) -> None:
     """Write to `found` the factor by which each bet multiplies its stake, shape (missions, bets, scores).
 
-    `low` and `high` are ranks of shape (missions, scores). Bets of the form εp^(ε-1) win on small ranks if p is
-    the rank, and on large ranks if p is 1 minus the rank. The bets win on small and on large ranks if p is
-    twice the distance from the rank to the nearer end of [0, 1]. The lines 1 ± (1 - 2p)/2 win on small
-    shifts, where p is the rank. Powers are computed by square roots, which round equally on all platforms.
+    `low` and `high` are the ranks p and 1 - p, shape (missions, scores). Bets of the form εp^(ε-1) use three kinds of
+    p. With the rank as p, they win on small ranks. With 1 minus the rank as p, they win on large ranks. With twice the
+    distance from the rank to the nearer end of [0, 1] as p, they win on both. Bets of the form 1 ± (1 - 2p)/2, where p
+    is the rank, win on small shifts. Powers are computed by square roots, which round equally on all platforms.
     """
     for place, rank in ((0, low), (4, high)):
         root = np.sqrt(rank)

@@ -1,10 +1,10 @@
 """Find the changed cells by the e-BH procedure, with one e-value per cell; valid at any time.
 
 An e-value measures evidence against a hypothesis: its expectation is at most 1 if the hypothesis is true. The ranks in
-one cell are independent of earlier ranks in that cell, but not of the ranks in other cells. Therefore the running
-maximum of each cell's evidence is adjusted first, so that it remains an e-value given all cells (Choe & Ramdas 2024).
-Then e-BH (Wang & Ramdas 2022) keeps the expected share of wrongly named cells at α or less, under any dependence and at
-any time.
+one cell are independent of earlier ranks in that cell, but not of the ranks in other cells. Therefore, the running
+maximum of each cell's evidence is first adjusted, which keeps it an e-value in spite of this dependence (Choe & Ramdas
+2024). Then e-BH (Wang & Ramdas 2022) keeps the expected share of wrong cells among the named ones at α or less, under
+any dependence and at any time.
 """
 
 from __future__ import annotations

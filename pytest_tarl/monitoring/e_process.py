@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.tables import Floats
 
 # λ(1 - m) for each of the BETS bets (see restarts.py): the share of its stake that the bet loses when a mission
-# succeeds. Small shares detect mild losses of performance; large shares detect total failure.
+# succeeds. Bets with small shares detect mild losses of performance; bets with large shares detect total failure.
 SHARES = (0.01, 0.015, 0.023, 0.035, 0.053, 0.08, 0.12, 0.18, 0.27, 0.41, 0.62, 0.9)
 
 
@@ -27,6 +27,6 @@ def factors(bound: float, observed: NDArray[np.float64]) -> Floats:
 def testable(bound: float) -> bool:
     """Return whether a bound can be tested.
 
-    A bound of 0 cannot be violated, and no sample can support a bound of 1.
+    A bound of 0 cannot be violated, and no number of episodes can show that a bound of 1 holds.
     """
     return 0.0 < bound < 1.0

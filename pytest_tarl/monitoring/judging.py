@@ -1,7 +1,7 @@
-"""Update the bets on missions, for one robot or for several robots at once.
+"""Update the bets with new missions, for one robot or for several robots at once.
 
 The columns are first the bounds (each for all robots), then the scores (robot by robot). Columns do not affect each
-other, so each robot's result equals, to the last bit, the result that it would get alone.
+other. The result of a robot is therefore the same, to the last bit, as if it were judged alone.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ def judged(
 
     `passed` and `total` have shape (missions, robots), `bins` (missions, robots, scores), `draws` (missions,), and the
     pool (robots · scores, BINS). `first` is the number of the first mission. There may be at most conformal.TOGETHER
-    missions. If some robots have fewer missions, `ends`, shape (robots,), holds the number of each; their missing bins
-    are -1. Without `onsets`, the start of a difference is not tracked, which is faster.
+    missions. If robots have different numbers of missions, `ends`, shape (robots,), holds these numbers; bins of
+    missing missions are -1. Without `onsets`, the start of a difference is not tracked, which is faster.
     """
     count, robots, scores = bins.shape
     flat, split = bins.reshape(count, robots * scores), len(bounds) * robots
@@ -64,13 +64,13 @@ def begun(threshold: Floats, bounds: int, robots: int) -> Processes:
 
 
 def columns(bounds: int, scores: int, robots: int, robot: int) -> Ints:
-    """Return the columns of one of several robots, of shape (bounds + scores,), in the order of a single robot."""
+    """Return the column indices of one of several robots, shape (bounds + scores,), in the order of a single robot."""
     rows = np.append(np.arange(bounds) * robots + robot, bounds * robots + robot * scores + np.arange(scores))
     return rows.astype(np.int64)
 
 
 def _told(bound: Bound, total: Floats) -> Truths:
-    """Return which missions yield an observation for a bound, in the shape of the totals."""
+    """Return which missions give an observation about a bound, boolean in the shape of the totals."""
     testable = e_process.testable(float(bound.share(bound.least)))
     told: Truths = testable & (np.isfinite(total) | (bound.what == "success"))
     return told

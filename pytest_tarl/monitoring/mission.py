@@ -36,7 +36,8 @@ class Progress(NamedTuple):
 class Table:
     """The cells of a `steps` record; `rows` are their rows in the recording, followed by -1.
 
-    `new` holds the cells that the recording lacks. Tables are compared by identity, since arrays have no truth value.
+    `new` holds the cells that the recording lacks. Tables are compared by identity, because comparing arrays gives no
+    single truth value.
     """
 
     cells: list[Any]
@@ -51,7 +52,7 @@ Steps = tuple[Table, bytes, bytes]
 class Mission(NamedTuple):
     """A finished mission, its cells that the recording lacks, and the progress in its log.
 
-    `begun` is the progress from which this run read the log; it read up to the record at `last`.
+    This run began to read the log at the progress `begun`, and has read up to the record at `last`.
     """
 
     passed: bool
@@ -70,7 +71,7 @@ class Mission(NamedTuple):
 
 
 def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int) -> Progress:
-    """Return `begun` with new counts, and advanced to the record at `last` unless that is None."""
+    """Return the progress `begun` with new counts, moved to the record at `last` unless `last` is None."""
     counted = begun._replace(missions=missions, unfinished=unfinished)
     if last is None:
         return counted

@@ -1,4 +1,4 @@
-"""Keep the start times of evenly spaced missions, to look up when a given mission took place."""
+"""Keep the start times of every n-th mission, to look up when a given mission took place."""
 
 from __future__ import annotations
 

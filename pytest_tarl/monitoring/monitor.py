@@ -2,8 +2,8 @@
 
 An e-process measures evidence that may be checked at any time. Two tests share α: whether performance is below the
 recorded bound, and whether missions differ from the recorded ones. Each test divides its half of α among its processes
-(union bound). The probability that there is ever a false alarm is therefore at most α, plus the probability that a
-bound is wrong.
+(union bound). The probability of any false alarm is therefore at most α, plus the probability that a recorded bound is
+wrong.
 """
 
 from __future__ import annotations
@@ -62,13 +62,13 @@ class Monitor:
     drawn: tuple[int, NDArray[np.float64]] = (-1, np.empty(0))
 
     def observe(self, missions: Missions) -> None:
-        """Update with missions in order; however they are divided into calls, the state is the same to the last bit."""
+        """Update with missions in order; no bit of the state depends on how missions are divided into calls."""
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
         """Update with missions in order; an unknown total is NaN, and `time`, of shape (missions,), is in seconds.
 
-        Cells are numbered as in the scale. All other cells share the next number and are listed in `new`.
+        Cells of the scale have their numbers there. All other cells share the next number and are listed in `new`.
         """
         self.moments.add(self.counts.missions, time.tolist())
         self.judge(sample.passed, sample.total, binned(self.scale, sample))
@@ -91,7 +91,7 @@ class Monitor:
         self.counts.passed += int(passed.sum())
 
     def draws(self, first: int, count: int) -> Floats:
-        """Return a number in (0, 1] that breaks ties for each of `count` missions from `first` on, shape (count,).
+        """Return a tie-breaking number in (0, 1] for each of `count` missions from `first` on, shape (count,).
 
         The numbers depend only on the seed and the index of the mission.
         """
@@ -145,8 +145,8 @@ def begun(fixture: Fixture, *, alpha: float, seed: int) -> Monitor:
 def shares(stated: int, scores: int) -> Floats:
     """Return the shares of α, shape (processes,).
 
-    Half goes to the bounds, if there are any; the rest is divided evenly among the scores of whole missions and the
-    scores of cells.
+    Half of α goes to the bounds, if there are any. Of the rest, one half goes to the scores of whole missions and one
+    half to the scores of cells.
     """
     cells = scores - len(WHOLE)
     rest = 0.5 if stated else 1.0

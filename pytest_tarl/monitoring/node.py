@@ -26,9 +26,9 @@ Look = Callable[[], tuple[bool, Watch, Status]]  # returns whether to continue, 
 def run(library: str, look: Look, period: float, stopped: Event) -> None:
     """Read the logs every `period` seconds of ROS time and publish the status.
 
-    End when a signal sets `stopped` or ROS shuts the node down. ROS does not install its own signal handlers, because
-    they would shut the node down in the middle of a publish call. Raise SettingsError if the library or the message
-    package is not installed.
+    End when a signal handler sets `stopped` or when ROS shuts the node down. ROS's own signal handlers are not
+    installed, because they would shut the node down in the middle of a publish call. Raise SettingsError if the library
+    or the message package is not installed.
     """
     try:
         ros, messages = import_module(library), import_module("diagnostic_msgs.msg")

@@ -36,7 +36,7 @@ class LogReader:
         """Yield the missions that ended since the last call.
 
         A rotated log is read to its end before the new log of the same name. Missions that the caller did not consume
-        are yielded again, provided that the caller keeps `known` up to date.
+        are yielded again in the next call, if the caller keeps `known` up to date.
         """
         if self._ahead:
             self.close()
@@ -110,8 +110,8 @@ class LogReader:
     def _rotated(self, file: BinaryIO, assembly: Assembly) -> bool:
         """Return whether the log was rotated or truncated.
 
-        After a rotation, the path names another file; after a truncation, the file is shorter than the part that was
-        read before.
+        After a rotation, the path names another file. After a truncation, the file is shorter than the part already
+        read.
         """
         mine = os.fstat(file.fileno())
         try:
@@ -143,7 +143,7 @@ class LogReader:
 
 
 def _unchanged(file: BinaryIO, at: Progress) -> bool:
-    """Return whether the last record that was read is still in the file."""
+    """Return whether the record that was read last is still in the file."""
     file.seek(at.last)
     payload = next_record(file)
     if payload is None:

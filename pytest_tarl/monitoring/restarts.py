@@ -1,15 +1,16 @@
-"""Many e-processes in parallel, each a mixture over bets and over start times (restarts before each mission).
+"""Many e-processes in parallel; each is a mixture over bets and over start times, one before each mission.
 
-A bet k multiplies its stake by a factor f ≥ 0 whose mean is at most 1. If it starts before observation τ, its value is
-1 until then, and afterwards the product of the f_t with t ≥ τ. The mixture over k and τ with weights that sum to 1 is
-again an e-process (Shin, Ramdas & Rinaldo 2023, e-detectors): by Ville's inequality, the probability that it ever
-exceeds 1/α is at most α. A restart before every observation costs only one product, since
+A bet k multiplies its stake by a factor f ≥ 0 whose mean is at most 1. If the bet starts before observation τ, its
+value is 1 before τ, and the product of all f_t with t ≥ τ afterwards. A mixture over k and τ with weights that sum to 1
+is again an e-process (Shin, Ramdas & Rinaldo 2023, e-detectors). By Ville's inequality, the probability that it ever
+exceeds 1/α is at most α. Although there is a start before every observation, each observation costs only one product,
+since
 
     Σ_{τ ≤ t} w_τ ∏_{s=τ..t} f_s = (Σ_{τ < t} w_τ ∏_{s=τ..t-1} f_s + w_t) · f_t.
 
-Half of the weight is on a start before the first observation. The other half falls by the factor 2^(-1/8) from one
-octave of τ to the next, so a change after 100,000 missions without a change lowers the natural logarithm of the
-evidence by only about 15.
+Half of the weight is on a start before the first observation. The other half is spread over later starts; from one
+octave of τ to the next, the weight falls by the factor 2^(-1/8). If a change comes only after 100,000 missions, the
+natural logarithm of the evidence is therefore lower by only about 15.
 
 Only sums, products and square roots are used, which IEEE 754 rounds equally on all platforms: equal observations give
 equal bits, however they are divided into portions.
@@ -27,8 +28,8 @@ from pytest_tarl.learning.tables import Floats, Ints
 
 BETS = 12  # number of bets that one evidence process makes side by side
 LARGE = 600  # stakes above 2^LARGE are scaled down; a single factor is below 2^70
-# the size of stakes is checked only after a multiple of this number of missions, so that the result does not depend
-# on how missions are divided into calls
+# Stakes are scaled down only after a multiple of this number of missions, so that the result does not depend on how
+# missions are divided into calls.
 LOOK = 4
 
 
@@ -37,10 +38,10 @@ class Processes:
     """The state of several e-processes, one per column.
 
     `stake`, `best` and `since` have shape (bets, processes), the others (processes,). `stake` is Σ_τ w_τ ∏f, and `best`
-    is the largest term of that sum, both divided by 2^exponent. `since` is the mission before which the largest term
-    started. `age` is the number of observations. `peak` is log2 of the largest evidence so far, and `onset` is the
-    mission before which the term that was then the largest had started. `alarm` is the mission at which the evidence
-    reached `threshold`, or -1.
+    is the largest term of that sum; both are divided by 2^exponent. `since` is the mission before which the largest
+    term started. `age` is the number of observations. `peak` is log2 of the largest evidence so far. `onset` is the
+    value of `since` for the largest term when the evidence was at this peak. `alarm` is the mission at which the
+    evidence reached `threshold`, or -1.
     """
 
     stake: Floats
@@ -95,9 +96,9 @@ def advance(
     """Update with consecutive missions, the first of which has the number `first`.
 
     `taken`, shape (missions, processes), says whether a mission has an observation for a process. `factors`, shape
-    (missions, bets, processes), multiply the stakes and are 1 without an observation. If processes have different
-    numbers of missions, `ends`, shape (processes,), holds these numbers, and later rows are padding. Without `onsets`,
-    `best`, `since` and `onset` are not updated, which halves the time.
+    (missions, bets, processes), multiply the stakes; a factor is 1 where there is no observation. If processes have
+    different numbers of missions, `ends`, shape (processes,), holds these numbers, and the rows after them are padding.
+    Without `onsets`, `best`, `since` and `onset` are not updated, which halves the time.
     """
     rows = np.flatnonzero(taken.any(axis=0))
     if not rows.size:
@@ -124,7 +125,8 @@ def advance(
 class _Products:
     """The sums of the stakes over the bets after each mission, and their exponents, each of shape (missions, rows).
 
-    `added`, `multiplied` and `shrinks` are the operands of each mission's operations on all stakes, in this order.
+    For each mission, `added`, `multiplied` and `shrinks` are the operands of three operations on all stakes, in this
+    order.
     """
 
     sums: Floats
@@ -139,7 +141,8 @@ def _multiplied(
 ) -> _Products:
     """Update the stakes mission by mission.
 
-    A row of the local array `stake` holds the stakes of all bets and processes, before the first or after each mission.
+    The first row of the local array `stake` holds the stakes of all bets and processes before the first mission, and
+    each further row those after a mission.
     """
     count, shape = len(weight), (len(weight), BETS, len(rows))
     exponents = np.repeat(processes.exponent[rows][None, :], count, axis=0)
@@ -167,7 +170,7 @@ def _multiplied(
 
 
 def _started(processes: Processes, rows: Ints, products: _Products, first: int, evidence: Floats) -> None:
-    """Update the largest term of each stake, and the mission before which that term started.
+    """Update the largest term of each stake, and the mission before which this term started.
 
     `evidence`, shape (missions, rows), is log2 of the evidence after each mission.
     """
@@ -193,7 +196,7 @@ def _started(processes: Processes, rows: Ints, products: _Products, first: int, 
 
 
 def _latest(fresh: NDArray[np.bool_], earlier: Ints, first: int) -> Ints:
-    """Return, for each column, the last mission at which a term was `fresh`, or `earlier` if there was none."""
+    """Return, for each column, the last mission at which `fresh` is true, or `earlier` if there is none."""
     last = first + len(fresh) - 1 - fresh[::-1].argmax(axis=0)
     return np.where(fresh.any(axis=0), last, earlier)
 

@@ -31,8 +31,8 @@ FEWEST = 2  # minimum number of episodes in each half of a recording
 class Missions:
     """Missions in order; the columns of steps have shape (steps,).
 
-    `cell` is the row that a step's cell has in the scale's table of cells; it is the number of rows for a cell that is
-    not in the table, and -1 until all sensors have a value. A mission may have no steps.
+    `cell` is the row of a step's cell in the scale's table of cells. It is the number of rows if the cell is not in the
+    table, and -1 while any sensor has no value yet. A mission may have no steps.
     """
 
     passed: NDArray[np.bool_]
@@ -53,7 +53,7 @@ class Scale:
     """How missions are scored: the fitted model, its cells, and the edges of all bins, shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
-    # whether the model was fitted for a cell; the last entry, False, is for cells that the scale lacks
+    # whether the model was fitted for a cell; the last entry stands for all cells that the scale lacks, and is False
     known: NDArray[np.bool_]
     model: Model
     edges: Floats
@@ -97,8 +97,8 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
 def binned(scale: Scale, sample: Sample) -> Ints:
     """Return the bin of every score of every mission, shape (missions, scores); -1 if a mission lacks the score.
 
-    A mission without steps has only the score of its success. A mission without rewards lacks the scores that
-    need rewards.
+    A mission without steps has only the score for its success. A mission without rewards lacks all scores that need
+    rewards.
     """
     return _binned(scale, _values(scale, sample))
 
@@ -138,7 +138,10 @@ def _values(scale: Scale, sample: Sample) -> Floats:
 
 
 def _units(chain: Chain, episodes: int, cells: int) -> Floats:
-    """Return the magnitude of the terms summed in each score, shape (scores,); rounding errors scale with it."""
+    """Return the magnitude of the terms that are summed in each score, shape (scores,).
+
+    The rounding errors of a score are proportional to it.
+    """
     size = float(np.abs(chain.reward).sum())
     mission, step = size / max(1, episodes), size / max(1, int(chain.count.sum()))
     whole = {"success": 1.0, "total": mission, "residual": mission, "unknown": 1.0, "steps": 1.0}
@@ -146,7 +149,7 @@ def _units(chain: Chain, episodes: int, cells: int) -> Floats:
 
 
 def sampled(scale: Scale, missions: Missions) -> Sample:
-    """Return missions in the form of recorded episodes, with one additional cell for all cells that the scale lacks.
+    """Return missions in the form of recorded episodes; all cells that the scale lacks become one additional cell.
 
     The total of a mission is NaN if it has no steps or an unknown reward.
     """

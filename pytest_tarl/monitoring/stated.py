@@ -35,7 +35,7 @@ class Bound:
 def bounds(fixture: Fixture) -> tuple[Bound, ...]:
     """Return the bounds of a recording: of success, and of the mean total if its range was declared.
 
-    There are no bounds if all episodes are equal, because such episodes do not show how much episodes can vary.
+    There are no bounds if all episodes are equal, because equal episodes do not show how much episodes can vary.
     Recordings of older versions state no bounds; then the bound of success is computed from the episodes.
     """
     told = fixture.stated

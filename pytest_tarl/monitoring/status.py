@@ -13,7 +13,7 @@ from pytest_tarl.monitoring.scores import WHOLE
 from pytest_tarl.monitoring.stated import Bound
 from pytest_tarl.sensors import Cell
 
-# indices of bets on low and on high ranks; the other bets of conformal.factors are on both extremes
+# indices of the bets on low ranks and of those on high ranks; the other bets of conformal.factors are on both extremes
 LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)
 FEWEST_NEW = 2  # a new cell is named in the status if at least this number of missions visited it
 
@@ -30,7 +30,7 @@ class Moment:
 class Evidence:
     """The current and the largest evidence against one hypothesis, as log10; an alarm is raised at -log10(α).
 
-    `since` is the mission before which the difference probably began. `alarm` is the mission that raised the alarm.
+    The difference probably began just before the mission `since`. `alarm` is the mission that raised the alarm.
     """
 
     now: float
@@ -79,7 +79,7 @@ class Status:
 
     @property
     def error(self) -> float:
-        """Return the probability that there is ever a false alarm, including the probability that a bound is wrong."""
+        """Return the probability of any false alarm, including the probability that a recorded bound is wrong."""
         stated = {1.0 - bound.confidence for bound, evidence in self.bounds if evidence is not None}
         return self.alpha + (
             len([one for one in self.bounds if one[1] is not None]) * max(stated, default=0.0)
@@ -113,7 +113,7 @@ def _testable(bound: Bound) -> bool:
 
 
 def _evidence(monitor: Monitor, rows: Ints) -> Evidence:
-    """Return the evidence of the processes in these rows (the largest among them), relative to their shares of α."""
+    """Return the largest evidence among the processes in these rows, relative to their shares of α."""
     processes = monitor.processes
     unit = -processes.threshold[rows] - np.log2(monitor.alpha)
     now = restarts.log_evidence(processes)[rows] + unit

@@ -108,7 +108,7 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
 
 @contextmanager
 def _collected_before() -> Iterator[None]:
-    """During the block, exclude existing objects from garbage collection: long collections would delay the node."""
+    """Exclude existing objects from garbage collection within the context: long collections would delay the node."""
     gc.collect()
     gc.freeze()
     try:
@@ -133,7 +133,7 @@ def _check(order: Order) -> None:
 
 def _sites(order: Order) -> Plan:
     paths = [path.resolve() for path in (order.node, *order.modules)]
-    # analyse with the settings, so that the log has the same statements as the recording
+    # analyse with the project's settings, so that the log has the same statements as the recording
     analysis = analyse(paths, root=Path.cwd(), with_settings=True)
     if not analysis.flows:
         raise AnalysisError(f"No flow from a subscription to a publish call was found in {order.node}.")
@@ -141,9 +141,9 @@ def _sites(order: Order) -> Plan:
 
 
 def _fixture_of(node: Path) -> Path:
-    """Return the only recording below the working directory whose taint lists contain the node's file.
+    """Find the recording below the working directory whose taint lists contain the node's file.
 
-    Raise LogError if there is none or several.
+    Raise LogError if there is no such recording, or more than one.
     """
     found = [path for path in sorted(Path.cwd().glob("**/.tarl/utility/*.npz")) if _names(load(path), node)]
     if len(found) != 1:

@@ -1,7 +1,7 @@
 """Observe a node: keep the latest sensor values, track rewards and missions, and send all of it to the writer process.
 
-In a control cycle, the observer only appends numbers to lists, which garbage collection does not visit. Every `PERIOD`
-seconds, a thread moves the lists to memory that the writer process shares.
+In a control cycle, the observer only appends numbers to lists; numbers are not visited by garbage collection. Every
+`PERIOD` seconds, a thread moves the lists to memory that the writer process shares.
 """
 
 from __future__ import annotations
@@ -65,7 +65,8 @@ class Observer:
         self._bins: list[int | None] = [None] * len(self.sensors)
         self._values: list[Any] = [None] * len(self.sensors)
         self._numbers: dict[str, float] = {}  # values of the signals received in this mission
-        self._before: dict[str, float] = {}  # earlier values of the signals without a message in this mission
+        # earlier values of those signals that have had no message in this mission
+        self._before: dict[str, float] = {}
         self._readings: list[Any] = []  # values of all sensors at each step, one step after another
         self._active = monotonic()
         self.running = False  # whether a mission is in progress
@@ -115,7 +116,7 @@ class Observer:
             self.stream.reward(reward)
 
     def begin(self) -> None:
-        """Begin a mission; a mission in progress ends as succeeded."""
+        """Begin a mission; if a mission is in progress, it ends as a success."""
         with self._lock:
             self.end(passed=True)
             self._flush()
@@ -211,6 +212,4 @@ def _plain(value: Any) -> Any:
     try:
         return int(value) if isinstance(value, int) else float(value)
     except (TypeError, ValueError, OverflowError):
-        return (
-            None  # the value is not a number: `told` reports this error, and here only the cell stays unknown
-        )
+        return None  # the value is not a number; `told` reports this error, and the cell stays unknown

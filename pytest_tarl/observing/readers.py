@@ -1,7 +1,7 @@
 """Read and bin the values of a sensor quickly, because a node's control cycle waits for it.
 
-The functions return the same as `reading` and `Sensor.bin`. These functions have a fast path for messages
-with attributes and for values of the usual types; in all other cases, they use the general functions.
+The functions here return the same as `reading` and `Sensor.bin`. They have a fast path for messages with attributes and
+for values of the usual types. In all other cases, they call `reading` and `Sensor.bin`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def reader(field: str | Read | None) -> Read:
     path = field or ""
     parts = path.split(".")
     if not all(part.isidentifier() and not hasattr(dict, part) for part in parts):
-        # `attrgetter` does not suffice: the path has an index, or a name that is also an attribute of mappings
+        # `attrgetter` is not enough if the path has an index, or a name that is also an attribute of mappings
         return lambda message: field_value(message, path)
     fast = attrgetter(path)
     known: set[type] = set()  # message classes for which the fast path is known to work

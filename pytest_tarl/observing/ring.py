@@ -45,7 +45,7 @@ class Ring:
 
     @property
     def unread(self) -> int:
-        """Return the number of bytes that were written but not taken yet."""
+        """Return the number of bytes that were written but that the reader has not taken yet."""
         return self._counters[0] - self._counters[1]
 
     def write(self, data: bytes) -> bool:

@@ -97,7 +97,7 @@ class Stream(Recorder):
         return Cut(cells, latched, rewards, totals, threads)
 
     def relieve(self, most: int | None = None) -> None:
-        """Drop the events of each thread with more than `most` queued entries, and count them in `dropped`.
+        """Drop all queued events of each thread that has more than `most` queued entries; count them in `dropped`.
 
         The default of `most` is MOST_ENTRIES.
         """
@@ -129,7 +129,7 @@ def merged(cuts: Sequence[Cut]) -> Cut:
     cells, latched, rewards, totals = list[Cell](), list[int](), list[int](), list[float]()
     threads: list[tuple[list[Any], list[int]]] = []
     for cut in cuts:
-        carried = 1 if latched else 0  # a later cut repeats the last cell of the cut before it
+        carried = 1 if latched else 0  # a cut repeats the last cell of the previous cut
         rewards += [mark + len(latched) - carried for mark in cut.rewards]
         threads += [([], [0] * len(latched)) for _ in cut.threads[len(threads) :]]
         for (entries, lengths), (new, marks) in zip(threads, cut.threads, strict=True):

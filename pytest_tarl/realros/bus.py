@@ -52,7 +52,7 @@ class RealBus(Bus):
         )
 
     def disconnect(self, process: Program) -> None:
-        """Do nothing: a process that has ended receives no messages anyway."""
+        """Do nothing, because a process that has ended receives no messages."""
 
     def collect(self) -> bool:
         """Receive one message in transit; return whether there was one."""
@@ -103,7 +103,7 @@ class RealRos(Ros):
         self.lockstep.enter = self.enter
 
     def launch(self, given: Given) -> None:
-        """Set the parameters of a launch file; if a node's name is unknown before it runs, set them for all nodes."""
+        """Set the parameters of a launch file; if the node's name is not known yet, set them for all nodes."""
         super().launch(given)
         private = {} if given.node else {f"~{key}": one for key, one in given.private.items()}
         for name, value in {**given.shared, **private}.items():

@@ -86,7 +86,7 @@ class WireScheduler(Scheduler):
         self.enter: Callable[[Process], None] | None = None  # called before a task of a process is resumed
 
     def settle(self) -> None:
-        """Run all ready tasks and those made ready by arriving messages, until no message is in transit."""
+        """Run all ready tasks, and the tasks that arriving messages make ready, until no message is in transit."""
         super().settle()
         while self.failure is None and self.collect():
             super().settle()

@@ -76,7 +76,7 @@ class SharedParticipant:
             )
 
     def stop(self) -> None:
-        """Shut down as Ctrl-C does: nodes still exist until their program destroys them."""
+        """Shut down as Ctrl-C does; nodes continue to exist until their program destroys them."""
         if self._up:
             self._up = False
             self._call_on_shutdown_callbacks()

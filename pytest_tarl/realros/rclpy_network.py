@@ -46,7 +46,7 @@ class RclpyNetwork:
         self.kept: Counter[Any] = Counter()  # number of messages that publishers keep for late subscribers
         self.for_world: deque[Any] = (
             deque()
-        )  # the world's subscription for each message that is on its way to the world
+        )  # for each message on its way to the world, the subscription of the world
         self.node_publishes: Callable[[str, Any, Any], None] | None = None
         self.node_subscribes: Callable[[str], None] | None = None
         self._state: dict[Process, dict[str, Any]] = {}
@@ -130,10 +130,10 @@ class RclpyNetwork:
         self.wake_listening()
 
     def joined(self, subscription: Any) -> None:
-        """Count the publishers' stored messages as in transit to a new subscription.
+        """Count the messages that publishers have stored as in transit to a new subscription.
 
-        Wait until all of them are sent. Otherwise the node might take a newer message first and then also get
-        old messages, which a short queue would have dropped.
+        Wait until all of them are sent. Otherwise, the node might take a newer message first, and then still get old
+        messages that a short queue would have dropped.
         """
         if subscription.qos_profile.durability.name != "TRANSIENT_LOCAL":
             return
@@ -151,7 +151,8 @@ class RclpyNetwork:
     def under_way(self, executor: Any) -> bool:
         """Return whether a message to a node of the executor is still in transit.
 
-        The executor must wait for that message; otherwise, thread timing would determine the order of two topics.
+        The executor must wait for this message; otherwise, the timing of threads would decide which of two topics comes
+        first.
         """
         expecting = [
             subscription

@@ -134,7 +134,7 @@ def _patch_timers(network: RclpyNetwork) -> None:
         if running_task() is not None:
             options.pop(
                 "clock", None
-            )  # all clock types show virtual time: a steady clock would run on while the simulation pauses
+            )  # all clock types show virtual time, because a steady clock would run on while the simulation pauses
         return create(self, *args, **options)
 
     node_class.create_timer = create_timer
@@ -203,7 +203,7 @@ def _raise_if_ended(executor: Any, task: Task, executors: Any) -> None:
 
 
 def _earliest(executor: Any, now: int, until: int | None) -> int | None:
-    """Return the time at which the next timer of the executor's nodes is due, or `until` if that is earlier."""
+    """Return the time at which the next timer of the executor's nodes is due, or `until` if `until` is earlier."""
     due = [] if until is None else [until]
     for node in executor.get_nodes():
         for timer in node.timers:

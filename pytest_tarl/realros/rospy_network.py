@@ -74,12 +74,12 @@ class RospyNetwork:
         self.wire.forget()
 
     def enter(self, process: Process) -> None:
-        """Assign a copy of rospy to a starting process: if possible, the copy that it had in the last episode."""
+        """Assign a copy of rospy to a starting process; if possible, the copy that it had in the last episode."""
         if process in self._copies:
             return
         key, number = process.argv, 0
         while (copy := self._kept.get((*key, str(number)))) is not None and copy.process is not None:
-            number += 1  # this copy belongs to another process of the same program in this episode
+            number += 1  # in this episode, this copy belongs to another process of the same program
         if copy is None:
             copy = self._kept[(*key, str(number))] = self._made(key)
         copy.begin(process)
@@ -91,7 +91,7 @@ class RospyNetwork:
         return self._copies[process]
 
     def initialise(self, copy: RospyCopy, name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> None:
-        """Do the work of `init_node`, or reset a node from an earlier episode to the state of a new node.
+        """Do the work of `init_node`; if the node exists from an earlier episode, reset it to the state of a new node.
 
         Raise NodeError if the node's name has changed since the earlier episode.
         """

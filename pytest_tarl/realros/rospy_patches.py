@@ -179,7 +179,8 @@ def _patch_sending(copy: RospyCopy, network: RospyNetwork) -> None:
 
     def publish(self: Any, message: Any, connection_override: Any = None) -> Any:
         if connection_override is not None and message is self.latch:
-            return None  # rospy resends the latched message to a new subscriber, which `latched` already does
+            # rospy would send the latched message to a new subscriber once more; `latched` has already sent it
+            return None
         connections = self.connections if connection_override is None else [connection_override]
         ways = [Way(self.resolved_name, copy.name, connection.endpoint_id) for connection in connections]
         for way in ways:
@@ -231,7 +232,7 @@ def _patch_connecting(copy: RospyCopy, network: RospyNetwork) -> None:
         known = self.pubs if kind == copy.modules["rospy.impl.registration"].Registration.PUB else self.subs
         new = name not in known
         impl = acquire(self, kind, name, data_class)
-        impl.ref_count += new  # an extra reference, so that connections outlive the episode
+        impl.ref_count += new  # one more reference, so that the connections outlive the episode
         network.joined(copy, impl, publishes=known is self.pubs)
         return impl
 

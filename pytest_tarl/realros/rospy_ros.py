@@ -174,6 +174,6 @@ def close_network() -> None:
 
 
 def _silence_rospy() -> None:
-    """Ignore warnings in rospy's code: under `-W error` they would end its threads."""
+    """Ignore warnings in rospy's code, because under `-W error` they would end rospy's threads."""
     for module in ("rospy", "rosgraph", "roslib", "genpy"):
         warnings.filterwarnings("ignore", category=DeprecationWarning, module=rf"{module}(\.|$)")

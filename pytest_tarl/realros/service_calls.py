@@ -1,7 +1,7 @@
 """Service calls of rospy in lock-step. A call is either in transit or in its handler, which runs in virtual time.
 
 Virtual time stands still while a call is in transit. The order of arrivals does not depend on the network: answers come
-first, in the order of their calls, then requests, by service and content.
+first, in the order of their calls. Then come requests, sorted by service and content.
 """
 
 from __future__ import annotations
@@ -28,7 +28,10 @@ class Arrival(NamedTuple):
 
 
 class ServiceCalls:
-    """The calls of one episode. Threads other than the test's access only `_arrived`, under the lock `_arrival`."""
+    """The calls of one episode.
+
+    Threads other than the test's own access only `_arrived`, while they hold the lock `_arrival`.
+    """
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler

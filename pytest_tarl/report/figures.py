@@ -19,8 +19,8 @@ from pytest_tarl.sensors import Cell, Sensor
 if TYPE_CHECKING:
     from pytest_tarl.model import Matrix
 
-MOST_ROWS = 6  # maximum number of rows; there is one for each value of the sensor that splits the figure
-QUIET = 0.25  # minimum range of the difference scale, as a share of the utility range
+MOST_ROWS = 6  # maximum number of rows; each row is for one value of the sensor that splits the figure
+QUIET = 0.25  # minimum range of the scale for differences, as a share of the range of utilities
 DIGITS = 5  # number of significant digits of numbers on the page
 
 
@@ -37,7 +37,7 @@ class Plane:
 
 
 def plane(comparison: Comparison) -> Plane:
-    """Choose the first numeric sensor as axis and, for the rows, the category that best separates the region."""
+    """Choose the first numeric sensor as axis, and for the rows the text sensor that best separates the region."""
     sensors = comparison.sensors
     position = next((d for d, sensor in enumerate(sensors) if sensor.numeric), 0)
     categories = [d for d, sensor in enumerate(sensors) if d != position and not sensor.numeric]
@@ -73,7 +73,7 @@ def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str
 
 
 def split_values(comparison: Comparison, shown: Plane) -> Sequence[int | None]:
-    """Return the values that get a row; if there are too many, those with most cells. [None] means a single row."""
+    """Return the values that get a row; if there are too many, those with the most cells; [None] for a single row."""
     if shown.split is None:
         return [None]
     counted: dict[int, int] = {}

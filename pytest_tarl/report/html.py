@@ -117,7 +117,7 @@ def in_script(data: Any) -> str:
 
 
 def parts(text: str) -> list[str]:
-    """Split a path or test id into parts between which the page may break the line."""
+    """Split a path or test id into parts; the page may break a line between two of them."""
     return re.findall(r".+?(?:::|[/_.]|$)", text)
 
 
@@ -210,7 +210,7 @@ def _list(
 
 
 def _captions(comparison: Comparison, figure: Mapping[str, Any]) -> Iterator[str]:
-    """Yield notes on what the utility figure shows and omits."""
+    """Yield notes on what the utility figure shows, and on what it omits."""
     shown = plane(comparison)
     if others := shown.others(comparison.sensors):
         yield f"Each value is the mean over {' and '.join(others)}."

@@ -129,7 +129,7 @@ def _interval(sensor: Sensor, first: int, last: int) -> list[Any]:
 
 
 def _widest(slices: Iterable[Slice]) -> list[Slice]:
-    """Return each site once, in order of first appearance, with the slice of the list in which it differs most."""
+    """Return one slice per site, from the list in which it differs most; keep the order of first appearance."""
     kept: dict[str, Slice] = {}
     for one in slices:
         held = kept.get(one.site.id)

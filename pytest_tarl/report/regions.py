@@ -11,7 +11,7 @@ from pytest_tarl.sensors import Cell, Sensor
 
 Box = tuple[tuple[int, int], ...]  # first and last bin of each sensor
 
-# number of orders of sensors that are tried when merging bins; all orders if there are four sensors
+# when bins are merged, this number of orders of the sensors is tried; for four sensors, these are all orders
 ORDERS = 24
 NAMED = 3  # maximum number of places named before "and 2 more"
 
@@ -54,7 +54,7 @@ def runs(ranges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
-    """Join boxes with only unvisited cells between them: their hull must not contain a cell of `others`."""
+    """Join boxes that have only unvisited cells between them: the hull of joined boxes contains no cell of `others`."""
     kept, pending, barred = [], list(cover), list(others)
     while pending:
         box = pending.pop(0)
@@ -72,7 +72,7 @@ def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
 def closed(cover: Iterable[Box], dimension: int, bins: int) -> tuple[Box, ...]:
     """Join boxes that touch where an angle wraps around, such as at ±180°.
 
-    The last bin of a joined box exceeds the number of bins.
+    The index of the last bin of such a joined box exceeds the number of bins.
     """
     kept = list(cover)
     for ending in [box for box in kept if box[dimension][1] == bins - 1 and box[dimension][0] > 0]:
@@ -130,7 +130,7 @@ class Vocabulary:
         return ", ".join(phrase for phrase in phrases if phrase) or "everywhere"
 
     def _several(self, ranges: Sequence[tuple[int, int]]) -> str:
-        """Describe several ranges of the first sensor, with the unit once, such as `x 1.0-2.0 or 4.0-7.0 m`."""
+        """Describe several ranges of the first sensor; name the unit only once, as in `x 1.0-2.0 or 4.0-7.0 m`."""
         if len(ranges) == 1:
             return self._phrase(0, *ranges[0])
         joined = runs(ranges)

@@ -44,9 +44,10 @@ ENDS: dict[Reason, str] = {
     "breaks other missions": "dropped, missions that lost nothing get worse",
 }
 
-NEARLY = 0.8  # share of the loss that a rejected candidate must restore to be worth a wider tolerance
-# suggested tolerance, as a multiple of the remaining loss; above 1, so that a test can show that the loss is below the
-# tolerance
+# a wider tolerance is suggested only if the rejected candidate restored at least this share of the loss
+NEARLY = 0.8
+# suggested tolerance, as a multiple of the remaining loss; it is above 1, so that a test can show that the loss is
+# below it
 SPARE = 1.5
 
 
@@ -56,7 +57,10 @@ def edit_words(edit: Edit) -> str:
 
 
 def operand_words(operand: OperandEffect) -> str:
-    """Describe the best change of an operand: a new value, a factor if the old value is unknown, or what it follows."""
+    """Describe the best change of an operand.
+
+    It is a new value, a factor if the old value is unknown, or the name of what the operand follows.
+    """
     return operand.what or f"{operand.code} {'×' if operand.value is None else '→'} {operand.best:g}"
 
 

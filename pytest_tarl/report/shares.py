@@ -10,9 +10,9 @@ from dataclasses import dataclass
 class Share:
     """A comparison's share of `total` episodes, and why it ended.
 
-    `looks` holds, for each look (test of the verdict), the number of episodes and the smaller of two uncorrected
-    p-values, of a loss and of more failures. `missing` is the number of further episodes that the next look needs, or
-    None after the last look. `left` is the number of episodes of the total that were not run.
+    A look is one test of the verdict. `looks` holds two numbers for each look: its number of episodes, and the smaller
+    of two uncorrected p-values (of a loss, and of more failures). `missing` is the number of further episodes that the
+    next look needs, or None after the last look. `left` is the number of episodes of `total` that were not run.
     """
 
     total: int

@@ -49,7 +49,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """The slices of one taint list: both worlds on the scale `values`, the difference on the scale `change`."""
+    """The slices of one taint list; both worlds use the scale `values`, and differences the scale `change`."""
 
     rows: tuple[Row, ...]
     values: Scale

@@ -20,7 +20,7 @@ from pytest_tarl.report import (
 
 SHOWN = 3  # maximum number of culprits, lists and notes shown before "(and 3 more)"
 LABEL = 9  # width of the column of labels
-# minimum width (columns) of code on the same line as its location; if less is free, the code is printed on the next
+# minimum width (columns) of code printed on the same line as its location; if less is free, the code goes to the next
 # line
 LEGIBLE = 24
 NARROWEST = 40  # minimum width of the report, in columns
@@ -29,7 +29,7 @@ NARROWEST = 40  # minimum width of the report, in columns
 def lines(comparison: Comparison, *, width: int, root: Path, page: Path | None = None) -> list[str]:
     """Return the report of one comparison, `width` columns wide; `page` is the path of the report page, if written.
 
-    A path is not broken, and a command is not wrapped, so that they can be copied; they may be wider.
+    Paths and commands are not wrapped, so that they can be copied. They may therefore be wider than the report.
     """
     width = max(width, NARROWEST)
     name = f"{comparison.test}[{comparison.drift or 'online'}]"
@@ -70,7 +70,7 @@ def _entries(
 
 
 def _labelled(label: str, text: str, width: int, *, whole: bool) -> list[str]:
-    """Wrap `text` beside its label, between words; with `whole`, do not wrap it, so that commands can be copied."""
+    """Put `text` beside its label, wrapped between words; with `whole`, do not wrap it, as for commands to copy."""
     body = [text] if whole else [line for part in text.split("\n") for line in _wrapped(part, width)]
     return [f"  {label if i == 0 else '':<{LABEL}}{line}".rstrip() for i, line in enumerate(body)]
 

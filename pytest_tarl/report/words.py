@@ -11,8 +11,8 @@ from pytest_tarl.report.amounts import amount, deviations, p_value
 from pytest_tarl.report.guarantees import percent
 from pytest_tarl.report.regions import Vocabulary
 
-SIGNIFICANT = 0.05  # maximum p-value of a loss that is reported
-NEGLIGIBLE = 0.01  # minimum share of the total loss for a part of the reward to be reported
+SIGNIFICANT = 0.05  # a loss is reported only if its p-value is at most this
+NEGLIGIBLE = 0.01  # a part of the reward is reported only if it has at least this share of the total loss
 SHORTEST = 16  # minimum number of characters of a code line that are shown
 
 
@@ -66,7 +66,7 @@ def loss_words(comparison: Comparison) -> str:
 
 
 def _sure(interval: LossInterval) -> str:
-    """Format the confidence of an interval; without a declared range of totals, call it approximate."""
+    """Format the confidence of an interval; if no range of totals is declared, call the interval approximate."""
     return f"{'' if interval.exact else 'about '}{percent(interval.confidence)} confidence"
 
 
@@ -90,7 +90,7 @@ def _capital(text: str) -> str:
 
 
 def region_words(comparison: Comparison) -> str:
-    """Describe the region where the deployed world differs, with new situations listed separately; empty if none."""
+    """Describe the region where the deployed world differs, with new situations apart; empty if there is none."""
     vocabulary, region = Vocabulary(comparison.sensors, comparison.cells), comparison.region
     novel = set(region.novel)
     known = [cell for cell in region.cells if cell not in novel]
@@ -117,7 +117,7 @@ def _words_without(comparison: Comparison) -> str:
 
 
 def lost_words(comparison: Comparison, part: str) -> str:
-    """Describe where a part of the reward is lost; empty if it is not lost or if no situation stands out."""
+    """Describe where a part of the reward is lost; empty if none of it is lost or if no situation stands out."""
     cells = comparison.lost.get(part, ()) if part in dict(lost_parts(comparison)) else ()
     return Vocabulary(comparison.sensors, comparison.cells).words(cells) if cells else ""
 

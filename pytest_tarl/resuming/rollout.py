@@ -1,7 +1,7 @@
 """A rollout that keeps the episodes it has run, and reuses those that an interrupted run kept.
 
 An episode is a function of its plan, so a kept episode can replace a run of the plan. Equal plans are numbered, because
-a recording runs its first episode twice.
+a recording runs its first episode twice, which makes two equal plans.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class KeptRollout:
         self._scope = scope
         self._shown = shown
         self._begun: Counter[bytes] = Counter()
-        self._checked = checked  # whether a kept episode has been run again, with the same result
+        self._checked = checked  # whether a kept episode was run again and gave the same result
 
     @property
     def workers(self) -> int:
@@ -45,7 +45,7 @@ class KeptRollout:
         return self.begin(plan).result()
 
     def begin(self, plan: EpisodePlan) -> Pending:
-        """Request an episode. Raise RecordingError if a repetition of the first kept episode has another result."""
+        """Request an episode. Raise RecordingError if the first kept episode gives another result on repetition."""
         key = episode_key(plan, self._scope)
         count = self._begun[key]
         self._begun[key] += 1
@@ -66,7 +66,7 @@ class KeptRollout:
         self._begun[key] -= 1
 
     def _check(self, key: bytes, kept: EpisodeRun) -> None:
-        """Run the first kept episode again, and keep the new run. Raise RecordingError if the result differs."""
+        """Run the first kept episode again, and keep the new result. Raise RecordingError if the results differ."""
         if self._checked or kept.simulator:  # an external simulator may give another result in each run
             return
         self._checked = True

@@ -27,7 +27,7 @@ COMPLETE = (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED)
 
 @dataclass
 class ResumableTest:
-    """A test, run in one mode, with the finished episodes that are kept; `tell` prints a sentence immediately."""
+    """A test that runs in one mode, and its finished episodes that are kept; `tell` prints a sentence immediately."""
 
     item: pytest.Function
     designation: Designation
@@ -124,7 +124,7 @@ class ResumableRun:
         options: Options,
         tell: Callable[[str], None],
     ) -> ResumableTest:
-        """Return a new test, or the existing one if all calls for it share a total number of episodes."""
+        """Return a new test, or the existing one if several calls for a test share a total number of episodes."""
         known = next((one for one in self.tests if one.item is item), None)
         if known is not None and options.total is not None:
             return known

@@ -13,7 +13,8 @@ from pytest_tarl.stressing.guarantee import Guarantee, most_passed
 
 COARSE, FINE = 16, 32  # maximum number of episodes at a point of the sweep, and near the boundary
 RESOLUTION = 0.02  # width of the interval at which bisection stops, as a share of the declared range
-NOISY = 0.04  # used instead of RESOLUTION while the failing end is undecided, because noise then hides a finer boundary
+# replaces RESOLUTION while the failing end is undecided, because noise then hides the exact boundary
+NOISY = 0.04
 
 
 def sweep(curve: Curve, evaluator: Evaluator) -> None:

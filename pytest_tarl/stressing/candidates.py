@@ -17,14 +17,14 @@ import numpy as np
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.stressing.guarantee import Evidence
 
-HOPE = 0.8  # minimum expected probability that a test at a chosen value succeeds
+HOPE = 0.8  # a value is chosen only if a test there is expected to succeed with at least this probability
 # If a loss lies this number of standard errors below the tolerated loss, a bound with 4 % risk shows in 4 of 5 cases
 # that the loss is tolerated.
 HOLDING = 3.0
 # If a loss lies this number of standard errors above the tolerated loss, a bound with 0.4 % risk shows in 4 of 5
 # cases that the loss exceeds it.
 FAILING = 4.0
-# places t on a ray; the next place to test is one of them
+# places t on a ray among which the next place to test is chosen
 PLACES = tuple(step / 100 for step in range(1, 101))
 CENTRES = np.linspace(0.0, 1.25, 251)  # possible values of t at which half of the episodes fail
 SCALES = np.geomspace(0.002, 0.3, 16)  # possible scales of the logistic distribution, in units of t
@@ -36,7 +36,7 @@ class Model:
 
     Each episode has its own threshold: it fails if t exceeds the threshold. Thresholds follow a logistic distribution,
     with a uniform prior over CENTRES and SCALES. The mean loss of reward is interpolated linearly between the measured
-    values of t. The standard deviation of the loss is that of the nearest measured value beyond t.
+    values of t. The standard deviation of the loss at t is the one measured at the next larger t.
     """
 
     evidence: Mapping[float, Evidence]
@@ -45,7 +45,8 @@ class Model:
     def holding(self, episodes: int, paired: int) -> float:
         """Return the farthest t at which a test is expected to show that the guarantee holds, or 0.
 
-        All `episodes` must pass there, and the bound of the loss from `paired` episodes must be tolerated.
+        In such a test, all `episodes` pass, and the bound of the loss from `paired` episodes is at most the tolerated
+        loss.
         """
 
         def beyond(t: float) -> bool:
@@ -59,7 +60,7 @@ class Model:
     def failing(self, episodes: int, passed: int) -> float | None:
         """Return the nearest t at which a test is expected to show a failure, or None.
 
-        There, at most `passed` of `episodes` pass, or the loss is clearly larger than tolerated.
+        In such a test, at most `passed` of `episodes` pass, or the loss is clearly larger than tolerated.
         """
         few = bisect_left(PLACES, HOPE, key=lambda t: 1.0 - self._passing(t, episodes, passed + 1))
         lost = (t for t in PLACES[:few] if self._loss(t, -FAILING, episodes) > self.tolerance)

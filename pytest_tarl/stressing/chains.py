@@ -19,23 +19,26 @@ from pytest_tarl.stressing.evaluating import NEAREST, SIZES
 from pytest_tarl.stressing.guarantee import Part
 from pytest_tarl.stressing.nearest import Nearest
 
-NEARER = 0.98  # maximum distance of the next confirmed drift, as a share of the distance of the last one
-# Limits of the probability that a test at the farther drifts of a chain shows too many failures: from LIKELY on, the
-# chain tests only the failure rate; below UNLIKELY, it tests only the loss.
+# maximum distance at which the next drift counts as nearer, as a share of the distance of the last confirmed drift
+NEARER = 0.98
+# Limits of the probability that a test at the farther drifts of a chain shows too many failures. If it is at least
+# LIKELY, the chain tests only the failure rate. If it is below UNLIKELY, the chain tests only the loss.
 LIKELY, UNLIKELY = 0.5, 0.05
-ALIKE = 0.02  # probabilities whose difference is at most this count as the same
-VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
-POSSIBLE = 0.5  # minimum probability that fresh episodes show the failure of a drift beyond the near end
-# multiples of the near end of a chain that are tested before the near end, if the chain tests only the failure rate
-# and the same seeds fail under all drifts
+ALIKE = 0.02  # two probabilities count as the same if they differ by at most this
+VETTED = 4  # maximum number of drifts at which SIZES[2] episodes run before a chain is chosen
+# a drift beyond the near end is chosen only if fresh episodes show its failure with at least this probability
+POSSIBLE = 0.5
+# A chain tests these multiples of its near end before the near end itself, if it tests only the failure rate and the
+# same seeds fail under all drifts.
 OUTWARD = (1.12, 1.08, 1.04)
-# multiples of the near end that all other chains test before the near end
+# all other chains test these multiples of their near end before the near end itself
 BEFORE = (1.03,)
-# multiples of the near end that a chain tests after the near end; the steps grow, because several confirmations in a
-# row show that the model expected the boundary too far out
+# A chain tests these multiples of its near end after the near end itself. The steps grow, because several confirmations
+# in a row show that the model expected the boundary too far from nominal.
 INWARD = (0.96, 0.92, 0.86, 0.79, 0.72, 0.65, 0.58, 0.5)
-FINE = tuple(0.985**step for step in range(16))  # in a chain of small steps, multiples of its first drift
-# multiples of the drift at the near end of a chain that may become drifts of the chain
+# multiples of the first drift that a chain of small steps tests
+FINE = tuple(0.985**step for step in range(16))
+# multiples of a chain's near end among which the other drifts of the chain are chosen
 STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
 
 
@@ -43,10 +46,11 @@ STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
 class Plan:
     """How to choose the drifts of a chain.
 
-    The near end is the nearest drift that fails according to the model: `errors` are the errors of the model to allow
-    for, in standard deviations, and `depth` is the excess over the guarantee, in units of what fresh episodes can show.
-    Each of `steps` adds a farther drift. A step contains the minimum probability that fresh episodes show the failure
-    of this drift, and its minimum distance as a multiple of the distance of the drift before it.
+    The near end of the chain is the nearest drift that fails according to the model. `errors` is the error of the model
+    to allow for, in standard deviations. `depth` is the required excess over the guarantee, in units of what fresh
+    episodes can show. Each of `steps` adds a farther drift. A step has two numbers: the minimum probability that fresh
+    episodes show the failure of the added drift, and the minimum distance of this drift as a multiple of the distance
+    of the drift before it.
     """
 
     errors: float
@@ -54,16 +58,16 @@ class Plan:
     steps: tuple[tuple[float, float], ...]
 
 
-# plan of chains until the first drift in several directions is confirmed, and plan of the chains afterwards
+# the plan until the first drift in several directions is confirmed, and the plan afterwards
 FIRST = Plan(0.5, 1.2, ((0.9, 1.06), (0.95, 1.06), (0.98, 1.2)))
 NEXT = Plan(0.35, 1.05, ((0.9, 1.03),))
 
 
 def chain(nearest: Nearest, plan: Plan, limit: float) -> list[Point]:
-    """Return the drifts of a chain, nearer than `limit`, those farthest from nominal first.
+    """Return the drifts of a chain, all nearer than `limit`, in descending order of their distance from nominal.
 
-    If the model does not cover the nearest failing drift because of its options, the chain has only this drift. The
-    chain is empty if no tried drift fails. Raise BudgetSpentError.
+    If the model does not cover the nearest failing drift because of its options, the chain consists of this drift only.
+    The chain is empty if no tried drift fails. Raise BudgetSpentError.
     """
     best, limit = nearest.best, NEARER * limit
     if best is None:
@@ -77,9 +81,9 @@ def chain(nearest: Nearest, plan: Plan, limit: float) -> list[Point]:
 
 
 def part_of(nearest: Nearest, chain: Sequence[Point]) -> Part:
-    """Return the part of the guarantee that the tests of a chain are about, according to the model.
+    """Return the part of the guarantee that the tests of a chain should examine, according to the model.
 
-    The nearest drift of the chain decides, which is the last one. If the model is not clear, both parts are tested.
+    The last drift of the chain, which is the nearest, decides. If the model is not clear, the tests examine both parts.
     """
     coordinates = nearest.coordinates
     if not chain or not all(map(coordinates.covers, chain)):
@@ -99,10 +103,10 @@ def likely(nearest: Nearest, point: Point) -> bool:
 
 
 def finer(nearest: Nearest, chain: Sequence[Point], part: Part) -> list[Point]:
-    """Return a chain with further drifts on the ray through its near end, if the model covers this end.
+    """Add drifts on the ray through a chain's near end to the chain, if the model covers the near end.
 
-    Each takes fewer episodes than a chain of its own: its nominal episodes have run already, and a test about the rate
-    of failures first runs the seeds that failed before.
+    A further drift takes fewer episodes in this chain than in a new one. The nominal episodes have run already, and a
+    test of the failure rate first runs the seeds that failed before.
     """
     coordinates = nearest.coordinates
     if not chain or not coordinates.covers(chain[-1]):
@@ -126,9 +130,9 @@ def finer(nearest: Nearest, chain: Sequence[Point], part: Part) -> list[Point]:
 def closer(nearest: Nearest, confirmed: Point) -> list[Point]:
     """Return a chain of drifts in small steps that begins a little nearer than a confirmed drift.
 
-    The direction is that of the confirmed drift, of the nearest predicted one or of the nearest one that failed in the
-    search, whichever is most likely to be confirmed. The chain is empty if the model does not cover the confirmed
-    drift, or if no tried drift fails.
+    The drifts lie on the ray through one of three drifts: the confirmed one, the nearest predicted one, or the nearest
+    one that failed in the search. The one most likely to be confirmed is chosen. The chain is empty if the model does
+    not cover the confirmed drift, or if no tried drift fails.
     """
     coordinates = nearest.coordinates
     if not coordinates.covers(confirmed) or nearest.best is None:
@@ -150,11 +154,11 @@ def closer(nearest: Nearest, confirmed: Point) -> list[Point]:
 
 
 def clear(nearest: Nearest) -> list[Point]:
-    """Return up to three drifts in several directions that failed in the search, those farthest from nominal first.
+    """Return up to three drifts in several directions that failed in the search, the farthest one first.
 
-    They are tested if none of the predicted drifts is confirmed, because the model may be wrong. If the drifts are
-    sorted from the farthest to the nearest, the three are at half of the list, at three quarters and at the end. The
-    search runs no further episodes there.
+    They are tested if none of the predicted drifts is confirmed, because the model may be wrong. All failed drifts are
+    sorted from the farthest to the nearest. The three are those in the middle of this list, at three quarters, and at
+    its end. The search runs no further episodes at them.
     """
     usual, evaluator = nearest.evaluator.space.nominal, nearest.evaluator
     found = [
@@ -170,10 +174,10 @@ def clear(nearest: Nearest) -> list[Point]:
 
 
 def _vetted(nearest: Nearest, plan: Plan) -> Point | None:
-    """Return the nearest drift that fails according to the model, even after further episodes there.
+    """Run further episodes at the nearest predicted drifts; return the nearest that still fails by the model.
 
-    The nearest of many predicted drifts is often one at which the model errs. Return None if no drift fails. Raise
-    BudgetSpentError.
+    The further episodes are needed because the model often errs at the nearest of many predicted drifts. Return None if
+    no drift fails. Raise BudgetSpentError.
     """
     evaluator = nearest.evaluator
     draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} vetting {len(nearest.tried)}")
@@ -190,11 +194,11 @@ def _vetted(nearest: Nearest, plan: Plan) -> Point | None:
 
 
 def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Point]:
-    """Return a drift for each step of the plan, nearer than `limit`, those farthest from nominal first.
+    """Return one drift for each step of the plan, all nearer than `limit`, the farthest one first.
 
-    The drifts are multiples of `near` or have been tried before. A step takes the nearest drift that is likely enough
-    to be confirmed, or else the nearest one that is about as likely as the likeliest one. The plan ends early if no
-    drift is at least `POSSIBLE`.
+    Candidates are multiples of `near` and the drifts tried before. A step takes the nearest candidate that is likely
+    enough to be confirmed. If there is none, it takes the nearest one of about the largest probability. The plan ends
+    early if no candidate has at least the probability `POSSIBLE`.
     """
     coordinates = nearest.coordinates
     vectors = _sorted([*_multiples(nearest, near), *nearest.vectors()])
@@ -215,7 +219,8 @@ def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Poi
 def _chances(nearest: Nearest, near: Point, vectors: Vector) -> Vector:
     """Return the probabilities that fresh episodes show a failure at vectors.
 
-    If the near end fails too often, only such failures count, because the whole chain is then tested for them.
+    If fresh episodes are likely to show that the near end fails too often, only the failure rate counts, because the
+    whole chain is then tested for it.
     """
     model = nearest.model()
     if part_of(nearest, [near]) == "rate":

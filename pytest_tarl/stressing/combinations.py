@@ -21,32 +21,34 @@ from pytest_tarl.stressing.rate_tests import RateTests
 from pytest_tarl.stressing.rays import Ray, distance, joined
 from pytest_tarl.stressing.trimming import broken, trimmed
 
-# pairs of directions are tested at this share of the distance to each boundary, where each direction alone holds
+# pairs of directions are tested at this share of the way to each boundary, where the guarantee holds for each direction
+# alone
 INSIDE = 0.9
 FIRST = 0.44  # share of the budget for the first search for the nearest failing drift
-# share of the budget after which the first chains of tests stop, so that the model learns from them for the next ones
+# share of the budget after which the first chains of tests stop, so that the model can learn from them before the next
+# chains
 BEGUN = 0.7
-# share of the budget after which all chains of tests stop, so that enough is left for the single directions
+# share of the budget after which all chains of tests stop, so that enough episodes are left for the single directions
 CONFIRMED = 0.85
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 ALONE = 3  # number of rounds of the search with nominal options before other options are searched
 REFINED = 0.08  # share of the budget for the search that runs between the first two chains of tests
-TRIMMED = 0.1  # maximum share of the budget for moving single directions of a confirmed drift
-FURTHER = 6  # maximum number of searches, each followed by a chain, after the chains towards nominal
-EXPLORED = 0.06  # maximum share of the budget for each of these searches
+TRIMMED = 0.1  # maximum share of the budget for moving single directions of a confirmed drift towards nominal
+FURTHER = 6  # maximum number of further searches, each followed by a chain, once the planned chains have run
+EXPLORED = 0.06  # maximum share of the budget for each of these FURTHER searches
 ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first chain that confirms a drift
 RECORDED = 0.05  # share of the whole risk for the bound of the recorded mean reward
-# shares of the whole risk for the first chains; each further chain gets half of the rest
+# shares of the whole risk for the first chains; each further chain gets half of the risk that is left
 SHARES = (0.4, 0.3, 0.1, 0.05)
 QUICK = SIZES[0]  # number of episodes that the search runs at a drift that was confirmed to fail
-# a new chain comes before the interrupted one if the distance of its near end is below this share of the distance of
-# the next drift of the interrupted chain
+# A new chain is tested before an interrupted one is continued if its near end is much nearer: below this share of the
+# distance of the next drift of the interrupted chain.
 AHEAD = 0.97
 
 
 @dataclass
 class Chain:
-    """A chain of drifts, farthest first, and its tests; `left` are the drifts that are not decided yet.
+    """A chain of drifts, farthest first, and its tests; `left` holds the drifts that are not decided yet.
 
     All drifts are chosen before the first episode of the pool, so the tests may be interrupted and continued at any
     time (fixed-sequence procedure). Each drift is tested at the whole `risk` of the chain.
@@ -78,14 +80,14 @@ class Together:
 
     risk: float
     curves: Sequence[Curve]
-    # failures, except those that hardly differ from a nearer failure
+    # the confirmed failures, except those that hardly differ from a nearer failure
     found: list[Failure] = field(default_factory=list)
-    every: list[Failure] = field(default_factory=list)  # all failures
+    every: list[Failure] = field(default_factory=list)  # all confirmed failures
     tried: int = 0  # number of drifts in several directions that the search tried
     margin_map: MarginMap | None = None
     chains: int = 0  # number of chains tested so far
-    tested: list[Point] = field(default_factory=list)  # the drifts of these chains at which episodes ran
-    interrupted: Chain | None = None  # the last chain, if a spent budget interrupted its tests
+    tested: list[Point] = field(default_factory=list)  # drifts of the tested chains at which episodes ran
+    interrupted: Chain | None = None  # the last chain, if its tests stopped because the budget was spent
     # drifts that fail according to the model but are not confirmed
     expected: list[Failure] = field(default_factory=list)
 
@@ -99,14 +101,14 @@ class Together:
     ) -> bool:
         """Test drifts on fresh seeds, farthest first, until one is not confirmed; return whether one was confirmed.
 
-        The tests are about this part of the guarantee; its choice must not depend on the fresh seeds. With `unpaired`,
-        the tests compare with a lower bound of the recorded mean reward. This bound has its own share of the risk and
-        is the same in all chains, so the drifts may depend on it.
+        The tests examine this `part` of the guarantee; the choice of the part must not depend on the fresh seeds. With
+        `unpaired`, the tests compare with a lower bound of the recorded mean reward. This bound has its own share of
+        the risk and is the same in all chains, so the choice of drifts may depend on it.
 
-        Each test has the whole risk of the chain: if the guarantee holds at some of the drifts, an error needs the
-        confirmation of the first of these. The seeds are new for each chain, so its drifts may depend on the outcomes
-        of earlier chains, and the model learns from them afterwards. Skip drifts that contain a confirmed failure:
-        those that change the same values at least as much. Raise BudgetSpentError.
+        Each test has the whole risk of the chain: suppose the guarantee holds at some of the drifts; an error then
+        requires that the first of these is confirmed. The seeds are new for each chain, so the choice of its drifts may
+        depend on the outcomes of earlier chains, and the model learns from these outcomes. Skip a drift that contains a
+        confirmed failure, which means that it changes the same values at least as much. Raise BudgetSpentError.
         """
         usual, known = evaluator.space.nominal, self.confirmed
         chain = [
@@ -150,7 +152,7 @@ class Together:
             self._along(found, evaluator)
 
     def _along(self, found: Failure, evaluator: Evaluator) -> None:
-        """Add a confirmed failure along a single direction to its curve."""
+        """Add a confirmed failure along a single direction to the curve of that direction."""
         (name,) = found.names
         for curve in self.curves:
             t = found.distance / curve.ray.length
@@ -167,9 +169,10 @@ def _share(number: int) -> float:
 
 
 def _apart(found: Sequence[Failure], evaluator: Evaluator) -> list[Failure]:
-    """Return failures in the same order without those that hardly differ from a nearer one.
+    """Return the failures in the same order, without those that hardly differ from a nearer failure.
 
-    Such a failure contains the nearer one, and its distance is less than APART times the distance of the nearer one.
+    A failure hardly differs from a nearer one if it contains the nearer one and its distance is less than APART times
+    as large.
     """
     kept: list[Failure] = []
     for one in sorted(found, key=lambda one: (one.distance, one.names)):
@@ -184,7 +187,7 @@ def _apart(found: Sequence[Failure], evaluator: Evaluator) -> list[Failure]:
 class Combined:
     """The search in several directions: `begin` runs before the single directions are examined, `end` afterwards.
 
-    If no near drift fails with nominal options, a search of its own follows for each other option.
+    If no near drift fails with nominal options, each other option gets a search of its own.
     """
 
     def __init__(self, evaluator: Evaluator, together: Together) -> None:
@@ -229,7 +232,7 @@ class Combined:
         self._test(sorted(proposed, key=lambda one: -distance(self.evaluator.space, one)))
 
     def draw(self) -> None:
-        """Predict the map and the nearest failures from all episodes, if every ray has some; run no further ones."""
+        """Predict the map and the nearest failures from the episodes so far, if every ray has some; run none."""
         if not all(curve.evidence for curve in self.together.curves):
             return
         with self.evaluator.limited(0.0):
@@ -238,7 +241,10 @@ class Combined:
             self.together.margin_map = self.nearest.map()
 
     def _approach(self) -> None:
-        """Search with nominal options, and with the others as long as they may be nearer. Raise BudgetSpentError."""
+        """Search with nominal options, and with each other option that may lead to a nearer failure.
+
+        Raise BudgetSpentError.
+        """
         if not self.options:
             self.nearest.approach()
             return
@@ -246,7 +252,10 @@ class Combined:
         self._explore(ROUNDS)
 
     def _explore(self, rounds: int) -> None:
-        """Explore with nominal options, and with the others as long as they may be nearer. Raise BudgetSpentError."""
+        """Explore with nominal options, and with each other option that may lead to a nearer failure.
+
+        Raise BudgetSpentError.
+        """
         for _ in range(rounds):
             best = self._leading.best
             limit = LARGEST if best is None else self.nearest.distance(best)
@@ -262,7 +271,7 @@ class Combined:
     def _option_fails(self, option: Nearest) -> bool:
         """Return whether a few episodes show that an option alone fails. Raise BudgetSpentError.
 
-        The budget of the first search may have ended before the option's own ray had any episode.
+        The budget of the first search may have been spent before any episode ran on the option's own ray.
         """
         evaluator, base = self.evaluator, option.coordinates.base
         found = evaluator.known(base) if evaluator.searched(base) else evaluator.glance(base)
@@ -277,7 +286,8 @@ class Combined:
             if best is None or any(
                 other is not one and other.coordinates.covers(best) for other in self.options
             ):
-                continue  # the search `other` has the options of `best`, so its model decides about `best`
+                # the search `other` has the options of `best`, so the model of `other` decides whether `best` fails
+                continue
             if one.distance(best) < least:
                 leading, least = one, one.distance(best)
         return leading
@@ -293,8 +303,8 @@ class Combined:
     def _continue(self) -> bool:
         """Continue the interrupted chain, or test a chain that leads nearer; return whether a drift was confirmed.
 
-        An interrupted chain needs fewer episodes than a new one, because its seeds have already run at its last drift.
-        It is not continued if the model, which has learned from it, no longer expects a confirmation. Raise
+        An interrupted chain needs fewer episodes than a new one, because its seeds have already run at the last drift.
+        It is not continued if the model, which has learned from these episodes, no longer expects a confirmation. Raise
         BudgetSpentError.
         """
         begun = self.together.interrupted
@@ -305,9 +315,9 @@ class Combined:
         return (bool(nearer) and self._test(chain)) or self.together.run(begun)
 
     def _approach_confirmed(self) -> None:
-        """Test chains in small steps from the nearest confirmed drift, until one confirms none. Raise BudgetSpentError.
+        """Test chains in small steps from the nearest confirmed drift, until a chain confirms no drift.
 
-        The previous chains have larger steps, so they end farther from the boundary than the model's errors require.
+        The previous chains had larger steps, so they may have ended far from the boundary. Raise BudgetSpentError.
         """
         while known := self.together.confirmed:
             near = min(known, key=lambda one: (one.distance, one.names)).point
@@ -316,9 +326,9 @@ class Combined:
                 return
 
     def _trim(self) -> None:
-        """Move single directions of the nearest confirmed drift to nominal if it is at a jump, and test the result.
+        """If the nearest confirmed drift is at a jump, move single directions of it towards nominal, and test it.
 
-        It may not be at a jump if a chain is interrupted, because the next drift of the chain may fail, too. Raise
+        While a chain is interrupted, nothing is moved: its next drift may fail, too, and then there is no jump. Raise
         BudgetSpentError.
         """
         evaluator, known = self.evaluator, self.together.confirmed
@@ -339,7 +349,7 @@ class Combined:
     def _search_on(self) -> None:
         """Explore and test further chains in turn, while episodes are left. Raise BudgetSpentError.
 
-        The chains before end early if no nearer drift is expected to fail. Another region may have one.
+        The earlier chains end when no nearer drift is expected to fail. Another region may still contain such a drift.
         """
         evaluator = self.evaluator
         for _ in range(FURTHER):
@@ -395,7 +405,7 @@ def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> No
 
 
 def _inside(curves: Sequence[Curve]) -> Iterator[tuple[Ray, float]]:
-    """Yield each ray with the largest t to use in a pair; skip options that fail alone."""
+    """Yield each ray with the largest t to use in a pair; skip options under which the guarantee fails alone."""
     for curve in curves:
         if not curve.failing:
             yield curve.ray, 1.0

@@ -1,6 +1,6 @@
 """Drifts as vectors: for each range, the difference from nominal in units of the declared range.
 
-An option of a choice has no coordinate; it is that of a base point.
+Choices have no coordinate: their options are those of a base point.
 """
 
 from __future__ import annotations
@@ -64,13 +64,13 @@ class Coordinates:
         return found
 
     def covers(self, point: Point) -> bool:
-        """Return whether a point has the options of the base."""
+        """Return whether a point has the same options as the base."""
         return all(point[name] == self.base[name] for name in self.base if name not in self.spans)
 
     def within(self, vector: Vector, limit: float) -> Vector | None:
-        """Return the vector, shortened if necessary so that its point is at most `limit` from nominal.
+        """Return the vector, shortened if necessary, so that the distance of its point from nominal is at most `limit`.
 
-        Return None if the options alone are farther away.
+        Return None if the options alone are at a larger distance.
         """
         room = limit**2 - self.options
         length = distance(self.space, self.point(vector)) ** 2 - self.options

@@ -50,7 +50,7 @@ def deliver(request: Request, root: Path) -> Delivered:
 
 
 def deliver_repairs(found: Stress, root: Path) -> list[str]:
-    """Write the result and the page again, with the repairs; return a line for each file that failed."""
+    """Write the result and the page again, with the repairs; return a line for each file that could not be written."""
     name = f"{slug(found.test)}-{slug(found.drift)}"
     jobs = _documents(found, root, name)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}
@@ -86,7 +86,7 @@ def _replayed(request: Request, memory: kept.Kept) -> tuple[str, ...]:
 
 
 def _without_salib(found: Stress) -> tuple[str, ...]:
-    """Return the advice to install SALib if only the missing package prevents the Sobol indices."""
+    """Return the advice to install SALib if the Sobol indices are missing only for lack of this package."""
     left = found.budget - found.episodes if found.seconds is None else 0
     if found.ended not in ("", "budget") or not affordable(len(found.space.extents), left):
         return ()
@@ -95,7 +95,7 @@ def _without_salib(found: Stress) -> tuple[str, ...]:
 
 
 def _written(found: Stress, root: Path, name: str, memory: kept.Kept) -> list[str]:
-    """Write the files; return a line for each failed one, and one with the path of the page."""
+    """Write the files; return a line for each that could not be written, and a line with the path of the page."""
     folder = root / ".tarl"
     report = _page(root, name)
     jobs = _documents(found, root, name)

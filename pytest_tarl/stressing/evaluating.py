@@ -30,22 +30,23 @@ SIZES = (4, 8, 16, 32)  # numbers of episodes at a drift after which the search 
 FRESH = (16, 32)  # numbers of fresh episodes after which a test along a ray checks for a decision
 # number of episodes at each new drift of the search in several directions; few suffice, because a model combines them
 GLANCE = 2
-# number of seeds among which the drifts of this search choose their first seed in turn
+# number of different seeds at which the drifts of this search start, in turn
 TURNS = 16
-# numbers of fresh episodes after which a test of a combination checks for a decision; larger numbers show nearer
-# failures
+# numbers of fresh episodes after which a test of a combination checks for a decision; more episodes can show failures
+# nearer to the boundary
 NEAREST = (16, 32, 64)
-# shares of the risk for these numbers of episodes; the last share is the largest, because the largest number of
-# episodes shows most
+# shares of the risk for these checks; the last share is the largest, because the check with the most episodes can show
+# the smallest excess
 SPENT = (0.1, 0.2, 0.7)
 SEARCH = "search"  # name of the pool of seeds on which the search runs
-RAYS = "rays"  # name of the pool of fresh seeds that all rays share; chains of combinations have pools of their own
+# name of the pool of fresh seeds that all rays share; each chain of combinations has its own pool
+RAYS = "rays"
 
 Progress = Callable[[int, int, str], None]
 
 
 class Count(NamedTuple):
-    """The estimated number of failed episodes of a drift, of a number of episodes."""
+    """For a drift, the estimated number of failures among a number of episodes."""
 
     point: Point
     failed: float
@@ -99,17 +100,17 @@ class Evaluator:
 
     @property
     def left(self) -> int:
-        """Return how many more episodes the budget allows; a time limit is converted at the mean speed so far."""
+        """Return how many more episodes the budget allows; a time limit counts as episodes at the mean speed so far."""
         if self.seconds is None:
             return self.budget - self.spent
         passed = monotonic() - self.begun
         return int(self.spent * max(self.seconds - passed, 0.0) / max(passed, 1e-9))
 
     def glance(self, point: Point, turn: int = 0) -> Evidence:
-        """Return the evidence at a point from GLANCE episodes; `turn` selects the seeds if it is a new point.
+        """Return the evidence at a point from GLANCE episodes; if the point is new, `turn` selects the seeds.
 
-        If many drifts use different seeds in turn, a few unusual seeds do not shift the results of all drifts. Raise
-        BudgetSpentError.
+        The drifts take turns with different seeds, so that a few unusual seeds do not distort the results of all
+        drifts. Raise BudgetSpentError.
         """
         if point != self.space.nominal and not self.searched(point):
             self._first[tuple(point.values())] = turn * GLANCE % TURNS
@@ -150,12 +151,13 @@ class Evaluator:
     ) -> bool:
         """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails at a point.
 
-        Episodes are paired by seed with nominal ones. Several points may share a pool if none of them was chosen by its
-        outcomes. The test checks for a decision after each of `sizes` episodes, at its share of `risk`; without
-        `shares`, `risk` is divided evenly. With `part`, only this part of the guarantee is tested, at the whole risk;
-        the choice of the part must not depend on the pool. The test also stops once a failure can hardly be shown any
-        more, with `strict` earlier (see `hopeless`). With `least`, a lower bound of the nominal mean reward, the test
-        compares with this bound and needs no nominal episodes. Raise BudgetSpentError.
+        Episodes are paired with the nominal episodes of the same seeds. Several points may share a pool, provided that
+        the outcomes of the pool did not affect the choice of the points. The test checks for a decision after each
+        number of episodes in `sizes`. Each check has its share of `risk`; without `shares`, all checks have the same
+        share. With `part`, only this part of the guarantee is tested, at the whole risk; the choice of the part must
+        not depend on the pool. The test also stops when it has little chance left to show a failure; with `strict`,
+        this happens earlier (see `hopeless`). With `least`, a lower bound of the nominal mean reward, the test compares
+        with this bound and needs no nominal episodes. Raise BudgetSpentError.
         """
         if least is not None:
             self._unpaired.add(pool)
@@ -172,7 +174,7 @@ class Evaluator:
         return False
 
     def _evidence(self, point: Point, count: int) -> Evidence:
-        # run these first, because each outcome is paired with a nominal one
+        # run the nominal episodes first, because each outcome is paired with a nominal one
         nominal = self._paired(point, count)
         return examined(self.guarantee, self.common(point, count), nominal)
 
@@ -204,7 +206,7 @@ class Evaluator:
             self._released.append(pool)
 
     def knows(self, point: Point) -> bool:
-        """Return whether `losses` has an episode at a point; the budget may have ended before."""
+        """Return whether `losses` has an episode at a point; it has none if the budget was spent before."""
         return any(self._pairs(pool, point)[0] for pool in (SEARCH, *self._released))
 
     @property
@@ -213,7 +215,7 @@ class Evaluator:
         return [RAYS, *self._released]
 
     def losses(self, point: Point) -> tuple[list[float], int]:
-        """Return the loss of each episode that the model may learn from at a point, and how many of them failed.
+        """Return the losses of the episodes at a point from which the model may learn, and how many failed.
 
         These are the episodes of the search and of the released pools. A loss is the difference from the nominal
         episode with the same seed, in units of the tolerated loss; it is positive if the episode earned less. Raise
@@ -226,7 +228,7 @@ class Evaluator:
         return shares, sum(not one.passed for one in outcomes)
 
     def totals(self, point: Point) -> list[tuple[float, float]]:
-        """Return the reward of each episode of the search at a point, with that of the nominal episode of its seed."""
+        """Return the rewards of the search's episodes at a point, each with that of the nominal episode of its seed."""
         return [(one.total, usual.total) for one, usual in zip(*self._pairs(SEARCH, point), strict=True)]
 
     @property
@@ -243,7 +245,7 @@ class Evaluator:
         ]
 
     def _learned(self, point: Point) -> tuple[list[Outcome], list[Outcome]]:
-        """Return the outcomes that the model may learn from at a point, and the nominal ones with the same seeds."""
+        """Return the outcomes at a point from which the model may learn, and the nominal ones of the same seeds."""
         pairs = [self._pairs(pool, point) for pool in (SEARCH, *self._released)]
         outcomes, nominal = ([*chain.from_iterable(part)] for part in zip(*pairs, strict=True))
         if not outcomes:
@@ -260,7 +262,7 @@ class Evaluator:
         return outcomes[: len(rows)], [nominal[row] for row in rows]
 
     def _nominal(self, pool: str, count: int) -> Sequence[Outcome]:
-        """Return the nominal outcomes of a pool; in a pool without any, the recorded mean takes their place."""
+        """Return the nominal outcomes of a pool; if the pool has none, each is replaced by the recorded mean."""
         if pool in self._unpaired:
             return [Outcome(True, fmean(self.guarantee.totals))] * count
         return self._known.get((pool, *self._usual), [])
@@ -276,7 +278,7 @@ class Evaluator:
         return self._orders.get((pool, *point.values()), range(count))[:count]
 
     def ordered(self, pool: str, point: Point, rows: Sequence[int]) -> dict[int, Outcome]:
-        """Run the seeds with these numbers of a fresh pool at a point, and return all of its outcomes by number.
+        """Run the seeds of a fresh pool with the numbers `rows` at a point; return all outcomes there by number.
 
         Raise BudgetSpentError if the budget does not cover the missing ones.
         """
@@ -288,16 +290,16 @@ class Evaluator:
         return dict(zip(order, known, strict=True))
 
     def count(self, pool: str, count: Count) -> None:
-        """Keep an estimate of how many episodes of a pool fail, in place of an earlier one about the same drift.
+        """Store an estimate of how many episodes of a pool fail; it replaces an earlier estimate for the same drift.
 
-        The model learns from it once the pool is released.
+        The model learns from the estimate once the pool is released.
         """
         known = self._counts.setdefault(pool, [])
         self._counts[pool] = [*(one for one in known if one.point != count.point), count]
 
     @property
     def counts(self) -> list[Count]:
-        """Return the counts of the released pools."""
+        """Return the estimated numbers of failures in the released pools."""
         return [one for pool in self._released for one in self._counts.get(pool, [])]
 
     def common(self, point: Point, count: int) -> Sequence[Outcome]:

@@ -14,7 +14,7 @@ from pytest_tarl.stressing.coordinates import Vector
 def evolve(
     start: Vector, spread: float, draws: np.random.Generator, margin: Callable[[Vector], float | None]
 ) -> None:
-    """Call `margin` with vectors from a normal distribution that adapts to low margins, until `margin` returns None.
+    """Call `margin` with random vectors until it returns None; their normal distribution adapts to low margins.
 
     `spread` is the initial standard deviation. The random numbers come from `draws`, because `cma` would otherwise seed
     numpy's global generator, which nodes may use.

@@ -1,7 +1,7 @@
 """Fit the fields of the search's model, and choose their hyperparameters by evidence.
 
 The hyperparameters are the scale factor of each direction, the prior variance of the logit, and the effect of a seed.
-Choosing them takes several fits, so they are kept until there are clearly more drifts.
+Choosing them takes several fits. They are therefore kept until the number of drifts has grown clearly.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covar
 
 # possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
 SCALES = (9.0, 36.0, 144.0)
-# possible variances of the effect that a seed has on the logit under all drifts, besides none
+# possible variances of a seed's effect on the logit, an effect common to all drifts; 0 is tried as well
 LUCK = (1.0, 4.0)
-IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
+IRRELEVANT = 0.3  # scale factor for the coordinate of a direction with little influence
 GROWN = 1.2  # hyperparameters are chosen again if the number of drifts grew by this factor
 
 Field = TypeVar("Field", LossField, RateField)
@@ -29,7 +29,7 @@ Field = TypeVar("Field", LossField, RateField)
 class Fit(Generic[Field]):
     """A fitted field.
 
-    `units` are the scale factors of the directions, `luck` is the variance of the effect of a seed, and `chosen` is the
+    `units` holds the scale factors of the directions. `luck` is the variance of the effect of a seed. `chosen` is the
     number of drifts from which the hyperparameters were chosen.
     """
 
@@ -47,8 +47,8 @@ class Fit(Generic[Field]):
 class Counts:
     """Failed episodes at vectors; arrays of shape (drifts,).
 
-    `usual` is the logit of the failure rate at nominal. `shared` are the covariances that drifts have because they ran
-    on the same seeds, for an effect of a seed with variance 1.
+    `usual` is the logit of the failure rate at nominal. `shared` holds the covariances that exist because drifts ran on
+    the same seeds; they are computed for a seed effect of variance 1.
     """
 
     vectors: Vector
@@ -63,7 +63,7 @@ class Counts:
         return RateField(prior, scale, self.failed, self.episodes, self.usual, start, shared)
 
     def logits(self, known: Mapping[tuple[float, ...], float]) -> Vector:
-        """Return the known logits at the vectors, and the usual one at new vectors."""
+        """Return the known logits at vectors that have one, and the usual logit at new vectors."""
         return np.array([known.get(tuple(vector), self.usual) for vector in self.vectors.tolist()])
 
 
@@ -85,7 +85,7 @@ def loss_fit(
 def rate_fit(
     counts: Counts, before: Fit[RateField] | None, known: Mapping[tuple[float, ...], float]
 ) -> Fit[RateField]:
-    """Fit counts of failed episodes; `before` is the fit to fewer drifts, if any, and `known` are its logits."""
+    """Fit counts of failed episodes; `before` is an earlier fit to fewer drifts, and `known` holds its logits."""
     vectors = counts.vectors
     if before is not None and before.lasts(len(vectors)):
         scaled = vectors * before.units
@@ -105,9 +105,9 @@ def rate_fit(
 
 
 def relevant(field: Callable[[Matrix], Field], vectors: Vector) -> tuple[Field, Vector]:
-    """Return the fitted field and a scale factor for each direction.
+    """Choose a scale factor for each direction; return the fitted field and the factors.
 
-    The factor is IRRELEVANT instead of 1 where that increases the evidence.
+    The factor of a direction is IRRELEVANT if that increases the evidence, and 1 otherwise.
     """
     units = np.ones(vectors.shape[1])
     prior = scaled_covariances(vectors)

@@ -15,7 +15,8 @@ CONFIDENCE = 0.9  # probability that a boundary lies in the interval that is rep
 # maximum probability that the guarantee still holds at the far end of the interval
 FAR_RISK = (1.0 - CONFIDENCE) / 6
 NEARER = 0.98  # maximum ratio of two distances at which the first counts as nearer
-# if a failure contains another failure, it is reported only if it is at least this many times as far
+# a failure that contains a nearer failure is reported only if its distance is at least this multiple of the nearer
+# one's
 APART = 1.03
 # maximum probability that the guarantee already fails at the near end of the interval
 NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
@@ -25,8 +26,8 @@ NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
 class Curve:
     """The evidence along a ray, by the place t; the search adds to it.
 
-    `confirmed` is the nearest t at which fresh seeds showed a failure, and `farther` are other ones. `rejected` holds
-    each t at which the episodes showed no failure.
+    `confirmed` is the nearest t at which fresh seeds showed a failure, and `farther` holds every other such t.
+    `rejected` holds each t at which fresh seeds showed no failure.
     """
 
     ray: Ray
@@ -50,7 +51,7 @@ class Curve:
 
     @property
     def bracket(self) -> tuple[float, float] | None:
-        """Return the last measured t before the nearest failing one, and the failing one; None if none fails."""
+        """Return the nearest failing t and the measured t just before it, in ascending order; None if no t fails."""
         if not self.failing:
             return None
         far = self.failing[0]
@@ -102,8 +103,8 @@ class Failure:
 class MarginMap:
     """The predicted margins over two ranges, and their standard deviations.
 
-    Row i belongs to the i-th cell of the second range, ascending. The cells divide the ranges evenly, and a value is
-    that of the middle of its cell.
+    Row i belongs to the i-th cell of the second range, ascending. The cells divide both ranges evenly. Each value is
+    predicted for the middle of its cell.
     """
 
     names: tuple[str, str]
@@ -114,10 +115,10 @@ class MarginMap:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """The Sobol indices of a direction: how much of the margin's variance over the space it explains.
+    """The Sobol indices of a direction: the shares of the margin's variance over the space that the direction explains.
 
-    `first` is the share of the direction alone; `total` includes its combinations with others. An error is half the
-    width of a confidence interval.
+    `first` is the share of the direction alone; `total` also includes its combinations with other directions. The error
+    of a share is half the width of its confidence interval.
     """
 
     name: str
@@ -131,7 +132,7 @@ class Share:
 class Sobol:
     """The Sobol indices of all directions, and the number of episodes behind them.
 
-    `hopeless` is true if the margin of every episode was at its lower limit. Then the indices say nothing.
+    `hopeless` is true if every episode had the lowest possible margin. The indices then have no meaning.
     """
 
     episodes: int
@@ -160,10 +161,10 @@ class Statements:
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """How a repair moves a boundary: in words, and the values that were shown to hold and to fail.
+    """How a repair moves a boundary: in words, and as values at which the guarantee was shown to hold and to fail.
 
-    A value that was not shown is None. Values are numbers of the direction; for a combination they are distances from
-    nominal.
+    A value is None if neither was shown. For a single direction, values are numbers of its range. For a combination,
+    they are distances from nominal.
     """
 
     name: str
@@ -190,7 +191,7 @@ class Draws:
 
 @dataclass(frozen=True)
 class Attempt:
-    """A search for a repair in a region, and what an accepted repair changes."""
+    """A search for a repair in one region of drifts, and the effects of the repair if one was accepted."""
 
     region: str
     told: str  # description of the repair, or reason why there is none
@@ -240,7 +241,7 @@ class Stress:
 
     @property
     def every_failure(self) -> tuple[Failure, ...]:
-        """Return the failures and the farther ones along single directions, which are often surer, nearest first."""
+        """Return all confirmed failures, nearest first, including the farther ones along each single direction."""
         return _sorted([*self.failures, *farther(self.curves)])
 
 
@@ -266,7 +267,10 @@ def confirmed(curves: Sequence[Curve]) -> list[Failure]:
 
 
 def farther(curves: Sequence[Curve]) -> list[Failure]:
-    """Return the confirmed failing drifts beyond the nearest along each ray, each APART times as far as the last."""
+    """Return the confirmed failing drifts beyond the nearest one of each ray.
+
+    Each is at least APART times as far from nominal as the one before it.
+    """
     found = []
     for one in curves:
         last = one.confirmed

@@ -26,11 +26,11 @@ def fitted(
     shown: Callable[[float], Shown],
     before: Prediction | None = None,
 ) -> Prediction:
-    """Return a model of the drifts that `coordinates` cover, fitted to the known ones among them.
+    """Return a model of the drifts that `coordinates` cover, fitted to those drifts in `known` that they cover.
 
-    `shown` returns what fresh episodes can show, given the standard deviation of a loss at the boundary. If the drifts
-    have options that are not nominal, the model takes the loss under these options alone as given. `before` is the
-    previous model of the same search, if any.
+    `shown` receives the standard deviation of a loss at the boundary, and returns what fresh episodes can show. If the
+    drifts have options that are not nominal, the model assumes the measured loss under these options alone. `before` is
+    the previous model of the same search, if there is one.
     """
     unique = {tuple(point.values()): point for point in known if coordinates.covers(point)}
     points = list(unique.values())

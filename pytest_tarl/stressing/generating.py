@@ -36,7 +36,7 @@ def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], floa
         nonlocal ended, raised
         try:
             found = None if ended else margin(_point(space, drawn))
-        # Hypothesis must not see the error, because Hypothesis would then run the drift again
+        # the error must not reach Hypothesis, which would run the drift again
         except Exception as problem:
             found, raised = None, problem
         if found is None:

@@ -21,10 +21,11 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
 from pytest_tarl.rollout import EpisodeRun
 
-LOWEST = -1.5  # lower limit of margins; still lower margins say little about where the boundary is
-# minimum number of episodes for the result "holds"; if 1 in 12 fails, 8 episodes all pass half of the time
+LOWEST = -1.5  # lower limit of margins, since a margin below it says little about the place of the boundary
+# minimum number of episodes for the result "holds"; if 1 in 12 episodes fails, 8 episodes still all pass half of the
+# time
 LEAST = 8
-HOPEFUL = 0.84  # one-sided confidence of a bound that lies one standard error above the mean
+HOPEFUL = 0.84  # one-sided confidence of the bound "mean plus one standard error"
 # approximate error probability of each decision of the search; only fresh seeds give a guarantee
 SEARCH_RISK = 0.05
 
@@ -149,8 +150,8 @@ def margin_of(
     """Return the margin of outcomes, cut off at LOWEST, and its approximate standard deviation.
 
     If some episodes failed, the deviation is half the width of the margin's 80 % interval. If all passed, it is the
-    standard error of the mean loss. The error is computed with two assumed additional losses that deviate from the mean
-    by a third of the tolerance, because the losses of a few episodes may agree by chance.
+    standard error of the mean loss. The losses of a few episodes may agree by chance. To compute the error, two losses
+    are therefore added that differ from the mean by a third of the tolerance.
     """
     count, passed = len(outcomes), sum(one.passed for one in outcomes)
     losses = _losses(outcomes, nominal)
@@ -195,7 +196,7 @@ def recorded_mean(given: Guarantee, risk: float) -> float:
 
 
 def most_passed(given: Guarantee, count: int, risk: float, part: Part = "both") -> int:
-    """Return the largest number of passed episodes that refutes the guarantee, or -1 if no number does."""
+    """Return the largest number of passes in `count` episodes that refutes the guarantee, or -1 if none does."""
     return _most_passed(given.rate, count, risk / 2 if part == "both" else risk)
 
 
@@ -217,9 +218,9 @@ def hopeless(
 ) -> bool:
     """Return whether the first episodes make it unlikely that `most` episodes will refute the guarantee.
 
-    A refutation is unlikely if the guarantee would still hold after adding about one standard error to both the loss
-    and the number of failures; `part` has the same meaning as in `refuted`. With `strict`, a refutation is also
-    unlikely if further episodes that lose as much as these, plus one standard error, would not refute the guarantee.
+    First, about one standard error is added to the loss and to the number of failures. If the guarantee still holds
+    then, a refutation is unlikely. With `strict`, it is also unlikely if further episodes with this increased loss
+    would not refute the guarantee. `part` has the same meaning as in `refuted`.
     """
     if part != "loss":
         count, failed = len(outcomes), sum(not one.passed for one in outcomes)

@@ -19,9 +19,9 @@ from pytest_tarl.stressing.rays import Ray
 
 # shares of the risk for the first and the second value, and for the two tests at each value
 SHARES = (0.85, 0.15)
-SECOND = 0.5  # the second value tested, as a share of the first value tested
+SECOND = 0.5  # the second tested value, as a share of the first
 BATCH = 8  # a test checks after each batch of this many episodes whether it can still succeed
-PAIRED = (16, 32)  # numbers of episodes to bound the loss with, unless the marker declares total_range
+PAIRED = (16, 32)  # numbers of episodes from which the loss is bounded if the marker declares no total_range
 
 
 def hold(curve: Curve, evaluator: Evaluator) -> None:
@@ -40,8 +40,8 @@ def hold(curve: Curve, evaluator: Evaluator) -> None:
 def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) -> bool:
     """Return whether fresh seeds show, with error probability `risk`, that the guarantee holds at place t.
 
-    The first test allows no failed episode. If one failed, a second, longer test allows one. The loss is bounded with
-    `paired` episodes, or with all episodes if the marker declares total_range.
+    The first test allows no failed episode. If one episode fails, a second, longer test follows, which allows one
+    failure. The loss is bounded from `paired` episodes, or from all episodes if the marker declares total_range.
     """
     given, point, nominal = evaluator.guarantee, ray.point(t), evaluator.space.nominal
     for allowed, share in enumerate(SHARES):
@@ -63,15 +63,15 @@ def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) ->
 
 
 def least(share: float, failed: int, risk: float) -> int:
-    """Return the minimum number of episodes that show a success rate of `share` although `failed` of them failed."""
-    # upper limit of the search: if the episodes form `failed` + 1 groups, at least one group has no failure
+    """Return how many episodes are needed to show a success rate of at least `share` when `failed` of them fail."""
+    # upper limit of the search: of `failed` + 1 groups of episodes, at least one group has no failure
     most = (failed + 1) * episodes_for_quantile(1.0 - share, 1.0 - risk / (failed + 1))
     sizes = range(LEAST, max(most, LEAST) + 1)
     return sizes[bisect_left(sizes, True, key=lambda n: rate(n - failed, n, 1.0 - risk).low >= share)]
 
 
 def _values(curve: Curve, evaluator: Evaluator) -> tuple[tuple[float, float], int]:
-    """Return the two values of t to test, and the number of episodes to bound the loss with.
+    """Return the two values of t to test, and the number of episodes from which the loss is bounded.
 
     The values depend only on the search's episodes, so the fresh seeds stay independent. A value of 0 is not tested.
     """

@@ -107,7 +107,10 @@ class Replayed:
 def replayed(
     points: Sequence[Point], rollout: Rollout, drift: str, seed: int, given: Guarantee
 ) -> Iterator[Replayed]:
-    """Run EPISODES episodes at each stored drift; it still fails if one of them fails or the mean loss is too large."""
+    """Run EPISODES episodes at each stored drift.
+
+    The drift still fails if one of these episodes fails, or if their mean loss is too large.
+    """
     seeds = episode_seeds(seed, f"stress {drift} search", EPISODES)
     for point in points:
         plans = (EpisodePlan(each, drift, point=point) for each in seeds)

@@ -9,7 +9,8 @@ from pytest_tarl.spaces import nominal
 from pytest_tarl.stressing.findings import Failure, MarginMap, Stress
 from pytest_tarl.stressing.svg_text import INK, svg_text
 
-SIZE, LEFT, TOP, FOOT = 400, 90, 12, 130  # px: side of the map, and the margins on the left, above and below
+# px: side length of the map, and the empty space on the left, above and below
+SIZE, LEFT, TOP, FOOT = 400, 90, 12, 130
 COLOURS = {"holds": "#d5ecdf", "unsure": "#f3dfa2", "fails": "#e59a93"}  # light colours, below dark marks
 NAMES = {"holds": "holds", "unsure": "undecided", "fails": "fails"}
 SURE = 2.0  # number of standard deviations; a margin closer to 0 counts as undecided
@@ -60,7 +61,7 @@ def answer(margin: float, spread: float) -> str:
 
 
 def _cells(found: MarginMap) -> Iterator[str]:
-    """Yield the cells as rectangles, one for each run of equal cells in a row, and the predicted boundary."""
+    """Yield a rectangle for each sequence of cells in a row with the same result, and the predicted boundary."""
     count = len(found.margins)
     side = SIZE / count
     for row, (margins, spreads) in enumerate(zip(found.margins, found.spreads, strict=True)):

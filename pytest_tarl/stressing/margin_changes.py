@@ -1,7 +1,7 @@
 """Compare margins before and after a change of the code.
 
-A direction is more fragile if the guarantee now fails at a value up to which it was shown to hold before. The
-probability that such a verdict is wrong is at most 1 - confidence.
+A direction is more fragile if the guarantee now fails at a value at which it was shown to hold before. The probability
+that such a verdict is wrong is at most 1 - confidence.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Change = Literal["more fragile", "more robust", "no significant change", "not co
 
 @dataclass(frozen=True)
 class Row:
-    """One direction before and after a change; a side is None if the direction does not exist there."""
+    """One direction before and after a change of the code; None where the direction does not exist."""
 
     title: str
     before: Margin | None

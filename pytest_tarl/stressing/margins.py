@@ -22,8 +22,8 @@ DIGITS = 6  # significant digits of a value
 class Margin:
     """The margin of one side of a range, or of an option.
 
-    The guarantee was shown to hold up to `holds_to` and to fail at `fails_at`; either is None if it was not shown. The
-    values of a range are numbers. For an option, 0 is the nominal option and 1 is this option.
+    The guarantee was shown to hold up to `holds_to` and to fail at `fails_at`; each of the two is None if nothing was
+    shown. The values of a range are numbers. For an option, 0 stands for the nominal option and 1 for this option.
     """
 
     name: str  # name of a direction; an option is named with its value, as in camera='down'
@@ -39,7 +39,7 @@ class Margin:
 
 @dataclass(frozen=True, slots=True)
 class Margins:
-    """The margins of a test in a space; `confidence` is that of each interval."""
+    """The margins of a test in a space; `confidence` is the confidence of each interval."""
 
     test: str
     drift: str

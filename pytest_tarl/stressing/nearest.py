@@ -32,13 +32,14 @@ from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
 from pytest_tarl.stressing.spreading import around, spread
 
-NEARER = 0.98  # maximum distance of the next failing drift, as a share of the best distance
+# maximum distance at which a failing drift counts as nearer, as a share of the best distance so far
+NEARER = 0.98
 LARGEST = 2.0  # maximum distance of the drifts that are searched
 PREDICTED = 3  # number of predicted drifts that are tried in succession
 GAIN = 0.01  # minimum expected reduction of the distance, as a share of the best distance, for a drift to be tried
-# numbers of standard deviations by which successive predictions assume larger losses, in turn
+# numbers of standard deviations that are added to the predicted losses; successive predictions use them in turn
 BOLD = (0.0, 1.0, 0.0, 0.5)
-# a drift also counts as failing if its predicted excess loss is below the detectable loss by at most this share
+# a drift also counts as failing if its predicted excess loss is at most this share below the detectable loss
 SURE = 0.5
 # a margin that lies at least this number of standard deviations below 0 clearly shows a failure
 CLEAR = 4.0
@@ -50,20 +51,20 @@ AMONG = 4  # number of candidates among which the model chooses one drift
 HOPE = 1.0  # number of standard deviations by which predictions are raised, to favour uncertain drifts
 DESCENDED = 2  # number of drifts near the best one that are tried in each round
 AGAIN = 4  # number of rounds of each later search
-SAME = 0.02  # relative difference of drifts below which they count as the same
-TRIES = 24  # number of consecutive drifts without a nearer failure after which CMA-ES stops
+SAME = 0.02  # relative difference below which two drifts count as the same
+TRIES = 24  # CMA-ES stops after this number of consecutive drifts without a nearer failure
 SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the best distance
-# Steps by which drifts are chosen: the errors of the model to allow for, in standard deviations, and the
-# excess over the guarantee, in units of what fresh episodes can show. EXPECTED is for drifts that are
-# reported without confirmation.
+# Each step has two numbers: the error of the model to allow for, in standard deviations, and the required excess over
+# the guarantee, in units of what fresh episodes can show. EXPECTED holds the steps for drifts that are reported without
+# confirmation.
 EXPECTED = ((0.2, 0.9), (0.4, 1.0), (0.6, 1.2), (0.8, 1.5), (1.0, 2.0), (1.5, 2.5))
-# excess over the tolerated loss, in standard errors, that fresh episodes show in 4 of 5 cases
+# if the loss exceeds the tolerated loss by this number of standard errors, fresh episodes show it in 4 of 5 cases
 STANDARD = 3.8
 # excess of a failure rate, in standard errors, that fresh episodes show in 4 of 5 cases; maximum failure rate
 POWER, IMPOSSIBLE = 0.6, 0.99
 # limits of the excess loss that fresh episodes can show, in units of the tolerated loss
 SHALLOW, DEEP = 0.03, 1.2
-# components below this share of the distance may be noise, so they are dropped before confirmation
+# components of a drift below this share of its distance may be noise, so they are set to nominal before confirmation
 TRIFLE = 0.15
 
 Steps = Sequence[tuple[float, float]]  # (number of standard deviations, excess), as in EXPECTED
@@ -77,8 +78,9 @@ class Nearest:
     curves: Sequence[Curve]
     tried: list[Point] = field(default_factory=list)
     tested: list[Point] = field(default_factory=list)  # drifts at which fresh episodes ran
-    risk: float = 0.01  # error probability of a test on fresh seeds; limits which failures can be shown
-    base: Point | None = None  # drift whose options the whole search keeps; None: the nominal options
+    # error probability of a test on fresh seeds; it determines how clear a failure must be
+    risk: float = 0.01
+    base: Point | None = None  # drift whose options the whole search keeps; None for the nominal options
     ceiling: float = LARGEST  # maximum distance of the drifts that are explored
     _spread: Iterator[Vector] | None = None
     _fitted: tuple[int, Prediction] | None = None  # (number of episodes that the model was fitted to, model)
@@ -115,9 +117,9 @@ class Nearest:
     def best(self) -> Point | None:
         """Return the nearest known failing drift, from `tried` and the rays, or None.
 
-        The model of all episodes decides whether a drift fails, unless the drift's own episodes show it clearly. A
-        drift with an option that is not nominal is outside the nominal model; only its own episodes decide. With a
-        base, only drifts with its options count.
+        If a drift's own episodes clearly show that it fails, they decide; otherwise, the model of all episodes decides.
+        The nominal model does not cover a drift with an option that is not nominal, so only the drift's own episodes
+        decide. If the search has a base, only drifts with the options of the base count.
         """
         coordinates = self.coordinates
         own = [point for point in self._known() if coordinates.covers(point) and self.distance(point) > 0.0]
@@ -148,8 +150,8 @@ class Nearest:
     def expected(self, steps: Steps) -> list[Point]:
         """Return for each step the nearest drift that fails according to the model.
 
-        A step allows for errors of the model and demands an excess over the guarantee. Drifts that hardly differ are
-        skipped. The result is empty if no tried drift fails.
+        A step is a pair as in EXPECTED. Drifts that hardly differ from an earlier one are skipped. The result is empty
+        if no tried drift fails.
         """
         best, coordinates = self.best, self.coordinates
         if best is None or not coordinates.covers(best):
@@ -166,7 +168,7 @@ class Nearest:
 
     @property
     def unpaired(self) -> bool:
-        """Return whether tests about losses should compare with the recorded mean, not with nominal episodes.
+        """Return whether tests of losses should compare with the recorded mean instead of nominal episodes.
 
         Only the episodes of the search decide, so that the answer does not depend on fresh seeds.
         """
@@ -187,7 +189,7 @@ class Nearest:
     def _fails(self, point: Point) -> bool:
         """Return whether a point's own episodes show a failure; run a few more episodes if they suggest one.
 
-        A point whose missing episodes exceed the budget does not count as failing.
+        If the budget does not cover the missing episodes of a point, the point does not count as failing.
         """
         evaluator = self.evaluator
         try:
@@ -229,7 +231,7 @@ class Nearest:
 
     @cached_property
     def _share(self) -> float:
-        """Return the failure rate that the largest number of fresh episodes shows about 4 times in 5."""
+        """Return the failure rate that a test with the largest number of fresh episodes shows in about 4 of 5 cases."""
         episodes = NEAREST[-1]
         most = most_passed(self.evaluator.guarantee, episodes, self.risk * SPENT[-1])
         if most < 0:
@@ -238,7 +240,10 @@ class Nearest:
         return min(share + POWER * sqrt(share * (1.0 - share) / episodes), IMPOSSIBLE)
 
     def _shown(self, noise: float) -> Shown:
-        """Return the loss and failure rate that fresh episodes can show; `noise` is that of a loss at the boundary."""
+        """Return the loss and failure rate that fresh episodes can show.
+
+        `noise` is the standard deviation of a loss at the boundary.
+        """
         depth = min(max(STANDARD * noise / sqrt(NEAREST[-1]), SHALLOW), DEEP)
         return Shown(depth, self._share)
 
@@ -286,8 +291,8 @@ class Nearest:
     def _explore(self) -> None:
         """Try drifts nearer than the best one in all directions, to find other failing regions.
 
-        Some are chosen by the model, because losses that are tolerated show where a failing region may be. Then try a
-        few drifts around the best one.
+        The model chooses some of them, because tolerated losses indicate where a failing region may be. Then try a few
+        drifts around the best one.
         """
         evaluator, coordinates = self.evaluator, self.coordinates
         if len(coordinates.spans) < 2:
@@ -353,6 +358,6 @@ class Nearest:
 
 
 def _without_trifles(vector: Vector, model: Prediction, errors: float) -> Vector:
-    """Return the vector without its smallest components, or unchanged if it would then no longer fail."""
+    """Set the smallest components of a vector to 0, but only if the model then still expects a failure."""
     kept: Vector = np.where(np.abs(vector) < TRIFLE * float(np.linalg.norm(vector)), 0.0, vector)
     return kept if model.excess(kept[None, :], errors)[0] >= 0.0 else vector

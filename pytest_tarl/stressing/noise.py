@@ -1,4 +1,4 @@
-"""The noise of losses: how much losses vary apart from the effect of a drift."""
+"""The noise of losses: how much losses vary for reasons other than the drift."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ import numpy as np
 from pytest_tarl.stressing.coordinates import Vector
 from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
 
-HIGHEST = 1.0 - LOWEST  # larger losses count as this loss, because margins below LOWEST count as LOWEST
-WIDTH = 0.3  # standard deviation of the weights of drifts by their mean loss, in units of the tolerated loss
-# weight (degrees of freedom) of the typical variance, averaged with the variances of drifts of similar mean loss
+HIGHEST = 1.0 - LOWEST  # upper limit of losses, because LOWEST is the lower limit of margins
+# width of the normal curve that weights drifts by their mean loss, in units of the tolerated loss
+WIDTH = 0.3
+# weight (in degrees of freedom) of the typical variance in the average with the variances of similar drifts
 LIKE = 2.0
 # an unpaired test is preferred if its standard error is at most this multiple of the paired test's
 WORSE = 1.2
-PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
+PRIOR = 4  # weight, in episodes, of the typical variance of all drifts
 
 
 def cut_off(losses: Sequence[float]) -> Vector:
@@ -29,8 +30,9 @@ def cut_off(losses: Sequence[float]) -> Vector:
 def typical_variance(every: Sequence[Vector]) -> float:
     """Return the mean variance of the losses of several drifts, with a cap so that noisy drifts do not dominate.
 
-    The losses are cut off. If all losses of a drift are cut off, it lies far beyond the boundary and does not count.
-    The cap depends on the drifts whose losses differ: the rewards of a mission may be the same at all others.
+    Losses above HIGHEST count as HIGHEST. If all losses of a drift are above it, the drift lies far beyond the boundary
+    and is ignored. The cap depends only on drifts whose losses differ from each other, because all episodes of the
+    other drifts may have the same reward.
     """
     found = [_squares(one) / (len(one) - 1) for one in every if _tells(one)]
     differ = [one for one in found if one > 0.0]
@@ -40,7 +42,8 @@ def typical_variance(every: Sequence[Vector]) -> float:
 def nominal_variance(given: Guarantee, typical: float) -> float:
     """Return the variance that the nominal episode of a pair adds to a loss, at most half of the typical one.
 
-    Episodes with the same seed may have similar rewards, so the variance of the recorded rewards is an upper limit.
+    The rewards of two episodes with the same seed may be similar, so the variance of the recorded rewards is only an
+    upper limit.
     """
     if len(given.totals) < 2 or given.tolerance <= 0.0:
         return typical / 2.0
@@ -51,8 +54,8 @@ def variance_near(loss: float, every: Sequence[Vector], typical: float) -> float
     """Return the variance of the losses of drifts whose mean loss is about `loss`.
 
     Episodes often vary more at the boundary than near nominal. Each drift is weighted by its degrees of freedom and by
-    the nearness of its mean; the typical variance counts as `LIKE` degrees of freedom. The losses are cut off, and
-    drifts far beyond the boundary do not count.
+    how close its mean loss is to `loss`; the typical variance counts as `LIKE` degrees of freedom. The losses are cut
+    off, and drifts far beyond the boundary are ignored.
     """
     known = [one for one in every if _tells(one)]
     if not known:
@@ -66,11 +69,11 @@ def variance_near(loss: float, every: Sequence[Vector], typical: float) -> float
 def pairing_wastes(
     given: Guarantee, paired: Sequence[Vector], unpaired: Sequence[Vector], episodes: int
 ) -> bool:
-    """Return whether a test of this many episodes hardly gains from nominal episodes with the same seeds.
+    """Return whether nominal episodes with the same seeds would hardly improve a test of this many episodes.
 
-    `paired` are the cut-off losses of drifts from nominal episodes with the same seeds, and `unpaired` those from the
-    mean of nominal episodes, in units of the tolerated loss. An unpaired test takes half as many episodes, but the
-    recorded mean is uncertain.
+    `paired` are the cut-off losses relative to the nominal episodes with the same seeds. `unpaired` are those relative
+    to the mean of the nominal episodes. Both are in units of the tolerated loss. An unpaired test takes half as many
+    episodes, but the recorded mean is uncertain.
     """
     if len(given.totals) < 2 or given.tolerance <= 0.0:
         return False
@@ -86,7 +89,7 @@ def standard_error(losses: Vector, typical: float) -> float:
 
 
 def _tells(losses: Vector) -> bool:
-    """Return whether losses tell something about the variance: at least two, not all of them at the limit."""
+    """Return whether a variance can be estimated from losses: there are at least two, and not all are at the limit."""
     return len(losses) > 1 and min(losses.tolist()) < HIGHEST
 
 

@@ -28,7 +28,7 @@ from pytest_tarl.stressing.words import (
 )
 
 WIDTH, HEIGHT, EDGE = 640, 200, 44  # px: size of a figure; EDGE is the space for the axes
-TOP, BOTTOM = 1.25, -1.25  # range of margins shown; others are clipped
+TOP, BOTTOM = 1.25, -1.25  # range of margins that the figure shows; margins outside are drawn at its edge
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 46rem; margin: 2rem auto; padding: 0 1rem; color: #1c2333 }
 h1 { font-size: 1.4rem } h2 { font-size: 1.1rem; margin-top: 2rem } svg { width: 100%; height: auto }
@@ -136,7 +136,7 @@ def _figure(name: str, extent: Span, curves: list[Curve], measured: list[tuple[f
 
 
 def _band(curve: Curve, x: Callable[[float], float]) -> str:
-    """Return the interval of a boundary as a rectangle, or an empty text without a boundary."""
+    """Return the interval of a boundary as a rectangle, or an empty text if there is no boundary."""
     boundary = curve.boundary
     if boundary is None:
         return ""

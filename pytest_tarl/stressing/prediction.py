@@ -24,10 +24,10 @@ from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covar
 
 DRAWN = 400  # number of random drifts that the model compares
 PART = 0.75  # probability that a direction changes in a random drift
-# number of refinements around the best drift; initial standard deviation, which each refinement halves
+# number of refinements around the best drift; standard deviation of the first one, which each further one halves
 ROUNDS, SPREAD = 5, 0.15
 STRETCHED = (0.9, 1.0, 1.1)  # tried drifts are also compared at these multiples of their vectors
-NEAR = 64  # maximum number of tried drifts that are multiplied by STRETCHED
+NEAR = 64  # maximum number of tried drifts whose multiples by STRETCHED are compared
 RAREST = 0.007  # minimum failure rate that the model assumes at nominal
 LEAST_LOSS = 0.25  # minimum predicted loss of a drift that is used to estimate the factors of seeds
 LOGIT = 4.0  # difference of logits that is equivalent to the whole tolerated loss
@@ -35,10 +35,10 @@ LOGIT = 4.0  # difference of logits that is equivalent to the whole tolerated lo
 
 @dataclass(frozen=True)
 class Sample:
-    """A tried drift: its vector, mean loss, number of failed episodes, and the pool and number of each episode's seed.
+    """A tried drift: its vector, its mean loss, its number of failed episodes, and the seeds of its episodes.
 
-    `loss` is in units of the tolerated loss, and `spread` is its standard error. `losses` are the losses of the
-    episodes, in the order of `sources`.
+    `loss` is in units of the tolerated loss, and `spread` is its standard error. `sources` holds, for each episode, the
+    pool and the number of its seed. `losses` holds the losses of the episodes in the same order.
     """
 
     vector: Vector
@@ -53,7 +53,7 @@ class Sample:
 class Shown:
     """What fresh episodes can show: the smallest excess loss or failure rate that they detect reliably.
 
-    `depth` is the loss beyond the tolerated one, in units of the tolerated one.
+    `depth` is the excess of the loss over the tolerated loss, in units of the tolerated loss.
     """
 
     depth: float
@@ -81,11 +81,11 @@ class Prediction:
         origin: float = 0.0,
         before: Prediction | None = None,
     ) -> None:
-        """Fit the model; `typical` is the variance of a loss, `paired` the part of it that the nominal episode adds.
+        """Fit the model; `typical` is the variance of a loss, `paired` the part that the nominal episode contributes.
 
-        `counted` are further drifts with fresh seeds of their own: vector, number of failures, number of episodes.
-        `origin` is the loss at the zero vector, which is not 0 if the drifts have options that are not nominal.
-        `before` is a model of fewer drifts; fitting is faster with it.
+        `counted` are further drifts that ran on fresh seeds: vector, number of failures, number of episodes. `origin`
+        is the loss at the zero vector, which is not 0 if the drifts have options that are not nominal. `before` is an
+        earlier model of fewer drifts; it makes fitting faster.
         """
         self.coordinates, self.given, self.shown = coordinates, given, shown
         self._samples, self._typical = samples, typical
@@ -126,7 +126,7 @@ class Prediction:
 
     @property
     def luck(self) -> float:
-        """Return the variance of the effect of a seed on the logit of the failure rate under all drifts."""
+        """Return the variance of a seed's effect on the logit of the failure rate, an effect common to all drifts."""
         return 0.0 if self._rate_fit is None else self._rate_fit.luck
 
     @property
@@ -161,9 +161,10 @@ class Prediction:
 
     @one_thread
     def shortest(self, errors: float, limit: float, draws: np.random.Generator) -> Vector | None:
-        """Return the shortest vector up to `limit` that fails even if the model errs by `errors` standard deviations.
+        """Return the shortest vector up to `limit` that the model expects to fail, or None if no such vector was found.
 
-        Return None if no such vector was found. The search is random and may miss the shortest one.
+        The failure must be expected even if the true losses are `errors` standard deviations below the predicted ones.
+        The search is random and may miss the shortest vector.
         """
 
         def scores(vectors: Vector) -> Vector:
@@ -183,7 +184,7 @@ class Prediction:
 
     @one_thread
     def shown_by(self, vectors: Vector) -> tuple[Vector, Vector]:
-        """Return the probabilities that fresh episodes show too large a loss, and too many failures, at vectors."""
+        """Return the probabilities, at each vector, that fresh episodes show too large a loss or too many failures."""
         (mean, deviation), rates = self._moments(vectors)
         by_loss = _normal((mean - 1.0 - self.shown.depth) / deviation)
         if rates is None:
@@ -195,8 +196,8 @@ class Prediction:
     def excess(self, vectors: Vector, errors: float = 0.0) -> Vector:
         """Return how far each vector's predicted loss or failure rate exceeds what fresh episodes can show.
 
-        Of the two excesses, the larger one counts; it is in units of the tolerated loss. The prediction is first
-        lowered by `errors` standard deviations. The result has the shape (drifts,).
+        The prediction is first lowered by `errors` standard deviations. The result is the larger of the two excesses,
+        in units of the tolerated loss; its shape is (drifts,).
         """
         if errors == 0.0:
             return self._excess(*self._means(vectors))
@@ -234,7 +235,7 @@ class Prediction:
         return mean, self._rate_fit.field.means(for_rates)
 
     def _moments(self, vectors: Vector) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector] | None]:
-        """Return the means and standard deviations of the losses at vectors, and those of the logits, or None."""
+        """Return means and standard deviations at vectors: those of the losses, and those of the logits or None."""
         for_losses, for_rates = self._priors(vectors)
         mean, deviation = self._loss_fit.field.moments(for_losses, variance(vectors * self._loss_fit.units))
         mean = mean + self._origin
@@ -245,7 +246,7 @@ class Prediction:
 
     @cached_property
     def _shared(self) -> float:
-        """Return the error of all predicted losses that the common seeds cause, as a share of the loss."""
+        """Return the relative error, common to all predicted losses, that is due to the choice of the common seeds."""
         if not self._samples:
             return 0.0
         return shared_error(self._samples, self._at_known[0], self._typical)
@@ -256,7 +257,7 @@ class Prediction:
         return self._means(self._vectors)
 
     def _priors(self, vectors: Vector) -> tuple[Matrix, Matrix | None]:
-        """Return prior covariances of the losses and of the logits, or None, with the drifts of the fits."""
+        """Return the prior covariances of vectors with the fitted drifts: of the losses, and of the logits or None."""
         units, rates = self._loss_fit.units, self._rate_fit
         if rates is None:
             return covariance(vectors * units, self._vectors * units), None
@@ -271,9 +272,9 @@ class Prediction:
         return found
 
     def _promising_known(self, room: float) -> Vector:
-        """Return the shortest tried vectors that fail according to the model, and those that come closest to it.
+        """Return the shortest tried vectors that fail according to the model, and those that are closest to failing.
 
-        They are at most NEAR vectors of length `room` or less; shape (drifts, ranges).
+        The result has at most NEAR vectors, none longer than `room`; its shape is (drifts, ranges).
         """
         excess, lengths = self._excess(*self._at_known), np.linalg.norm(self._vectors, axis=1)
         scores = np.where(excess >= 0.0, 10.0 - lengths, np.maximum(excess, -5.0))
@@ -284,7 +285,7 @@ class Prediction:
     def _largest(
         self, score: Callable[[Vector], Vector], room: float, draws: np.random.Generator
     ) -> tuple[Vector, float]:
-        """Return the vector of length at most `room` with the largest score among random ones, and the score."""
+        """Draw random vectors of length at most `room`, and return the one with the largest score, and this score."""
         low, high = self.coordinates.low, self.coordinates.high
         shape = (DRAWN, len(low))
         drawn = np.where(draws.random(shape) < PART, low + (high - low) * draws.random(shape), 0.0)
@@ -307,10 +308,10 @@ class Prediction:
 
 
 def shared_error(samples: Sequence[Sample], means: Vector, typical: float) -> float:
-    """Return the relative error of all predicted losses that the choice of the common seeds causes.
+    """Return the relative error, common to all predicted losses, that is due to the choice of the common seeds.
 
-    Under a seed, all drifts may lose more than their means by the same factor, for example because there is more to
-    lose. Drifts that share their seeds share this error, so it does not shrink with their number. `means` are the
+    With some seeds, all drifts may lose more than on average by the same factor, for example because there is more
+    reward to lose. Drifts that share their seeds share this error, so more drifts do not reduce it. `means` are the
     predicted losses of the samples, and `typical` is the variance of a loss.
     """
     products: dict[tuple[str, int], float] = {}

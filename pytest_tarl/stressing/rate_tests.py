@@ -1,9 +1,9 @@
 """Test on fresh seeds whether drifts of a chain fail too often, with few episodes for each further drift.
 
-All drifts of a chain run on the same seeds. A seed that fails under a drift often fails under a nearer one as well, so
-a test first runs the seeds that failed under the drift before it. The test counts the failures among the first 16, 32,
-64 and 128 seeds of the chain, and counts seeds that have not run as passed. This can only hide failures, so a test that
-stops early is wrong no more often than one that runs all seeds, whatever the drifts have in common.
+All drifts of a chain run on the same seeds. A seed that fails under a drift often fails under a nearer one as well. A
+test therefore first runs the seeds that failed under the previous drift of the chain. It counts the failures among the
+first 16, 32, 64 and 128 seeds of the chain, and treats seeds that have not run as passed. This can only hide failures.
+A test that stops early is therefore wrong no more often than a test that runs all seeds.
 """
 
 from __future__ import annotations
@@ -17,14 +17,15 @@ from pytest_tarl.stressing.evaluating import Count, Evaluator
 from pytest_tarl.stressing.guarantee import hopeful, most_passed
 
 LOOKS = (16, 32, 64, 128)  # numbers of seeds, from the first one, among which a test counts the failures
-# share of the risk that each of these counts spends; the last count spends the most, because it can show the most
+# share of the risk for the test at each of LOOKS; the last share is the largest, because a test with more seeds can
+# show smaller failure rates
 SPENT = (0.1, 0.15, 0.25, 0.5)
 BLOCK = 8  # number of episodes after which a test checks for a decision
 
 
 @dataclass
 class RateTests:
-    """The tests of a chain whose drifts fail too often; each test has the error probability `risk`."""
+    """The tests of one chain for drifts that fail too often; each test has the error probability `risk`."""
 
     evaluator: Evaluator
     pool: str
@@ -56,7 +57,7 @@ class RateTests:
         return shown
 
     def _looks(self) -> list[tuple[int, int]]:
-        """Return pairs: a number of seeds, and the minimum number of failures among them that shows the failure."""
+        """Return pairs: a number of seeds, and how many of them must fail to show that the drift fails too often."""
         given = self.evaluator.guarantee
         return [
             (size, size - most_passed(given, size, self.risk * share, "rate"))
@@ -64,10 +65,11 @@ class RateTests:
         ]
 
     def _estimate(self, outcomes: Mapping[int, bool]) -> tuple[float, int]:
-        """Return an estimate of the number of failures, and the number of seeds that it is about.
+        """Estimate the number of failures under this drift; return the estimate and the number of seeds it covers.
 
-        The seeds are those that ran under this drift or under the one before. Of those that failed under the one
-        before, and of those that passed, only some may have run; the latter pass if none has.
+        It covers the seeds that ran under this drift or under the previous one. Seeds that failed under the previous
+        drift, and seeds that passed there, are estimated separately, because only some of each may have run under this
+        drift. If none of those that passed there has run, all of them count as passed.
         """
         new = [failed for row, failed in outcomes.items() if row not in self.ran]
         failures, seeds = float(sum(new)), len(new)
@@ -78,7 +80,10 @@ class RateTests:
         return failures, seeds
 
     def _groups(self) -> list[list[int]]:
-        """Return the seeds in the order of their runs: those that failed before, then new ones, then the rest."""
+        """Return the seeds in the order in which they run.
+
+        Those that failed under the previous drift come first, then those that did not run under it, then the rest.
+        """
         every = range(LOOKS[-1])
         parts = (
             [row for row in every if row in self.failed],
@@ -96,10 +101,10 @@ def _blocks(groups: Sequence[Sequence[int]]) -> Iterator[list[int]]:
 
 
 def _forecast(groups: Sequence[Sequence[int]], outcomes: Mapping[int, bool]) -> float:
-    """Return the number of failures among all seeds if those that have not run fail a little more often than the last.
+    """Forecast the failures among all seeds: the remaining seeds fail a little more often than those that ran last.
 
-    The first group of several failed under another drift, so its failures say little about the others, which then all
-    count.
+    If there are several groups, the first one consists of seeds that failed under another drift. Its failures say
+    little about the other groups, so all remaining seeds of those are assumed to fail.
     """
     known = 0.0
     for number, group in enumerate(groups):

@@ -69,7 +69,7 @@ def rays(space: Space, must_hold: Mapping[str, Sequence[Any]]) -> list[Ray]:
 
 
 def joined(parts: Sequence[tuple[Ray, float]]) -> Ray:
-    """Return the ray to the point that combines the values at given places on several rays."""
+    """Return the ray to the point that combines the values of several rays, each at its given place."""
     space = parts[0][0].space
     farthest = dict(space.nominal)
     for ray, t in parts:
@@ -80,13 +80,13 @@ def joined(parts: Sequence[tuple[Ray, float]]) -> Ray:
 def distance(space: Space, point: Point) -> float:
     """Return the Euclidean distance of a point from nominal, in units of the declared ranges.
 
-    A changed option counts as 1.
+    An option other than the nominal one counts as 1.
     """
     return sqrt(sum(offset(extent, point[name]) ** 2 for name, extent in space.extents.items()))
 
 
 def offset(extent: Span | Choice, number: float) -> float:
-    """Return the distance of a number from nominal, in units of the range; a changed option counts as 1."""
+    """Return the distance of a number from nominal, in units of the range, or 1 for an option that is not nominal."""
     away = abs(number - nominal(extent))
     return float(away > 0) if isinstance(extent, Choice) else away / (extent.high - extent.low)
 

@@ -11,7 +11,7 @@ from pytest_tarl.stressing.findings import Failure
 from pytest_tarl.stressing.rays import Ray
 from pytest_tarl.stressing.words import shown
 
-# shares of the way from the failure to the ends of the ranges, in the order of the attempts
+# sizes of the regions, in the order of the attempts, as shares of the way from the failure to the ends of the ranges
 REACH = (1.0, 0.25)
 
 
@@ -28,7 +28,7 @@ class Region:
 
 
 def regions(space: Space, failed: Failure) -> Iterator[Region]:
-    """Yield the regions beyond a failure, widest first; each covers the same share of all remaining ranges."""
+    """Yield the regions beyond a failure, widest first; each covers the same share of what remains of every range."""
     for reach in REACH:
         spans: dict[str, Span | Choice] = {}
         words = []
@@ -69,7 +69,10 @@ def outwards(space: Space, failed: Failure) -> Ray:
 
 
 def _fixed(space: Space, failed: Failure) -> object:
-    """Return the only value of a region without a range: one value, or a tuple of them."""
+    """Return the value that stands for a region in which nothing varies.
+
+    It is the value of the failing direction, or a tuple of values if several directions fail together.
+    """
     values = []
     for name in failed.names:
         extent, number = space.extents[name], failed.point[name]

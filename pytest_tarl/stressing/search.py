@@ -27,8 +27,8 @@ from pytest_tarl.stressing.statements import Source, statements
 class Risks:
     """The error probabilities of the claims of a run.
 
-    `each` is the risk of the claim about the nominal drift, and of the claim about each direction. `combinations` is
-    the total risk of the claims about all combinations.
+    `each` is the risk of one claim: the claim about the nominal drift, or the claim about one direction. `combinations`
+    is the total risk of the claims about all combinations.
     """
 
     each: float
@@ -56,9 +56,9 @@ class Request:
 def stress(request: Request, *, combined: bool = True) -> Stress:
     """Find the boundary in each direction, and failing combinations unless `combined` is false.
 
-    The guarantee is only reported to fail if fresh seeds confirm it. The probability that any such report is wrong is
-    at most alpha. Ctrl-C or a spent budget ends the search early, with the results so far. Raise RecordingError if the
-    test itself is broken.
+    A failure of the guarantee is reported only if fresh seeds confirm it. The probability that any such report is wrong
+    is at most alpha. Ctrl-C or a spent budget ends the search early, with the results so far. Raise RecordingError if
+    the test itself is broken.
     """
     space: Any = request.designation.drifts[request.drift].value
     evaluator = _evaluator(request, space)
@@ -134,7 +134,7 @@ def explore(evaluator: Evaluator, together: Together, share: float, *, combined:
 def variances(evaluator: Evaluator, ended: str) -> tuple[Sobol | None, str]:
     """Return Sobol indices from the rest of the budget, and why the run ended.
 
-    `ended` is why the search ended. There are no indices after an interrupted search or a failing nominal drift.
+    `ended` says why the search ended. If the search was interrupted or the nominal drift fails, there are no indices.
     """
     if ended not in ("", "budget"):
         return None, ended
@@ -151,7 +151,7 @@ def _executed(
 ) -> tuple[Statements | None, str]:
     """Return the statements that ran only in failures, and why the run ended.
 
-    There are none after an interrupted search.
+    If the search was interrupted, there are no statements.
     """
     if ended == "interrupted" or request.source is None:
         return None, ended
@@ -180,7 +180,10 @@ def _evaluator(request: Request, space: Space) -> Evaluator:
 
 
 def _nominal_fails(evaluator: Evaluator, risk: float) -> bool:
-    """Return whether the guarantee fails at the nominal drift; then the nominal world differs from the recorded one."""
+    """Return whether the guarantee fails at the nominal drift.
+
+    If so, the nominal world differs from the recorded one.
+    """
     outcomes = evaluator.common(evaluator.space.nominal, COARSE)
     return unlike_recorded(evaluator.guarantee, outcomes, risk)
 

@@ -33,7 +33,7 @@ def shrunk(point: Point, evaluator: Evaluator) -> Point:
 
 
 def weighted(space: Space, name: str, number: float, weight: float) -> float:
-    """Return the number at a share `weight` of the way from nominal to `number`.
+    """Return the number that lies at the share `weight` of the way from nominal to `number`.
 
     An option changes at any weight above 0.
     """

@@ -12,11 +12,9 @@ from pytest_tarl.stressing.coordinates import Coordinates, Vector
 
 CLOSEST = 0.4  # minimum length of a random vector of drifts; the maximum length is 1
 PART = 0.8  # share of the vectors in which a given direction changes
-# minimum and maximum length of vectors around another vector, as shares of the other vector's length
+# minimum and maximum length of the vectors that `around` yields, as shares of the length of the given vector
 SHORTER = (0.8, 0.98)
-ASIDE = (
-    0.25  # standard deviation of the difference in each coordinate, as a share of the other vector's length
-)
+ASIDE = 0.25  # standard deviation of the change in each coordinate, as a share of the given vector's length
 
 
 def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vector]:
@@ -39,7 +37,7 @@ def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vec
 
 
 def around(coordinates: Coordinates, vector: Vector, draws: np.random.Generator) -> Iterator[Vector]:
-    """Yield vectors endlessly that are a little shorter than another one and have a similar direction."""
+    """Yield vectors endlessly that are a little shorter than `vector` and have a similar direction."""
     length = float(np.linalg.norm(vector))
     while True:
         moved = vector + ASIDE * length * draws.standard_normal(len(vector))

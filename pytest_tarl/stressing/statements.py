@@ -94,7 +94,7 @@ def only_in_failures(
     failing: Sequence[Collection[int]],
     others: Iterable[Collection[int]],
 ) -> tuple[Executed, ...]:
-    """Return the statements that ran in a failing episode and in no other one, most frequent first."""
+    """Return the statements that ran in failing episodes only; those that ran in most of them come first."""
     elsewhere = {number for one in others for number in one}
     counts = Counter(number for one in failing for number in one if number not in elsewhere)
     order = sorted(counts, key=lambda number: (-counts[number], number))
@@ -106,8 +106,8 @@ def chosen(
 ) -> tuple[list[EpisodePlan], list[EpisodePlan]]:
     """Return episodes of confirmed failures, and similar episodes that do not fail.
 
-    Both lists alternate between drifts. The others come from failing drifts, then from the nominal drift, and then from
-    drifts where the guarantee holds.
+    Both lists alternate between drifts. The episodes that do not fail come first from failing drifts, then from the
+    nominal drift, and then from drifts at which the guarantee holds.
     """
     fails: list[list[EpisodePlan]] = []
     passes: list[list[EpisodePlan]] = []

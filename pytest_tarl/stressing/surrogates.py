@@ -35,9 +35,9 @@ def covariance(one: Vector, other: Vector) -> Matrix:
 
 
 def scaled_covariances(vectors: Vector) -> Callable[[Vector], Matrix]:
-    """Return a function from scale factors of the ranges to the prior covariances among vectors scaled by them.
+    """Return a function that multiplies the vectors by a scale factor per range and returns their prior covariances.
 
-    It keeps the parts that depend on one range only, for each factor.
+    For each range and factor, the function caches the part of the covariances that depends only on them.
     """
 
     @cache
@@ -55,8 +55,8 @@ def scaled_covariances(vectors: Vector) -> Callable[[Vector], Matrix]:
 def _summed(one: Vector, other: Vector, singles: Sequence[Matrix]) -> Matrix:
     """Return the covariances of the whole model; `singles` has a matrix of squared-exponential covariances per range.
 
-    The squared-exponential covariance of several ranges is the product of those of each range. All of them are
-    conditioned on the value 0 at nominal.
+    The squared-exponential covariance of several ranges is the product of the covariances of the single ranges. All
+    covariances are conditioned on the value 0 at nominal.
     """
     plain, sizes = one @ other.T, np.abs(one) @ np.abs(other).T
     found: Matrix = LINEAR * (plain + sizes) + PAIRS * (plain**2 + sizes**2)
@@ -85,7 +85,7 @@ def variance(vectors: Vector) -> Vector:
 
 
 def _smooth(column: Vector, against: Vector) -> Matrix:
-    """Return the squared-exponential covariances of one range, without a condition."""
+    """Return the squared-exponential covariances of one range, not conditioned on the value at nominal."""
     found: Matrix = column[:, None] - against
     found *= found
     found /= -2 * LENGTH**2
@@ -93,7 +93,10 @@ def _smooth(column: Vector, against: Vector) -> Matrix:
 
 
 def inverted(lower: NDArray[np.floating[Any]]) -> Matrix:
-    """Return the inverse of a lower triangular matrix of shape (n, n), by halves, so that most work is in products."""
+    """Return the inverse of a lower triangular matrix of shape (n, n).
+
+    The matrix is split recursively into halves, so that most of the work is fast matrix products.
+    """
     size = len(lower)
     if size <= BLOCK:
         small: Matrix = np.linalg.inv(lower)
@@ -108,7 +111,7 @@ def inverted(lower: NDArray[np.floating[Any]]) -> Matrix:
 class LossField:
     """The mean loss at each drift: a Gaussian process fitted to mean losses of shape (drifts,).
 
-    `errors` are the covariances of the errors of the mean losses.
+    `errors` holds the covariances between the errors of the mean losses.
     """
 
     def __init__(self, prior: Matrix, losses: Vector, errors: Matrix) -> None:
@@ -122,14 +125,15 @@ class LossField:
         return inverted(self._lower)
 
     def means(self, cross: Matrix) -> Vector:
-        """Return the means at new vectors; `cross` are their prior covariances with the tried drifts."""
+        """Return the means at new vectors; `cross` holds their prior covariances with the tried drifts."""
         found: Vector = cross @ self._weights
         return found
 
     def moments(self, cross: Matrix, prior: Vector) -> tuple[Vector, Vector]:
         """Return means and standard deviations at new vectors.
 
-        `cross` are their prior covariances with the tried drifts, `prior` their prior variances.
+        `cross` holds the prior covariances of the new vectors with the tried drifts, and `prior` the prior variances of
+        the new vectors.
         """
         explained = self._inverse @ cross.T
         left = prior - (explained**2).sum(axis=0)
@@ -149,9 +153,9 @@ class RateField:
         start: Vector | None = None,
         luck: Matrix | None = None,
     ) -> None:
-        """Find the most probable logits by Newton's method, starting from `start`, those of a similar field.
+        """Find the most probable logits by Newton's method, starting from `start`, the logits of a similar field.
 
-        `luck` are covariances that drifts have only because they ran on the same seeds.
+        `luck` holds the covariances that exist only because the drifts ran on the same seeds.
         """
         self._usual, self.scale, self.luck = usual, scale, luck
         matrix, identity = scale * prior, np.eye(len(failed))
@@ -164,8 +168,8 @@ class RateField:
             middle = identity + roots[:, None] * matrix * roots
             step = pull - roots * np.linalg.solve(middle, roots * (matrix @ pull)) - weights
             change = float(np.abs(matrix @ step).max())
-            # The weights are still zero at the first step. If logits are given, this step computes the weights that
-            # match the logits, so the step is not shortened.
+            # The weights are zero at the first step. If logits are given, the first step only computes the weights that
+            # match these logits, so it is not shortened.
             whole = start is not None and number == 0
             weights = weights + (1.0 if whole else min(1.0, LEAP / max(change, 1e-9))) * step
             logits = usual + matrix @ weights
@@ -182,12 +186,12 @@ class RateField:
 
     @cached_property
     def _reduce(self) -> Matrix:
-        """Return the matrix that maps covariances with the tried drifts to the explained deviations."""
+        """Return the matrix that `moments` multiplies with `cross` to get the reduction of the variances."""
         found: Matrix = inverted(self._lower) * self._roots
         return found
 
     def means(self, cross: Matrix) -> Vector:
-        """Return the means of the logits; parameter as in `LossField.means`."""
+        """Return the means of the logits; `cross` is as in `LossField.means`."""
         found: Vector = self._usual + self.scale * (cross @ self.weights)
         return found
 

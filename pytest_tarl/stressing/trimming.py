@@ -1,7 +1,8 @@
 """Move single directions of a drift at a jump of the margin towards nominal.
 
 At a jump, the guarantee fails clearly at a drift and holds a little nearer to nominal on the same ray. A smooth model
-errs on both sides. Only some directions cause the jump, and the others may be able to move on.
+errs on both sides of the jump. Only some directions cause the jump. The values of the other directions may move nearer
+to nominal without making the guarantee hold.
 """
 
 from __future__ import annotations
@@ -15,16 +16,16 @@ from pytest_tarl.stressing.prediction import Shown
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import weighted
 
-# a drift is at a jump if its failure rate, or its loss beyond the tolerated one, is at least this multiple of what
-# fresh episodes can show
+# a drift is at a jump if its failure rate, or the excess of its loss over the tolerated loss, is at least this multiple
+# of what fresh episodes can show
 STEEP = 2.0
-LOST = 0.25  # minimum loss beyond the tolerated one at a jump, in units of the tolerated one
+LOST = 0.25  # minimum excess of the loss over the tolerated loss at a jump, in units of the tolerated loss
 SMALL = 0.9  # weight of the first step; if the guarantee holds there, the direction causes the jump
 HALVINGS = 2  # number of bisections between a weight that fails and one that holds
 
 
 def broken(point: Point, evaluator: Evaluator, shown: Shown) -> Part | None:
-    """Return the part of the guarantee that a drift breaks far more clearly than necessary, or None.
+    """Return the part of the guarantee that a drift breaks so clearly that it may be at a jump, or None.
 
     `shown` is what fresh episodes can show.
     """
@@ -67,7 +68,7 @@ def trimmed(point: Point, evaluator: Evaluator, tried: list[Point]) -> Iterator[
 
 
 def _fails(point: Point, evaluator: Evaluator, tried: list[Point]) -> bool:
-    """Return whether a few episodes show a failure; run the first ones, and more only if they suggest one."""
+    """Return whether a few episodes show a failure; after the first ones, run more only if these suggest a failure."""
     found = evaluator.examine(point, SIZES[0])
     tried.append(point)
     return found.failing and evaluator.examine(point, SIZES[1]).result == "fails"

@@ -21,7 +21,7 @@ from pytest_tarl.stressing.rays import Ray
 
 MOST_SHOWN = 5  # maximum number of combinations shown, and of statements shown
 SURE = f"{100 * CONFIDENCE:.3g} %"
-ROUNDING = 1e-9  # two places on a ray that differ by no more than this are the same
+ROUNDING = 1e-9  # two places on a ray count as the same if they differ by at most this
 
 ENDED = {
     "budget": "The budget of {budget} did not suffice for the whole search: raise --tarl-stress-budget.",
@@ -125,7 +125,7 @@ def _innermost(stress: Stress) -> list[Failure]:
 
 
 def _alone(stress: Stress, one: Failure) -> str:
-    """Return the remark that each change alone seems to hold, if the search found no failure along any of them."""
+    """Return the remark that the guarantee seems to hold under each change alone, unless one was found to fail."""
     for curve in stress.curves:
         (name,) = curve.ray.names
         extent = stress.space.extents[name]
@@ -197,7 +197,7 @@ def repair_lines(stress: Stress) -> Iterator[str]:
 
 
 def broken_promises(stress: Stress) -> list[str]:
-    """Return a sentence for each confirmed failure inside `must_hold`: for each direction, then for combinations."""
+    """Return a sentence for each confirmed failure inside `must_hold`, single directions before combinations."""
     alone = [one for one in confirmed(stress.curves) if _promised(stress, one)]
     together = [one for one in _innermost(stress) if _promised(stress, one)]
     return [
@@ -223,7 +223,7 @@ def undecided_promises(stress: Stress) -> list[str]:
 
 
 def _but_must_hold(stress: Stress, one: Failure) -> str:
-    """Return where a failure along one direction is, and what `must_hold` says of the direction."""
+    """Return where a failure along one direction is, and the values that `must_hold` declares for the direction."""
     (name,) = one.names
     told, limits = of_point(stress.space, one.point), stress.must_hold[name]
     if isinstance(extent := stress.space.extents[name], Choice):
@@ -265,7 +265,7 @@ def _range(name: str, extent: Span, curves: list[Curve]) -> list[str]:
 
 
 def _held(name: str, curves: list[Curve]) -> list[str]:
-    """Return a sentence about the values shown to hold, for the sides without a boundary."""
+    """Return a sentence about the sides of a range without a boundary: up to which values the guarantee holds."""
     limits = [
         f"{name} {_sign(curve.ray)} {_number(curve.ray, curve.held)}"
         for curve in curves

@@ -1,1 +1,1 @@
-"""Symptoms: signs in recorded values that say which change of structure a drift needs."""
+"""Symptoms: signs in recorded values that suggest which structural change of the code compensates a drift."""

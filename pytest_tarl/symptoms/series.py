@@ -1,4 +1,4 @@
-"""The values of one statement in one mission, and pairs of missions with one seed, one in each world."""
+"""The values of one statement in one mission, and pairs of missions with the same seed, one in each world."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pytest_tarl.instrumentation.trace import Floats
 
 Ints = NDArray[np.int32]
-TAILS = 0.02  # share of the values on each side that `scale` leaves out
+TAILS = 0.02  # share of the smallest and of the largest values that `scale` leaves out
 
 
 @dataclass(frozen=True)
@@ -36,13 +36,13 @@ class Pair:
     drifted: Series
 
     def together(self) -> Pair:
-        """Return both series up to the end of the shorter mission, so that neither has progressed further."""
+        """Return both series, cut off at the end of the shorter mission, so that they cover the same steps."""
         steps = min(len(self.designed.reward), len(self.drifted.reward))
         return Pair(self.designed.until(steps), self.drifted.until(steps))
 
 
 def scale(pairs: Sequence[Pair]) -> float:
-    """Return the range of the designed values, without the `TAILS`; 0 if there are no values."""
+    """Return the range of the values in the designed world, without the `TAILS`; 0 if there are no values."""
     values = np.concatenate([pair.designed.values for pair in pairs] or [np.zeros(0)])
     if not values.size:
         return 0.0

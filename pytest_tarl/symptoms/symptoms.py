@@ -18,28 +18,30 @@ Symptom = Callable[[Sequence[Pair]], float]
 
 TALL = 0.25  # minimum height of a spike, as a share of the range of the values
 BACK = 0.5  # maximum change across a spike, as a share of its height
-SPIKES = 0.04  # the symptom is certain if the share of spikes grows by this amount
-ROUGH = 0.01  # roughness that does not matter, as a share of the range of the values
-# noise begins if the roughness grows by the first factor, and is certain at the second factor
+SPIKES = 0.04  # the strength is 1 if the share of spikes grows by at least this
+ROUGH = 0.01  # roughness up to this share of the range of the values is ignored
+# noise has a strength above 0 if the roughness grows by more than the first factor, and strength 1 from the second
+# factor on
 ROUGHER = (1.5, 6.0)
-SWITCHES = 0.1  # the symptom is certain if the share of steps with a switch grows by this amount
+SWITCHES = 0.1  # the strength is 1 if the share of steps with a switch grows by at least this
 JUMP = 0.4  # minimum change from one value to the next that counts as a jump, as a share of the range
 SOON = 5  # maximum number of steps from a jump to the loss that it causes
 LOSS = 0.02  # minimum additional loss of a step that counts, as a share of a designed mission's reward
-STEADY = 0.02  # standard deviation at the end of a mission that does not matter, as a share of the range
-# a swing begins if this standard deviation grows by the first factor, and is certain at the second factor
+STEADY = 0.02  # a standard deviation at the end of a mission is ignored up to this share of the range
+# a swing has a strength above 0 if this standard deviation grows by more than the first factor, and strength 1 from the
+# second factor on
 SWINGS = (2.0, 6.0)
 CROSSINGS = 3  # minimum number of times that a swing crosses its mean
-ASIDE = 0.5  # an offset is certain if the mean at the end grows by this share of the range
-# an offset is certain if values at the same time of a mission differ by this share of the range
+ASIDE = 0.5  # an offset has strength 1 if the mean at the end grows by at least this share of the range
+# an offset has strength 1 if values at the same time of a mission differ by at least this share of the range
 BESIDE = 0.25
-GROWTH = 0.2  # (end - start) / (end + start) of a value that certainly runs away
-PAST = 0.1  # an overshoot is certain if this share of the start value is passed on the other side of zero
+GROWTH = 0.2  # a runaway has strength 1 if (end - start) / (end + start) is at least this
+PAST = 0.1  # an overshoot has strength 1 if the value passes zero by at least this share of its start value
 FEWEST = 6  # minimum number of values in a series
 
 
 def spikes(pairs: Sequence[Pair]) -> float:
-    """Return how strongly single values stick out between two similar ones."""
+    """Return the strength of spikes: single values that stick out between two similar values."""
     height = max(scale(pairs), scale([Pair(pair.drifted, pair.designed) for pair in pairs]))
     return _more(pairs, lambda series: _lone(series.values, height), SPIKES)
 
@@ -64,8 +66,8 @@ def chatter(pairs: Sequence[Pair]) -> float:
 def jumps(pairs: Sequence[Pair]) -> float:
     """Return how much likelier losses are soon after a jump of the value.
 
-    A value that is about the same before each loss is no cause of them. The share of losses with a jump in the `SOON`
-    steps before is therefore reduced by the same share of all steps of the designed missions.
+    A value that also jumps without a loss does not cause the losses. From the share of losses with a jump in the `SOON`
+    steps before them, the same share of all steps of the designed missions is therefore subtracted.
     """
     height = JUMP * max(scale(pairs), max((_largest(pair.designed.values) for pair in pairs), default=0.0))
     after, usual = [], []
@@ -79,8 +81,8 @@ def jumps(pairs: Sequence[Pair]) -> float:
 def offset(pairs: Sequence[Pair]) -> float:
     """Return how far the value stays on one side of zero in the second half, unlike in the designed world.
 
-    The value may also swing in the designed world, for example while a vehicle follows its course. The differences from
-    the designed missions at the same time then show a lasting offset.
+    The value may also swing in the designed world, for example while a vehicle follows its course. A lasting offset
+    then shows in the differences from the designed missions at the same time.
     """
     both = [pair.together() for pair in pairs]
     size = scale(both)
@@ -148,13 +150,13 @@ def losses(pair: Pair) -> list[int]:
 
 
 def _more(pairs: Sequence[Pair], share: Callable[[Series], float], certain: float) -> float:
-    """Return by how much a share has grown, as a share of the growth that counts as certain."""
+    """Return the growth of a share, divided by `certain`, the growth that gives strength 1."""
     grown = fmean(share(pair.drifted) for pair in pairs) - fmean(share(pair.designed) for pair in pairs)
     return float(np.clip(grown / certain, 0.0, 1.0))
 
 
 def _grown(before: float, after: float, growth: tuple[float, float]) -> float:
-    """Return the place of after / before between two growths, on a log scale from 0 to 1."""
+    """Return where the ratio after / before lies between the two factors in `growth`, on a log scale from 0 to 1."""
     if before <= 0.0 or after <= 0.0:
         return 0.0
     low, high = np.log(growth)
@@ -162,7 +164,7 @@ def _grown(before: float, after: float, growth: tuple[float, float]) -> float:
 
 
 def _lone(values: Floats, height: float) -> float:
-    """Return the share of values that differ from both neighbours, in the same direction, by `TALL` of a height."""
+    """Return the share of values that lie above or below both neighbours by at least `TALL` times `height`."""
     if values.size < FEWEST or not height:
         return 0.0
     before, value, after = values[:-2], values[1:-1], values[2:]
@@ -196,8 +198,9 @@ def _largest(values: Floats) -> float:
 def _apart(pair: Pair, size: float) -> float:
     """Return how far a value stays on one side of its designed course in the second half, away from zero.
 
-    An offset is certain if the difference is at least `BESIDE` of the range of the values and at least their root mean
-    square in the designed world. Only values that swing in the designed world count; for others, the mean suffices.
+    An offset has strength 1 if the difference is at least the share `BESIDE` of the range of the values, and at least
+    their root mean square in the designed world. Only values that swing in the designed world are examined; for other
+    values, the mean is enough.
     """
     steps = min(pair.designed.values.size, pair.drifted.values.size)
     designed, drifted = (_late(one.values[:steps]) for one in (pair.designed, pair.drifted))
@@ -209,7 +212,7 @@ def _apart(pair: Pair, size: float) -> float:
 
 
 def _past_zero(values: Floats) -> float:
-    """Return the largest distance beyond zero, as a share of the largest distance on the side where the series starts.
+    """Return the largest value on the other side of zero, relative to the largest one on the side of the start.
 
     A median of three removes single outliers.
     """

@@ -23,7 +23,7 @@ from pytest_tarl.workers.pool import TRIES, Pool, Post, WorkerDiedError, WorkerH
 
 Serve = Callable[[Post, bytes], bytes]
 
-# plugins that a worker must not load: reports, result caches, debuggers, nested workers
+# plugins that a worker must not load: they write reports, cache results, debug, or start workers of their own
 OFF: Mapping[str, Any] = {
     "cacheclear": False,
     "collectonly": False,
@@ -57,7 +57,7 @@ class EpisodeExecutor:
     workers: int
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Run one episode and return its run.
+        """Run one episode and return its result.
 
         Raise TarlError if the test cannot run as configured; raise pytest's Exit or Skipped if the test did.
         """
@@ -76,7 +76,7 @@ class Answer:
     future: Future[bytes]
 
     def result(self) -> EpisodeRun:
-        """Wait for the episode and return its run.
+        """Wait for the episode and return its result.
 
         Raise TarlError if the episode could not run; raise pytest's Exit or Skipped if the test did.
         """
@@ -139,7 +139,7 @@ def opened(
 
 
 def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor]) -> Post:
-    """Describe a worker's job, with everything that the worker needs to prepare the item."""
+    """Return the description of a worker's job: everything that the worker needs to prepare the item."""
     config = item.config
     plain = {name: value for name, value in vars(config.option).items() if _plain(value)}
     rooted = {"rootdir": str(config.rootpath)}

@@ -20,7 +20,9 @@ from pytest_tarl.workers import protocol
 
 TRIES = 3  # maximum number of runs of an episode whose worker dies
 PATIENCE = 5.0  # time to tear down fixtures before a worker is killed (s)
-SILENCE = 180  # number of checks without a heartbeat, one per second; suspending the machine adds no checks
+# number of checks without a heartbeat, one per second, after which a worker is ended; a suspended machine makes no
+# checks
+SILENCE = 180
 _FRAME = re.compile(r'^ *File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
 WORKER_MAIN = Path(__file__).with_name("worker_main.py")
 
@@ -30,7 +32,7 @@ class WorkerDiedError(TarlError):
 
 
 class WorkerHeldError(TarlError):
-    """A node held a worker's interpreter lock, so the worker was ended. A retry would hang again."""
+    """A node held its worker's interpreter lock, so the worker was ended. A second run would hang, too."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ class Worker:
         threading.Thread(target=self._listen, name="tarl-listener", daemon=True).start()
 
     def ask(self, request: bytes) -> bytes:
-        """Send a request and return the answer. Raise WorkerDiedError or WorkerHeldError if the worker ended."""
+        """Send a request and return the answer. Raise WorkerDiedError or WorkerHeldError if the worker has ended."""
         asked, told = self._pipes()
         self._silent, self._asked = 0, True
         try:
@@ -212,7 +214,7 @@ class Pool:
             return waiting.pop() if waiting else None
 
     def _move(self, worker: Worker, post: Post | None) -> None:
-        """Mark a worker as idle; given a post (a job), make it available for that job."""
+        """Remove a worker from the busy ones; with a `post` (a job), make it available for this job."""
         with self._lock:
             self._busy.remove(worker)
             if post is not None:

@@ -61,7 +61,7 @@ class Replays:
         self._pool.close()
 
     def _posted(self, bag: Path) -> Post:
-        """Describe the worker's job. A single bag in its arguments suffices for pytest to collect the test for bags."""
+        """Return the description of the worker's job; one bag in its arguments makes pytest collect the test."""
         test = self.fixture.test.partition("[")[0]
         if not (self.root / test.partition("::")[0]).is_file():
             raise SettingsError(

@@ -33,7 +33,8 @@ ENDED = 70  # exit status if the parent run has ended
 def serve(requests: int, answers: int, config: Config | None, problem: str) -> None:
     """Serve the parent process until it closes the pipe or exits.
 
-    The arguments are the descriptors of the pipes, pytest's configuration, and the error if there is no configuration.
+    `requests` and `answers` are descriptors of pipes. `config` is pytest's configuration or, if there is none,
+    `problem` is the error.
     """
     alive, told = os.pipe()
     _thread.start_new_thread(_forwarded, (requests, told))
@@ -162,8 +163,8 @@ def instruments(given: dict[str, Any]) -> Instruments:
 def _forwarded(requests: int, told: int) -> None:
     """Forward requests. If the parent run has ended, end this process immediately, even while a node runs.
 
-    The function runs in a thread that `threading` does not list, because the recorder takes all listed
-    threads for nodes.
+    The function runs in a thread that `threading` does not list, because the recorder assumes that every listed thread
+    runs nodes.
     """
     while chunk := os.read(requests, 1 << 16):
         while chunk:
