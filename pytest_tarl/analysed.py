@@ -46,7 +46,8 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
             )
         paths.append(path)
     with _working_in(root):  # the analysis names files relative to the working directory
-        # a package's __init__.py exports names of other files, so imports from the package lead through __init__.py
+        # a package's __init__.py may export names of other files, so an import from the package may lead through
+        # __init__.py
         analysis = _analysis([*paths, *imported(paths, root, packages=True)], root)
     if analysis.errors:
         first = analysis.errors[0]
@@ -60,7 +61,7 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
 
 
 def _what_to_name(paths: Sequence[Path], folder: Path, root: Path) -> str:
-    """Return the advice for nodes without a flow: name the files that they import, if there is a flow through them."""
+    """Return the advice for nodes without a flow: to name their imported files, if a flow passes through these."""
     passed = passed_with_imports(paths, root)
     if not passed:
         return "run tarl-lint on these files, and name all files of the node."

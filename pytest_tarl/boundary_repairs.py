@@ -1,10 +1,10 @@
 """Repair a node for drifts at and beyond the failure boundary of a stress run, and show how far this boundary moved.
 
 A confirmed failure is a point of the drift space. In the episodes of the search and of the acceptance test, each
-direction of the failure takes values from this point to the end of its range, and the other directions stay nominal. If
-no repair is accepted there, the search tries a smaller region next to the boundary. An accepted repair is then run on
-fresh draws from the whole declared space. The repair is withheld if it loses reward or successes on these
-draws, or if any boundary comes nearer to the nominal point.
+failing direction takes values from this point to the end of its range, and all other directions stay nominal. If no
+repair is accepted in this region, the search tries a smaller region next to the boundary. An accepted repair is then
+run on fresh draws from the whole declared space. The repair is withheld if it loses reward or successes on these draws,
+or if any boundary comes nearer to the nominal point.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Placed:
-    """A rollout that runs episodes of a space at the point `place(seed)`, and replaces the files of `overlay`."""
+    """A rollout that runs each episode at the point `place(seed)` of a space, with the files of `overlay` replaced."""
 
     rollout: Rollout
     drift: str
@@ -86,7 +86,7 @@ class Placed:
 
 @dataclass(frozen=True)
 class Fixed:
-    """The effect of an accepted repair: the changed margins, and the outcomes over the space before and after it."""
+    """The effect of an accepted repair: the margins that it changes, and outcomes in the space without and with it."""
 
     rows: tuple[Row, ...]
     before: tuple[Outcome, ...]
@@ -95,7 +95,7 @@ class Fixed:
 
     @property
     def loses(self) -> str:
-        """Return the reason to withhold the repair; empty if there is none."""
+        """Return why the repair must be withheld, or an empty string."""
         fragile = [row.name for row in self.rows if row.change == "more fragile"]
         if fragile:
             return f"the boundary of {' and '.join(fragile)} moved nearer to the nominal point"
@@ -128,7 +128,7 @@ class Fixed:
 
 @dataclass(frozen=True)
 class Told:
-    """The searches for a repair, the lines that report them, and the patch."""
+    """The searches for a repair, the lines of the report, and the patch."""
 
     lines: tuple[str, ...]
     patch: Path | None = None
@@ -169,7 +169,7 @@ def _told(
     overlay: Mapping[Path, str],
     attempts: list[Attempt],
 ) -> Told:
-    """Test an accepted repair over the space. If the repair loses reward there, delete its patch."""
+    """Test an accepted repair over the whole space. If the repair is withheld, delete its patch."""
     patch = job.root / accepted.patch
     attempt = Attempt(region.words, repair_words(accepted), accepted=True, patch=accepted.patch)
     try:
@@ -195,7 +195,7 @@ def _finished(
 
 
 def _searched(job: Job, region: Region) -> tuple[Repair | None, Mapping[Path, str], str]:
-    """Compare and repair in a region. Return the repair, its changed files, and a reason if none was accepted."""
+    """Search for a repair in a region. Return the repair, the files that it changes, and why none was accepted."""
     request = job.request
     drift, world = request.drift, region.drift
 
@@ -238,7 +238,7 @@ def _searched(job: Job, region: Region) -> tuple[Repair | None, Mapping[Path, st
 
 
 def _examined(job: Job, found: Stress, failed: Failure, overlay: Mapping[Path, str]) -> Fixed:
-    """Stress the repaired node along each direction, towards the failure, and on fresh draws from the space."""
+    """Stress the repaired node along each direction, along the ray to the failure, and at random points."""
     request = job.request
     patched = Placed(request.rollout, request.drift, overlay=overlay)
     again = replace(request, rollout=patched, source=None)

@@ -39,7 +39,7 @@ from pytest_tarl.settling import within
 
 Tables = tuple[
     Floats, Floats
-]  # utilities of one taint list in the designed and the deployed world, each of shape (cells, sites)
+]  # the utilities of one taint list in the designed and in the deployed world, each of shape (cells, sites)
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Online:
     comparison: Comparison
     recorded: Recorded
     sarsa: tuple[Floats, ...]
-    # for each check of the verdict: number of episodes, uncorrected p-value of a decrease
+    # for each check of the verdict: the number of episodes, and the uncorrected p-value of a decrease
     looks: tuple[tuple[int, float], ...] = ()
     decided: bool = False  # whether the last check has made the verdict final
 
@@ -68,8 +68,8 @@ def run_online(
 ) -> Online:
     """Run the episodes of one scenario, or read the missions of a log, and compare them with the recording.
 
-    `changeable` holds the IDs of the sites with an operand that a repair can change, if known: these sites rank before
-    all others. If `stage` is given, the comparison ends after that stage, and a later call may continue it.
+    `changeable` holds the IDs of the sites with an operand that a repair can change, if these are known. Such sites
+    rank before all others. If `stage` is given, the comparison ends after that stage, and a later call may continue it.
     """
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)
@@ -135,7 +135,7 @@ def _formulas(designation: Designation, offline: Sample, online: Sample) -> tupl
 
 
 def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> list[Tables]:
-    """Return the tables with unknown designed values filled in from recorded cells that differ only in `without`."""
+    """Fill unknown designed values of the tables in from recorded cells that differ only in the sensors `without`."""
     return [
         (lent(before, one, offline.cells, without), after)
         for (before, after), one in zip(tables, offline.lists, strict=True)
@@ -143,7 +143,7 @@ def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> 
 
 
 def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int]) -> dict[str, Sizes]:
-    """Return each range of a drift with the numbers drawn from it, one per episode; `drawn_by` holds the seeds."""
+    """Return each range of a drift with the number that each episode drew from it; `drawn_by` holds the seeds."""
     if drift is None:
         return {}
     whole = designation.drifts[drift]
@@ -184,7 +184,7 @@ def _side(
 
 
 def _learner(fixture: Fixture, options: Options) -> str:
-    """Return the recording's learning rule. Raise FixtureError if the rule is unknown or not the chosen one."""
+    """Return the recording's learning rule. Raise FixtureError if it is unknown or differs from the chosen one."""
     if fixture.learner not in LEARNERS:
         raise FixtureError(
             f"The recording of {fixture.test} holds a utility learned by {fixture.learner!r}, which this version of "
@@ -229,7 +229,7 @@ class _Watch:
 
 
 def current_members(fixture: Fixture, plan: Plan) -> tuple[tuple[int, ...], ...]:
-    """Return the current number of every recorded site, by taint list; -1 if the site no longer exists."""
+    """Return, for each taint list, the current number of every recorded site, or -1 if the site no longer exists."""
     number = {place.id: n for n, place in enumerate(plan.places)}
     return tuple(tuple(number.get(site.id, -1) for site in one.sites) for one in fixture.lists)
 
@@ -267,7 +267,7 @@ def _learned_tables(
 def _compared(
     lists: Sequence[TaintList], tables: Sequence[tuple[Floats, Floats]], rows: Ints
 ) -> tuple[ListComparison, ...]:
-    """Return each taint list that still has sites, with its tables and their sums over `rows`."""
+    """Return all taint lists that still have sites, each with its tables and the sums of the tables over `rows`."""
     return tuple(
         ListComparison(one, before, after, localize.slices(one, before, after, rows))
         for one, (before, after) in zip(lists, tables, strict=True)
@@ -276,7 +276,7 @@ def _compared(
 
 
 def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Floats:
-    """Reorder a table from the row order `rows` to the row order `cells`; rows of missing cells are NaN."""
+    """Return a table whose rows are the cells `rows` with the rows `cells` instead; rows of missing cells are NaN."""
     place = {cell: i for i, cell in enumerate(cells)}
     wide = np.full((len(cells), table.shape[1]), np.nan)
     wide[[place[cell] for cell in rows]] = table
@@ -284,7 +284,7 @@ def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Float
 
 
 def _paper_cells(tables: Sequence[tuple[Floats, Floats]], cells: Sequence[Cell]) -> tuple[Cell, ...]:
-    """Return the paper's region: cells where a list's utilities differ by at least half of the list's maximum."""
+    """Return the paper's region: cells where a utility differs by at least half of its list's largest difference."""
     rows: set[int] = set()
     for before, after in tables:
         rows.update(paper_region(before, after).tolist())
@@ -292,6 +292,6 @@ def _paper_cells(tables: Sequence[tuple[Floats, Floats]], cells: Sequence[Cell])
 
 
 def _rows(region: Region, otherwise: Sequence[Cell], cells: Sequence[Cell]) -> Ints:
-    """Return the rows that Eq. 2 sums over: those of the region or, if the test found none, of the paper's region."""
+    """Return the rows over which Eq. 2 sums: those of the region or, if it is empty, those of the paper's region."""
     chosen = {*region.cells, *region.novel} or set(otherwise)
     return np.array([i for i, cell in enumerate(cells) if cell in chosen], dtype=np.int64)

@@ -36,7 +36,7 @@ def _with_verdict(comparison: Comparison, verdict: Verdict, tests: int, alpha: f
 
 
 def _hopeless(comparison: Comparison, tests: int, alpha: float) -> Iterator[str]:
-    """Yield a warning if no difference, however large, could be significant after the correction."""
+    """Yield a warning if even the largest difference could not be significant after the correction."""
     offline, online = (len(comparison.totals[world]) for world in ("offline", "online"))
     least = least_p_value(offline, online, permutations_for(alpha, tests))
     if tests * least >= alpha:
@@ -49,6 +49,6 @@ def _hopeless(comparison: Comparison, tests: int, alpha: float) -> Iterator[str]
 
 
 def _detectable(comparison: Comparison, alpha: float) -> float:
-    """Return the detectable loss per episode at the first step of the correction, which is the strictest."""
+    """Return the loss per episode that is detectable at the first, strictest step of the correction."""
     offline, online = (np.array(comparison.totals[world]) for world in ("offline", "online"))
     return max(comparison.verdict.tolerance, detectable_loss(offline, online, alpha))

@@ -1,7 +1,7 @@
 """The designed world of a test: the world as its author wrote it, plus any permanent drifts that were adopted.
 
-The recording stores the names of these drifts, so all users of a recording run the same world. Plain test runs also
-read the recording, so this module does not import numpy.
+The recording stores the names of these drifts, so that everyone who uses a recording runs the same world. Plain test
+runs also read the recording, so this module does not import numpy.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pytest_tarl.spaces import Fault, Point, Space
 AS_WRITTEN = "none"  # the drift name that selects the world as its author wrote it
 _HEADER = "header.npy"
 _PREFIX = 10  # number of bytes before the header of a version 1 .npy file
-# maximum number of bytes of a header (10,000 statements take 3 MB); a larger one is damaged
+# maximum size of a header in bytes (10,000 statements take 3 MB); a larger header counts as damaged
 _LARGEST = 100_000_000
 
 
@@ -44,7 +44,7 @@ def adopted(path: Path) -> tuple[str, ...]:
 
 
 def adopting(design: tuple[str, ...], name: str | None, drifts: Mapping[str, Drift]) -> tuple[str, ...]:
-    """Return the drifts of the design after a recording under the drift `name`; without a name, they are unchanged."""
+    """Return the drifts of the design after a recording under the drift `name`; without a name, these are `design`."""
     if name is None:
         return design
     if name == AS_WRITTEN and name not in drifts:
@@ -60,7 +60,7 @@ def value(
     seed: int,
     point: Point | None = None,
 ) -> Any:
-    """Return the value of `tarl_drift` in an episode: the design, changed by the scenario; None if both are empty.
+    """Return the value of `tarl_drift` in an episode: that of the design, changed by the scenario; None without both.
 
     The design includes the nominal values of all spaces. If the scenario is a space, its values are those of `point`;
     without `point`, the seed determines a random point. Raise SettingsError if the design contains a drift that the
@@ -96,7 +96,7 @@ def faults(
 
 
 def replaced(drifts: Mapping[str, Drift], design: tuple[str, ...], scenario: str | None) -> str:
-    """Return the design's drift if the scenario replaces it, or "". Two dictionaries are merged, not replaced."""
+    """Return the design's drift that the scenario replaces, or "". Two dictionaries are merged and not replaced."""
     if scenario is None or scenario in design:
         return ""
     return next((name for name in design if not _combines(drifts.get(name), drifts[scenario])), "")

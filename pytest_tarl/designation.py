@@ -33,7 +33,7 @@ class Designation:
     drifts: Mapping[str, Drift] = field(default_factory=dict)
     episodes: int = 200
     min_success: float = 1.0
-    confidence: float | None = None  # confidence at which the recording must decide whether min_success holds
+    confidence: float | None = None  # confidence with which the recording must show whether min_success holds
     total_range: tuple[float, float] | None = None  # smallest and largest possible total reward of an episode
     tolerance: float | None = None
     # function that computes the rewards that a log lacks
@@ -43,7 +43,7 @@ class Designation:
     requirements: Requirements = NOTHING_REQUIRED
     must_hold: Mapping[str, tuple[Any, ...]] = field(
         default_factory=dict
-    )  # direction of a space → limits of its range, or options, within which the guarantee must hold
+    )  # direction of a space → the limits of its range, or the options, within which the guarantee must hold
     purpose: str = ""  # first paragraph of the test's docstring
 
 

@@ -125,7 +125,7 @@ def drift(where: str, name: str, value: Any) -> Drift:
 def drawn(whole: Drift, name: str, seed: int, point: Point | None = None) -> Any:
     """Return the value of the scenario `name` in the episode of a seed; each range is replaced by a drawn number.
 
-    A space takes the values of `point`, or of a drawn point if it is None.
+    A space takes the values of `point` or, if `point` is None, those of a point that is drawn.
     """
     if isinstance(whole.value, Space):
         return whole.value.world(drawn_point(whole.value, name, seed) if point is None else point)
@@ -133,12 +133,12 @@ def drawn(whole: Drift, name: str, seed: int, point: Point | None = None) -> Any
 
 
 def drawn_point(space: Space, name: str, seed: int) -> Point:
-    """Return the point that a seed's episode draws from the space of the scenario `name`."""
+    """Return the point that the episode of a seed draws from the space of the scenario `name`."""
     return {part: _number(extent, _stream(name, part), seed) for part, extent in space.extents.items()}
 
 
 def sizes(whole: Drift, name: str, seed: int) -> Mapping[str, float]:
-    """Return the numbers that a seed's episode draws from the ranges, by dictionary key."""
+    """Return the numbers that the episode of a seed draws from the ranges, by dictionary key."""
     return {part: _draw(span, _stream(name, part), seed) for part, span in whole.spans.items()}
 
 

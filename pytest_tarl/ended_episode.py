@@ -26,9 +26,9 @@ class EndedEpisode:
     requirements: Requirements
     situation: Situation
     faults: Faults
-    # whether a drift or a fault is active (if so, a node that publishes nothing is not an error)
+    # whether a drift or a fault is active; if so, it is no error if a node publishes nothing
     drifted: bool
-    # whether a repair candidate runs; with a candidate, a watchdog node may rightly publish nothing in a mission
+    # whether a repair candidate runs; under a good candidate, a watchdog node may have nothing to publish in a mission
     changed: bool
     ros: Ros | None  # the ROS of the episode; None if the test did not use ROS
     drives_ros: bool  # whether nodes were started
@@ -49,7 +49,7 @@ class EndedEpisode:
         return (*ended, *missing, *started, *replayed, *self._silence())
 
     def _silence(self) -> tuple[str, ...]:
-        """Return a note if a drift of the world, not a declared fault, silenced the nodes."""
+        """Return a note if a drift of the world, and not a declared fault, made the nodes silent."""
         if not self.drifted or self.faults.active or not self._silent:
             return ()
         told = (
@@ -80,7 +80,7 @@ class EndedEpisode:
         """Return which sensor or node was silent in the whole episode and what to check, or "".
 
         A mission without messages is not an error if other missions have messages: a door may stay closed, or a battery
-        full. Drifts and candidates for a repair may silence a node in all missions.
+        may stay full. Drifts and repair candidates may silence a node in all missions.
         """
         if self.replay is not None or self.drifted:
             return ""
@@ -105,7 +105,7 @@ class EndedEpisode:
         return ", ".join(sorted(self.ros.subscribed if self.ros is not None else ())) or "no topic"
 
     def _unmet(self) -> SettingsError | None:
-        """Return the error of a declared fault whose topic or node did not occur, or None if there is none."""
+        """Return the error for a declared fault whose topic or node did not occur, or None if all occurred."""
         if self.ros is None:
             return None
         try:

@@ -68,9 +68,9 @@ class Tarl:
         self._replay = replay
         # a recorded mission already contains the faults of its robot
         self._faults = NO_FAULTS if replay is not None else faults
-        # whether a drift is active (if so, a node that publishes nothing is not an error)
+        # whether a drift is active; if so, it is no error if a node publishes nothing
         self._drifted = drifted or bool(self._faults.active)
-        self._changed = changed  # whether a candidate's text runs in place of a file
+        self._changed = changed  # whether the text of a repair candidate runs in place of a file
         self._outputs = outputs
         self._recorder = recorder
         self._imports = imports
@@ -167,7 +167,7 @@ class Tarl:
         `file` is a path relative to the test's folder, the name of a launch file in the workspace, or `package/name`.
         `arguments` are its launch arguments, and `only` holds the names of the nodes to start. `replace` maps the name
         of a node to a function that runs in its place. The function receives a `StandIn`, which publishes and
-        subscribes under the topic names in the node's code. A note names the nodes that are neither Python nor
+        subscribes under the topic names that the node's code uses. A note names the nodes that are neither Python nor
         replaced. `parameters`, a mapping or the path of a YAML file, apply to all nodes and take precedence over those
         of the launch file.
 
@@ -295,7 +295,7 @@ class Tarl:
         self._formulas.require(formula, begun=self._situation.begun)
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
-        """Set the reward of this simulation step; call it once per step.
+        """Set the reward of this simulation step; call this method once per step.
 
         Named parts are summed, and the report also shows each part.
 
@@ -305,7 +305,7 @@ class Tarl:
         self._rewards += 1
 
     def at_end(self, call: Callable[[], object]) -> None:
-        """Register a function to call at the end of the episode, even after an error; the last one is called first."""
+        """Register a function to call at the end of the episode, even after an error; the newest is called first."""
         self._open.callback(call)
 
     def conclude(self, ended: BaseException | None) -> None:

@@ -16,7 +16,7 @@ class SettingsError(TarlError):
 
 
 class FixtureError(TarlError):
-    """A recording is missing, damaged, of another test or of another format. `what` is the message without advice."""
+    """A recording is missing or damaged, or belongs to another test or format. `what` is the message without advice."""
 
     def __init__(self, what: str, advice: str = "") -> None:
         super().__init__(f"{what} {advice}".rstrip())
@@ -44,7 +44,7 @@ class SimulatorLostError(SimulatorError):
 
 
 class RequirementError(AssertionError):
-    """A formula does not hold in an episode, so the mission failed."""
+    """A formula does not hold in an episode, so the episode counts as a failed mission."""
 
 
 class LogError(TarlError):
@@ -72,11 +72,11 @@ class UnsupportedApiError(TarlError):
 
 
 class UnsupportedNameError(UnsupportedApiError, AttributeError):
-    """A node reads a name that a ROS module of the in-process ROS lacks, so `hasattr` returns False."""
+    """A node reads a name that a ROS module of the in-process ROS lacks. The error makes `hasattr` return False."""
 
 
 class UnsupportedImportError(UnsupportedApiError, ImportError):
-    """A node imports a name from a ROS module of the in-process ROS that lacks it. The node may catch this error."""
+    """A node imports a name that a ROS module of the in-process ROS lacks. The node may catch this error."""
 
 
 class UnsupportedModuleError(UnsupportedApiError, ModuleNotFoundError):
@@ -102,7 +102,7 @@ class RefusedError(TarlError):
 def text_of(said: object) -> str:
     """Return the message of an error of other code, cut to `MOST_TEXT` characters.
 
-    Its `__str__` may raise any exception; the text then names this exception.
+    The error's `__str__` may raise any exception; the returned text then names this exception.
     """
     try:
         text = str(said)

@@ -12,7 +12,8 @@ from contextlib import suppress
 from pathlib import Path
 
 FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))  # Windows does not define EDQUOT
-BLOCK = 4096  # size in bytes of the file that checks whether a disk is full: the least that most file systems allocate
+# size in bytes of the file that is written to check whether a disk is full; most file systems allocate at least this
+BLOCK = 4096
 DIFFERENT = (errno.EROFS, errno.EACCES, errno.EPERM)
 
 
@@ -34,7 +35,7 @@ def advice_on(problem: OSError) -> str:
 
 
 def unwritten(failed: Mapping[Path, OSError], root: Path) -> list[str]:
-    """Return one sentence per reason why files below `root` were not written; each ends with advice."""
+    """Return one sentence for each reason why files below `root` were not written; each sentence ends with advice."""
     reasons: dict[tuple[str, str], list[str]] = {}
     for path, problem in failed.items():
         shown = path.relative_to(root).as_posix()
@@ -67,7 +68,8 @@ def check_writable(path: Path) -> None:
 def existing(folder: Path, name: str | os.PathLike[str]) -> Path | None:
     """Return the resolved path of a file or folder that a test names, or None if it does not exist.
 
-    Names that no file can have (with a NUL or a lone surrogate, or too long) and loops of links do not exist.
+    Return None for a loop of links, and for a name that no file can have: with a NUL, with a lone surrogate, or too
+    long.
     """
     try:
         path = (folder / name).resolve(strict=True)
@@ -82,9 +84,9 @@ def slug(text: str) -> str:
 
 
 def read_regular(path: Path) -> bytes:
-    """Return the content of a regular file. Raise OSError for anything else, such as a named pipe or a device.
+    """Return the content of a regular file. Raise OSError for other kinds of files, such as a named pipe or a device.
 
-    Reading anything else could block or never end.
+    Reading another kind of file could block or never end.
     """
     # without O_NONBLOCK, open() on a pipe waits for a writer; Windows has neither the flag nor such pipes
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))

@@ -1,8 +1,8 @@
 """Run the `__del__` methods of a node's objects when its episode ends.
 
 Objects of a node are in reference cycles, so Python would run their `__del__` at some later allocation, perhaps while
-it parses a file in the next episode. An error in such a `__del__` then ends the whole run, because Python 3.11 cannot
-parse another text, such as a line of the traceback, inside `ast.parse`.
+it parses a file in the next episode. An error in such a `__del__` would then end the whole run: reporting it needs
+another parse, of a line of the traceback, and Python 3.11 cannot parse inside `ast.parse`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A finished test of a TARL run, which is reported to pytest at once or, if tests are judged together, at the end."""
+"""A finished test of a TARL run. It is reported to pytest at once or, if tests are judged together, at the end."""
 
 from __future__ import annotations
 

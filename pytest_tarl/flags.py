@@ -1,4 +1,4 @@
-"""The flags that TARL adds to pytest: names, types, whether a flag starts a TARL run, and hints for misspelt flags."""
+"""The flags that TARL adds to pytest: their names and types, which of them start a TARL run, and hints on typos."""
 
 from __future__ import annotations
 

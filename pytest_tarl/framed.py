@@ -1,4 +1,4 @@
-"""Records of an append-only file: each has a length and a checksum, so that readers recognise incomplete records.
+"""Records of an append-only file: each has a length and a checksum, by which readers recognise incomplete records.
 
 A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes.
 """

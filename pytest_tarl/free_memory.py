@@ -9,8 +9,8 @@ from pathlib import Path
 _MEMINFO = Path("/proc/meminfo")  # Linux
 _OWN_GROUPS = Path("/proc/self/cgroup")
 _GROUPS = Path("/sys/fs/cgroup")
-# for each cgroup version: the files of the limit and of the usage, and the statistic of the file cache that
-# can be dropped
+# for each cgroup version: the file with the limit, the file with the usage, and the statistic for the part of the file
+# cache that can be dropped
 _FILES = {
     1: ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
     2: ("memory.max", "memory.current", "inactive_file"),
@@ -35,7 +35,7 @@ def _of_machine() -> int | None:
 
 
 def _of_groups() -> Iterator[int | None]:
-    """Yield the unused bytes of each control group (cgroup) of this process, innermost first; None without a limit."""
+    """Yield the unused bytes of each control group (cgroup) of this process, innermost first; None for no limit."""
     try:
         lines = _OWN_GROUPS.read_text().splitlines()
     except OSError:

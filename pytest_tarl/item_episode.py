@@ -59,7 +59,7 @@ class Episode:
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
     replayed: bool = False  # whether a bag was replayed to its end
     judged: tuple[Judged, ...] = ()
-    older: tuple[Path, ...] = ()  # files of the overlay for which the episode ran the old text
+    older: tuple[Path, ...] = ()  # files of the overlay whose old text ran in the episode
     simulator: bool = False  # whether an external simulator was the episode's world
     outputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
     parameters: Mapping[str, bool | int | float] = field(default_factory=dict)
@@ -141,7 +141,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
 
 
 def _launch_files_replaced(data: Mapping[Path, str]) -> AbstractContextManager[None]:
-    """Return a context that re-reads the parameters of launch files if the overlay replaces data files."""
+    """Return a context in which launch and parameter files are read anew if the overlay replaces data files."""
     if not data:
         return nullcontext()
     from pytest_tarl.ros.launched import texts_replaced
@@ -177,7 +177,7 @@ def _replay(episode: Episode) -> Replay | None:
 
 
 def drift_value(item: pytest.Item) -> Any:
-    """Return the value of the drift scenario in the item's episode; without a scenario, the design's value or None."""
+    """Return the value of the drift scenario in the item's episode; with no scenario, the design's value or None."""
     from pytest_tarl import design
 
     episode = _episode(item)

@@ -168,7 +168,10 @@ def trace(
 
 
 def _judged(reward: Floats, mission: Mission, fixture: Fixture, judge: Judge | None) -> Floats:
-    """Return the rewards, shape (steps,). Compute missing rewards from the sensors before and after each step."""
+    """Return the rewards, shape (steps,).
+
+    If the log has no rewards, compute them from the sensors before and after each step.
+    """
     if not np.isnan(reward).any():
         return reward
     if judge is None:

@@ -16,13 +16,13 @@ RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]
 
 
 class LostSimulators:
-    """The episodes of one test that were run, and the reasons why some of them had to be run again."""
+    """The number of episodes that ran in one test, and the reasons why some of them had to run again."""
 
     def __init__(self) -> None:
         self._episodes: list[tuple[str, ...]] = []
 
     def watched(self, rollout_with: RolloutWith) -> RolloutWith:
-        """Return a function that makes the same rollouts, whose episodes are counted."""
+        """Return a function that makes the same rollouts as `rollout_with`, but counts their episodes."""
         return lambda instruments, sensors: _Watched(rollout_with(instruments, sensors), self.count)
 
     def count(self, run: EpisodeRun) -> None:

@@ -49,7 +49,7 @@ IGNORED = (
 
 @dataclass(frozen=True)
 class Other:
-    """Another test of the run that has the marker `tarl` ("designated")."""
+    """Another designated test of the run, which is a test with the marker `tarl`."""
 
     test: str
     folder: Path
@@ -76,7 +76,7 @@ class Mission:
     node: str = ""  # pytest's node id, with the scenario
 
     def run(self, rollout_with: RolloutWith) -> Account | Compared:
-        """Run the mode and return its report; for a comparison, return a Compared, whose `told` reports it.
+        """Run the mode and return its report; a comparison returns a Compared instead, whose `told` makes the report.
 
         Raise TarlError if the test cannot be recorded or compared.
         """
@@ -123,7 +123,7 @@ class Mission:
         return self.root / ".tarl"
 
     def interrupted(self, done: int, total: int, kept: str) -> str:
-        """Return a line about an interrupted run and its recording; `kept` is a sentence about the episodes kept."""
+        """Return a line about an interrupted run and its recording; `kept` is a sentence about the kept episodes."""
         if self.options.mode != "record":
             return f"Interrupted in episode {done + 1} of {total}. {kept}".rstrip()
         path = self.fixture_path
@@ -198,7 +198,7 @@ class Mission:
         return {other.test: other.designation for other in self.others}
 
     def _test_side(self) -> Digests:
-        """Return the hashes of the definitions in the test's modules."""
+        """Return the hash of each definition in the test's modules."""
         return digests(self.test, self.root, [self.folder / node for node in self.designation.nodes])
 
     def _online(self, rollout: Rollout, sites: Plan, analysis: Analysis, fixture: Fixture) -> Compared:
@@ -311,7 +311,7 @@ class Mission:
 
     def _ignore(self) -> None:
         ignore = self.tarl / ".gitignore"
-        # if the folder is not writable, writing the other files reports the error
+        # if the folder is not writable, the error is reported when the other files are written
         with suppress(OSError, UnicodeDecodeError):
             if not ignore.exists() or ignore.read_text("utf-8") == EARLIER:
                 write_atomically(ignore, IGNORED.encode())

@@ -68,7 +68,7 @@ class TaintList:
 
 
 def _end(topic: str) -> str:
-    """Return a topic, or where the call with an unknown topic is; that identifies it by `(call at path:line)`."""
+    """Return a topic; an unknown topic is named by the place of its call, `(call at path:line)`."""
     call, separator, place = topic.removesuffix(")").partition(" at ")
     return f"unknown topic at {place.rpartition('/')[2]}" if separator and call.startswith("(") else topic
 
@@ -94,7 +94,7 @@ class Region:
     """Where the worlds differ, as cells that deployed episodes visited; `novel` holds those that the recording lacks.
 
     `left` holds recorded cells that deployed episodes avoid. If all deployed cells are new, the comparison ignores some
-    sensors, so that cells match; `without` holds the indices of these sensors.
+    sensors, so that deployed cells match recorded ones; `without` holds the indices of these sensors.
     """
 
     cells: tuple[Cell, ...] = ()
@@ -124,7 +124,7 @@ class Guarantee:
 
     At least 1 - `share` of the future episodes earn `quantile` or more. `quantile` is None if there are fewer than
     `needed` episodes, or if their number depended on their results; `needed` is 0 in that case. `varied` is false if
-    all episodes are equal, because equal episodes show only one of the worlds.
+    all episodes are equal; such episodes show only a single world.
     """
 
     episodes: int
@@ -202,12 +202,12 @@ class OperandEffect:
     best: float
     effect: float
     factor: bool = False  # whether `best` is a factor for the operand, instead of its new value
-    what: str = ""  # description, if the constant follows a sensor or a variable; `best` is then the power
+    what: str = ""  # description, if the operand follows a sensor or a variable; `best` is then the exponent
 
 
 @dataclass(frozen=True, slots=True)
 class Culprit:
-    """A ranked site. `method` is `slices` if no simulation changed any of its operands."""
+    """A ranked site. `method` is `slices` if no operand of the site was changed in simulation."""
 
     site: SitePlace
     score: float
@@ -217,7 +217,7 @@ class Culprit:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One repaired operand. Where the guard holds, `value` replaces the operand, or is a factor if `factor` is true."""
+    """One repaired operand. Where the guard holds, `value` replaces it or, if `factor` is true, multiplies it."""
 
     path: str
     line: int
@@ -229,9 +229,9 @@ class Edit:
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A promising candidate and its outcome; `reason` is empty for the accepted one.
+    """A promising candidate and its outcome; `reason` says why it was rejected, and is empty if it was accepted.
 
-    `mean` is its mean reward in `episodes` episodes. `fresh` is true if they were not used to choose it.
+    `mean` is its mean reward in `episodes` episodes. `fresh` is true if these episodes were not used to choose it.
     """
 
     what: str
@@ -243,7 +243,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Partial:
-    """A change that helps but was not accepted. `gain` is the reward per episode that it gains on fresh seeds.
+    """A change that helps but was not accepted. `gain` is the reward per episode that the change gains on fresh seeds.
 
     `low` and `designed_low` are lower bounds of the gain in the two worlds; `patch` is a path below the root.
     """

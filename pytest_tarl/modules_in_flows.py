@@ -1,4 +1,4 @@
-"""Find the project modules that files import, and those whose names the statements of flows use."""
+"""Find the project modules that files import, and the modules whose names are used by statements of flows."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def uses(analysis: Analysis, root: Path) -> Iterator[Use]:
 def imported(files: Sequence[Path], root: Path, *, packages: bool = False) -> tuple[Path, ...]:
     """Return the project's files that these files import, directly or not, in the order in which they are found.
 
-    With `packages`, return only files `__init__.py`, and follow no other file. What is not valid Python is left out.
+    With `packages`, return and follow only the files `__init__.py`. Files that are not valid Python are skipped.
     """
     found = dict.fromkeys(files)
     waiting = list(files)

@@ -40,7 +40,7 @@ class Options:
     episodes: int | None = None  # None: the marker's number for a recording, 40 for a comparison
     alpha: float = 0.05
     searches: tuple[str, ...] = ("sweep",)
-    localize: str = "repair"  # when the search ends: with an accepted repair, or with a ranking of all sites
+    localize: str = "repair"  # what ends the search: an accepted repair, or a ranking of all sites
     budget: int = 300  # limit of a search, in episodes
     seconds: float | None = None  # limit of a search in seconds, instead of episodes
     edit: str = "auto"  # where to write an unconditional repair of a named constant
@@ -69,14 +69,14 @@ class Options:
     def most_looks(self) -> int:
         """Return the maximum number of looks at the verdict.
 
-        There is one look if a repair follows, because finding the region needs all episodes. There is also
-        one look with --tarl-holm, because the correction needs smaller p-values than those at which a run may
-        stop early.
+        There is only one look if a repair follows, because finding the region needs all episodes. With --tarl-holm,
+        there is only one look, too, because the correction needs smaller p-values than those at which a run may stop
+        early.
         """
         return self.looks or (1 if self.mode == "repair" or self.holm else self.LOOKS)
 
     def alone(self, episodes: int) -> Options:
-        """Return the options for a separate run of one comparison, with the number of episodes that it was given."""
+        """Return the options with which one comparison can be run separately, with `episodes` episodes."""
         return replace(self, total=None, looks=None, episodes=episodes)
 
     @property

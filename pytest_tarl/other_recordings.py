@@ -16,7 +16,7 @@ from pytest_tarl.model import Repair
 
 
 def adopted(run: Mapping[str, Designation], tarl: Path, recording: Path, sites: Plan) -> Iterator[str]:
-    """Yield lines that name the new design, and other tests of the node that still use the old design.
+    """Yield lines that name the new design, and the other tests of the node that still use the old design.
 
     `run` holds the other tests of this run, `tarl` is the folder `.tarl`, and `recording` is the new recording.
     """
@@ -52,7 +52,7 @@ def lost_design(designation: Designation, fixture: Fixture, drift: str | None) -
 
 
 def unchecked(found: Repair | None, run: Collection[str], tarl: Path) -> Iterator[str]:
-    """Yield a note for each recorded test of a repaired file against which this run did not check the repair.
+    """Yield a note for each recorded test that runs a repaired file, but on which this run did not check the repair.
 
     `run` names the tests of this run, and `tarl` is the folder `.tarl`.
     """

@@ -43,7 +43,7 @@ Members = Sequence[Sequence[int]]
 
 PILOTS = 20  # number of episodes from which bins are learned
 
-SILENT = 5  # number of first episodes after which a sensor or node that was silent in all of them is an error
+SILENT = 5  # it is an error if a sensor or node is silent in each of this many first episodes
 FEW = 30  # if fewer episodes are recorded, a note states the detectable loss
 NOT_REPRODUCIBLE = (
     "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
@@ -141,7 +141,7 @@ def record(
 
 
 def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[str]:
-    """Run the first episode again; if the result differs, return a note (with both rewards for a simulator)."""
+    """Run the first episode again; if the result differs, return a note, which gives both rewards for a simulator."""
     again = sound(rollout(plan))
     if identical(recorded.first, again.trace):
         return []
@@ -262,7 +262,7 @@ def run_episodes(
 
 @dataclass
 class Silent:
-    """Missions in which a sensor or the node was silent: an error if all are, otherwise a note."""
+    """Missions in which a sensor or the node was silent. If all missions are silent, this is an error, else a note."""
 
     episodes: int = 0
     found: list[str] = field(default_factory=list)
@@ -360,7 +360,7 @@ def _silent(name: str, *, forwarded: bool) -> str:
 def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:
     """Return the previous recording (or None), and the reason if it exists but cannot be read.
 
-    A folder has no reason here, because it cannot be replaced: `check_writable` refuses it.
+    There is no reason for a folder at this path: `check_writable` refuses it, because it cannot be replaced.
     """
     if path.is_dir():
         return None, ()

@@ -1,4 +1,4 @@
-"""Remarks that accompany a verdict: lost sites, new situations, failures that do not lower the reward."""
+"""Remarks that accompany a verdict: on lost sites, new situations, and failures that do not lower the reward."""
 
 from __future__ import annotations
 

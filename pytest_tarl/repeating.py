@@ -1,7 +1,8 @@
 """Run the body of a test repeatedly; each run is an episode with fresh function-scoped fixtures.
 
-An episode is pytest's own run of an item (setup, call and teardown, each with its report), except that the reports are
-not logged and only function-scoped fixtures are torn down: fixtures of wider scope live until the item is finished.
+An episode is pytest's own run of an item: setup, call and teardown, each with its report. There are two differences.
+The reports are not logged, and only function-scoped fixtures are torn down, so fixtures of wider scope live until the
+item is finished.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ def _forget_instance(item: pytest.Function) -> None:
 
 @dataclass(frozen=True)
 class BesideRollout(ItemRollout):
-    """Run episodes of another item while an item runs. Fixtures that the items do not share are set up again."""
+    """Run episodes of another item while an item runs; fixtures that the two items do not share are set up anew."""
 
     at_work: pytest.Function
 
@@ -155,8 +156,8 @@ def _heeding_interrupts() -> Iterator[None]:
 
 def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:
     """After the last episode, tear down the fixtures that the next item does not need."""
-    # do not call pytest's hooks: plugins expect one teardown per item, and the last episode has called the hooks for
-    # it, perhaps in another process
+    # do not call pytest's hooks, because plugins expect one teardown per item, and the last episode has already called
+    # the teardown hooks, perhaps in another process
     state = item.session._setupstate
     call = pytest.CallInfo.from_call(
         lambda: state.teardown_exact(nextitem), when="teardown", reraise=INTERRUPTS
@@ -207,7 +208,7 @@ def _timed_out(error: BaseException | None) -> bool:
 
 
 def _expected(report: pytest.TestReport) -> bool:
-    """Return whether a mission failed that has an xfail mark; such a mission counts as failed."""
+    """Return whether an xfail mark expected the failure of a mission; such a mission counts as failed."""
     return report.skipped and report.when == "call" and hasattr(report, "wasxfail")
 
 

@@ -18,8 +18,8 @@ def checked_reward(
 ) -> tuple[float, dict[str, float]]:
     """Return the reward of a step and its named parts; without a total, the reward is the sum of the parts.
 
-    `by_formulas` states that the formulas give the rewards. Raise SettingsError in that case, if there is neither a
-    total nor a part, and for a value that is not a finite number.
+    `by_formulas` states that the formulas give the rewards. Raise SettingsError if `by_formulas` is true, if there is
+    neither a total nor a part, or if a value is not a finite number.
     """
     if total is None and not parts:
         raise SettingsError(

@@ -12,7 +12,8 @@ from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.instrumentation.trace import Trace
 
 AHEAD = 2  # number of episodes per worker that are started before their results are requested
-KEPT = 6  # number of started episodes that a worker keeps while other episodes are requested
+# number of started but unrequested episodes that are kept per worker while other episodes are requested
+KEPT = 6
 
 
 @dataclass(frozen=True)
@@ -40,10 +41,11 @@ class EpisodePlan:
 class EpisodeRun:
     """The result of an episode. `failure` says in one line why the test failed; `topics` maps topics to types.
 
-    `crashed` is true if the node ended the episode early, `stuck` if the reason is that it never waited. `notes`
-    are for the user. `values` holds the values of sensors with bins to learn. `judged` holds the results of formulas.
+    `crashed` is true if the node ended the episode early; `stuck` is also true if it did so because it never waited.
+    `notes` are for the user. `values` holds the values of sensors with bins to learn. `judged` holds the results of
+    formulas.
 
-    `older` lists files of the overlay for which the episode ran the old text. If there are any, the result says nothing
+    `older` lists the files of the overlay whose old text ran in the episode. If there are any, the result says nothing
     about the overlay.
 
     `outputs` holds, for each topic, sums over the messages that the nodes published, if the plan asks for them and the
@@ -52,13 +54,13 @@ class EpisodeRun:
     `parameters` holds, by absolute name, the numbers that nodes in this process get as parameters from outside, such as
     launch files or the test.
 
-    `silent` says which sensor or node was silent in the whole episode of a world without drift; an error only if it is
-    in all missions.
+    `silent` says which sensor or node was silent in the whole episode, in a world without drift; it is an error only if
+    this is so in all missions.
 
     `simulator` is true if an external simulator was the world; then the same plan may give another result.
 
-    `lost` has, for each run of the episode whose simulator died or hung, the reason in brief; the result is that of the
-    last run.
+    If the simulator died or hung, the episode ran again; the result is that of the last run. `lost` holds a brief
+    reason for each run whose simulator was lost.
 
     `broken` is the text of an error outside the mission, such as one in the test's own code.
     """
@@ -92,7 +94,7 @@ class Pending(Protocol):
         """Cancel the episode if it has not started; return whether it was cancelled."""
 
     def then(self, call: Callable[[EpisodeRun], None]) -> None:
-        """Call a function with the result, perhaps in another thread; do not call it after an error."""
+        """Call a function with the result, perhaps in another thread; after an error, it is not called."""
 
 
 class Rollout(Protocol):
@@ -164,7 +166,7 @@ class Ahead:
         self.rollout = rollout
         self._foreseen: Iterator[tuple[Hashable, EpisodePlan]] = iter(())
         self._begun: dict[Hashable, Pending] = {}
-        # keys of the episodes that were started since the last forecast and not requested yet
+        # keys of the episodes that were started since the last forecast and were not requested yet
         self._lately: set[Hashable] = set()
 
     def foresee(self, wanted: Iterable[tuple[Hashable, EpisodePlan]]) -> None:

@@ -12,9 +12,10 @@ from collections.abc import Callable
 Problem = tuple[str, int]  # (description of the problem, index of the wrong character)
 
 _LEGAL_ROS1 = re.compile(r"[~/A-Za-z][A-Za-z0-9_/]*")
-_TOPIC_LENGTH = 247  # longest absolute name of a topic or service: DDS allows 255, a prefix takes 8
+# maximum length of the absolute name of a topic or service: DDS allows 255 characters, of which a prefix takes 8
+_TOPIC_LENGTH = 247
 _NODE_LENGTH = 255
-_NAMESPACE_LENGTH = 245  # a slash and a topic of one character still fit into _TOPIC_LENGTH
+_NAMESPACE_LENGTH = 245  # with this length, a slash and a topic of one character still fit into _TOPIC_LENGTH
 
 
 def objection(name: object) -> str:
@@ -45,7 +46,7 @@ def is_refused_by_master(name: str) -> bool:
 
 
 def topic_problem(name: str) -> Problem | None:
-    """Return what rcl finds wrong in a name that may be relative or have `~` and substitutions such as `{node}`."""
+    """Return the problem that rcl finds in a name; it may be relative, and have `~` and substitutions like `{node}`."""
     if not name:
         return "topic name must not be empty string", 0
     if name[0] in "0123456789":
@@ -60,7 +61,7 @@ def topic_problem(name: str) -> Problem | None:
 
 
 def full_topic_problem(name: str) -> Problem | None:
-    """Return what rmw finds wrong in the absolute name of a topic or service."""
+    """Return the problem that rmw finds in the absolute name of a topic or service."""
     return (
         _absolute_problem(name, "topic name", "topic name must not end with a '/'")
         or _numbered(name, "topic name must not have a token that starts with a number")
@@ -69,7 +70,7 @@ def full_topic_problem(name: str) -> Problem | None:
 
 
 def namespace_problem(name: str) -> Problem | None:
-    """Return what rmw finds wrong in the absolute name of a namespace."""
+    """Return the problem that rmw finds in the absolute name of a namespace."""
     if name == "/":
         return None
     return (
@@ -80,7 +81,7 @@ def namespace_problem(name: str) -> Problem | None:
 
 
 def node_problem(name: str) -> Problem | None:
-    """Return what rmw finds wrong in the name of a node."""
+    """Return the problem that rmw finds in the name of a node."""
     if not name:
         return "node name must not be empty", 0
     said = "node name must not contain characters other than alphanumerics or '_'"

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def episode_seed(seed: int, stream: str, index: int) -> int:
-    """Return the seed of a stream's index-th episode, below 2⁶³; two streams share a seed only by chance."""
+    """Return the seed of episode `index` of a stream, below 2⁶³; two streams share a seed only by chance."""
     return _hashed(f"{seed}/{stream}/{index}", 8) >> 1
 
 

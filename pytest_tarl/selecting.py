@@ -36,8 +36,8 @@ def with_space(marked: Sequence[pytest.Item]) -> list[pytest.Item]:
 def chosen(item: pytest.Item, options: Options) -> bool:
     """Return whether `--tarl-drift` selects an item.
 
-    When recording, it selects every item whose marker declares the drift. When comparing, it selects the items of
-    that scenario, and items that declare it but lack the fixture `tarl_drift`; their reports say so.
+    For a recording, this is every item whose marker declares the drift. For a comparison, it is every item of that
+    scenario. Items that declare the drift but lack the fixture `tarl_drift` are also selected; their reports say so.
     """
     declared = options.drift in _drift_names(item)
     if options.mode == "record":

@@ -25,17 +25,17 @@ CALLED = "()"  # suffix of `field` in files if `field` is a function, which is s
 class Sensor:
     """A declared input and its binning.
 
-    With `topic` and `field` (dotted, or a function of the message), TARL reads the sensor from the messages
-    delivered to the node. Without a topic, the test sets the sensor by `tarl.observe(name=value)`. The
-    condition of a repair (its guard) can test a sensor that has a dotted field, or whose `expr` names a
-    variable of the node with its value, such as `self.heading`. Other sensors only serve for diagnosis.
+    With `topic` and `field` (dotted, or a function of the message), TARL reads the sensor from the messages delivered
+    to the node. Without a topic, the test sets the sensor by `tarl.observe(name=value)`. The condition of a repair (its
+    guard) can test a sensor that has a dotted field. It can also test a sensor whose `expr` names a variable of the
+    node that holds its value, such as `self.heading`. Other sensors only serve for diagnosis.
 
-    `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at either end for values outside.
-    `edges` gives bins of unequal width. With `bins` alone, the edges are learned from recorded episodes, so that all
-    bins hold about equally many values. An `angle` wraps around; its range is -π to π unless `low` and `high` say
-    otherwise. `categories` lists the values of a text sensor. Without any of these, the values are booleans or small
-    integers, and each has its own bin. If `tilings` is set, the utility is stored in this number of overlapping grids
-    of tiles instead of bins, so that similar values share what they learn.
+    `low`, `high` (units of the field) and `bins` make the sensor numeric, with one more bin at either end for values
+    outside. `edges` gives bins of unequal width. With `bins` alone, the edges are learned from recorded episodes, so
+    that all bins hold about equally many values. An `angle` wraps around; its range is -π to π unless `low` and `high`
+    say otherwise. `categories` lists the values of a text sensor. Without any of these, the values are booleans or
+    small integers, and each has its own bin. If `tilings` is set, the utility is stored in this number of overlapping
+    grids of tiles instead of bins, so that similar values share what they learn.
     """
 
     name: str
@@ -156,7 +156,7 @@ class Sensor:
 
     @property
     def to_learn(self) -> bool:
-        """Return whether its bins are not learned yet."""
+        """Return whether the bins of the sensor must still be learned."""
         return self.bins is not None and self.low is None
 
     @property
@@ -166,7 +166,7 @@ class Sensor:
 
     @property
     def path(self) -> str:
-        """Return the dotted field; empty if there is none that a node can read."""
+        """Return the dotted field, or an empty string if there is no field that a node can read."""
         dotted = self.topic is not None and isinstance(self.field, str) and not self.field.endswith(CALLED)
         return str(self.field) if dotted else ""
 
@@ -185,7 +185,7 @@ class Sensor:
         return min((b - a for a, b in pairwise(self.ends)), default=10.0**-decimals)
 
     def bin(self, value: Any) -> int | None:
-        """Return the bin of `value`: 0 to bins-1, or -1 and `bins` outside the range, or None for NaN.
+        """Return the bin of `value`: 0 to bins - 1 within the range, -1 below it, `bins` above it, None for NaN.
 
         Raise SettingsError for a value that the sensor cannot have.
         """

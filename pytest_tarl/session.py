@@ -59,7 +59,7 @@ class TarlSession:
         self._summary = Summary()
         self._ended: list[FinishedTest] = []  # finished tests that are not reported yet
         self._designated: tuple[pytest.Item, ...] = ()
-        self._unmarked = False  # whether all collected tests lack the marker
+        self._unmarked = False  # whether no collected test has the marker
         self._resumable: ResumableRun | None = None
         self._shared: SharedEpisodes | None = None  # with --tarl-total
 
@@ -73,7 +73,7 @@ class TarlSession:
             list(drifts) if isinstance(drifts, Mapping) else []
         )  # if the marker is invalid, running the test reports it
         if self.options.log is not None or self.options.bags:
-            names = []  # files for a log or bag have no drift in their names
+            names = []  # the names of the files for a log or bag contain no drift
         if self.options.drift is not None:
             names = [name for name in names if name == self.options.drift]
         if self.options.mode == "stress":
@@ -116,7 +116,7 @@ class TarlSession:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-        """Run a designated test (one with the marker `tarl`) in the selected mode, with one report per phase.
+        """Run a designated test (a test with the marker `tarl`) in the selected mode, with one report per phase.
 
         If Ctrl-C ended the test, raise KeyboardInterrupt after its reports.
         """

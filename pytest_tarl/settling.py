@@ -20,7 +20,7 @@ MOST = 20_000  # maximum number of episodes if a confidence is required
 
 @dataclass
 class Settling:
-    """Stopping rule, called after every episode. At least `asked` episodes run, unless too many fail."""
+    """Stopping rule, called after every episode. At least `asked` episodes run, or fewer if too many of them fail."""
 
     designation: Designation
     asked: int

@@ -1,4 +1,4 @@
-"""`--tarl-total`: all comparisons of a run share a number of episodes; undecided comparisons get what is left."""
+"""`--tarl-total`: all comparisons of a run share a number of episodes; undecided ones get the remaining episodes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class SharedEpisodes:
 
     @property
     def first(self) -> Stage:
-        """Return the first stage of every comparison, which ends at its first look."""
+        """Return the first stage of the comparisons, which ends at their first look."""
         return Stage(self.looks, self.looks[0].episodes)
 
     def following(self, outcomes: Sequence[object]) -> tuple[int, Stage] | None:

@@ -28,7 +28,7 @@ class Situation:
     ) -> None:
         self.topics: dict[str, str] = {}  # topic with a message → message type
         self.values: dict[str, list[float]] = {}  # values of sensors with bins to learn
-        self.known = False  # whether all sensors have had a value at the same time
+        self.known = False  # whether there was a moment at which all sensors had a value
         self._sensors = sensors
         self._requirements = requirements
         self._formulas = formulas

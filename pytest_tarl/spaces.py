@@ -100,12 +100,12 @@ def nominal(extent: Span | Choice) -> float:
 
 
 def value_of(extent: Span | Choice, number: float) -> Any:
-    """Return the value that a coordinate of a point represents: an option of a choice, or the number itself."""
+    """Return the value for a point's number in one direction: an option of a choice, or the number itself."""
     return extent.options[int(number)] if isinstance(extent, Choice) else number
 
 
 def world_value(extent: Span | Choice, number: float) -> Any:
-    """Return the value in `tarl_drift` for a coordinate of a point; a drift over time becomes a Schedule."""
+    """Return the value in `tarl_drift` for a point's number in one direction; a drift over time becomes a Schedule."""
     if isinstance(extent, Span) and extent.profile is not None:
         return Schedule(nominal(extent), number, extent.profile)
     return value_of(extent, number)
@@ -141,7 +141,7 @@ def choice(options: tuple[Any, ...], usual: Any) -> Choice:
 
 
 def _equal(option: Any, usual: Any) -> bool:
-    """Return whether two options are equal; False if comparing them fails or yields no truth value, as for arrays."""
+    """Return whether two options are equal; False if they cannot be compared or, like arrays, give no truth value."""
     try:
         return bool(option == usual)
     except (ValueError, TypeError):

@@ -39,7 +39,7 @@ def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
 
 
 def outlived(files: Collection[Path]) -> list[Path]:
-    """Return the files whose functions still exist in memory and hence still run the text before the edit."""
+    """Return the files with functions that still exist in memory and therefore still run the text before the edit."""
     wanted = {str(file): file for file in files}
     gc.collect()
     codes = (one.__code__.co_filename for one in gc.get_objects() if type(one) is FunctionType)
@@ -52,7 +52,7 @@ def of_tests(file: Path) -> bool:
 
 
 class _Imports:
-    """The dotted names that a module imports anywhere, since an imported constant has no reference to its module.
+    """The dotted names that a module imports anywhere; they are needed because a constant does not refer to its module.
 
     Imports inside functions count, because a function called at module level may return such a constant.
     """
@@ -74,7 +74,7 @@ class _Imports:
 
     @cached_property
     def _importing(self) -> list[CodeType]:
-        """The module's code objects that may contain an import; inline caches in the bytecode can look like one."""
+        """The module's code objects that may contain an import; inline caches in bytecode can look like an import."""
         code = cast(SourceFileLoader, self._spec.loader).get_code(self._spec.name)
         return [one for one in _nested(code) if _IMPORT in one.co_code[::2]] if code is not None else []
 

@@ -71,7 +71,7 @@ class Starter:
         replaced: Mapping[str, Replacement],
         parameters: Parameters | None,
     ) -> None:
-        """Call the functions that replace nodes of a launch file, then start its Python nodes in file order."""
+        """Call the functions that replace nodes of a launch file, then start the file's Python nodes in their order."""
         from pytest_tarl.ros.launch_plan import launch_path, launch_plan, named
         from pytest_tarl.ros.stand_in import StandIn
 

@@ -21,7 +21,7 @@ def silent_files(
 ) -> Iterator[str]:
     """Yield sentences, with advice, for the named files that take no part in a flow.
 
-    A file takes part by a site (a recorded statement), or by a name that a site uses, such as a constant.
+    A file takes part if it contains a site (a recorded statement), or a name that a site uses, such as a constant.
     `passed_with_imports` returns the files that flows pass through if imported files are analysed, too.
     """
     more: Sequence[Path] | None = None

@@ -12,7 +12,7 @@ from pytest_tarl.extras import install_command
 if TYPE_CHECKING:
     from pytest_tarl.episode import Tarl
 
-LARGEST_SEED = 2**31  # exclusive upper limit of seeds; environments of every version take such seeds
+LARGEST_SEED = 2**31  # exclusive upper limit of seeds; every version of Gymnasium accepts seeds below it
 
 
 class GymnasiumWorld:

@@ -39,7 +39,7 @@ ALWAYS_THERE = {
 
 
 class MissionReplayed(Skipped):
-    """Raised to leave the test body after the replay, because the rest of the body would run the test's own world."""
+    """Raised after the replay to leave the test body, since the rest of the body would run the test's own world."""
 
 
 class Moment:

@@ -99,7 +99,7 @@ def _changed(target: Target, force: bool) -> bytes:
 
 
 def _before_others(content: bytes, patch: Patch, file: FilePatch) -> bytes | None:
-    """Return the text on which the patch was tested, if `content` is that text plus other patches."""
+    """Return the text on which the patch was tested, if `content` is that text with other patches applied."""
     others = sorted(path for path in patch.path.parent.glob("*.patch") if path.name != patch.name)
     for path in others:
         try:

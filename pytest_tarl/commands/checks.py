@@ -26,7 +26,7 @@ def tested(target: Target, patch: Patch, file: FilePatch, content: bytes) -> Non
 
 
 def sealed(patch: Patch) -> None:
-    """Raise RefusedError if a patch has no digest, because edits of it could not be detected."""
+    """Raise RefusedError if a patch has no digest, because without one, edits of the patch could not be detected."""
     if not patch.sealed:
         raise RefusedError(
             f"{patch.name} has no digest, so TARL cannot check it on a changed file: restore the text for which "

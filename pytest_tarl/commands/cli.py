@@ -103,7 +103,7 @@ def parser() -> Parser:
 
 
 def _nothing(_: str) -> str | None:
-    """Return None, because the command needs no packages besides those of the linter."""
+    """Return None: the command needs no packages in addition to those of the linter."""
     return None
 
 

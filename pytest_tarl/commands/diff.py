@@ -42,8 +42,8 @@ class FixtureDiff:
     def worse(self, alpha: float, most: float = 0.0) -> bool:
         """Return whether B is significantly worse.
 
-        It is worse if it earns less than A by more than `most` per episode, or if the share of successful missions is
-        lower by more than PASS_RATE_LOSS.
+        B is worse in two cases: it earns less than A by more than `most` per episode, or its share of successful
+        missions is lower by more than PASS_RATE_LOSS.
         """
         fail_more = self.p_failures < alpha and succeed_less(self.success)
         return (self.loss > most and self.p_loss < alpha) or fail_more

@@ -55,7 +55,7 @@ def table(found: Examined) -> Iterator[str]:
 
 
 def _elsewhere(found: Examined) -> Iterator[str]:
-    """Yield what is known by interface only, what is outside the workspace, and what only the robot knows."""
+    """Yield the number of C++ nodes, what is outside the workspace, and what only the robot knows."""
     compiled = sum(len(one.compiled) + len(one.components) for one in found.workspace.packages)
     lines = [f"C++ nodes: {compiled} (known by interface only)"] if compiled else []
     if found.foreign:

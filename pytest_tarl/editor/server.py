@@ -41,7 +41,7 @@ class Server(LanguageServer):
         self.linted: Workspace | None = None
         self.result: Result | None = None
         self.places = Places(self.root, {})
-        # positions in the file contents for which diagnostics were last published
+        # converts positions in the file contents for which diagnostics were last published
         self.shown_in = self.places
         self.kept = recorded.Recorded()
         self.shown: dict[str, list[types.Diagnostic]] = {}
@@ -70,7 +70,7 @@ class Server(LanguageServer):
     async def lint(self) -> None:
         """Lint the workspace with the open buffers, and publish changed diagnostics.
 
-        Another change stops the run before the next program and starts a new run. Files whose findings are final get
+        If there is another change, stop before the next program and start a new run. Files whose findings are final get
         their diagnostics while other programs are still being analysed.
         """
         if self.linted is None:

@@ -37,7 +37,7 @@ class Plane:
 
 
 def plane(comparison: Comparison) -> Plane:
-    """Choose the first numeric sensor as axis, and for the rows the text sensor that best separates the region."""
+    """Choose the first numeric sensor as axis, and for the rows the non-numeric one that best separates the region."""
     sensors = comparison.sensors
     position = next((d for d, sensor in enumerate(sensors) if sensor.numeric), 0)
     categories = [d for d, sensor in enumerate(sensors) if d != position and not sensor.numeric]

@@ -1,4 +1,4 @@
-"""Advice on names that a library no longer has, and on names whose import failed in a `try`."""
+"""Advice on names that a library no longer has, and on undefined names whose import failed in a `try`."""
 
 from __future__ import annotations
 

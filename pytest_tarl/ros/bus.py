@@ -18,7 +18,7 @@ from pytest_tarl.ros.services import Reply, ServiceDirectory
 Listener = Callable[[Any], None]
 Channel = Callable[
     [Any, float], Iterable[tuple[float, Any]]
-]  # (message, time (s)) → (delay (s), message) for each message that arrives
+]  # (message, time (s)) → a pair (delay (s), message) for each message that arrives
 
 
 class Subscription(Protocol):
@@ -101,7 +101,8 @@ class Bus:
             return
         if latch:
             place.kept[None] = snapshot(message)
-        if running_task() is not None:  # a node is publishing: deliver the message after this task has paused
+        # a node is publishing, so deliver the message after the task of this node has paused
+        if running_task() is not None:
             self._scheduler.later(lambda: self._deliver(place, message, spare=True))
             return
         self._run(self._deliver, place, message, True)
@@ -226,7 +227,7 @@ class Bus:
         place.publications.append(publication)
 
     def attach(self, subscription: Subscription, place: Topic, *, wants_kept: bool = True) -> None:
-        """Add a node's subscription. The subscription receives latched messages as soon as the node waits."""
+        """Add a node's subscription, which receives latched messages as soon as the node waits."""
         self.subscribed.add(place.name)
         place.subscriptions.append(subscription)
         self._peers_changed(place, subscription, joined=True)
@@ -263,7 +264,7 @@ class Bus:
                 self.detach(subscription, place)
 
     def _deliver(self, place: Topic, message: Any, spare: bool, origin: Publication | None = None) -> None:
-        """Deliver copies of a message to all subscriptions. If `spare`, the last one gets the original."""
+        """Deliver copies of a message to all subscriptions; if `spare`, the last subscription gets the original."""
         for observer in self._observers:
             observer(place.name, message)
         last = place.subscriptions[-1] if spare and place.subscriptions else None

@@ -34,9 +34,7 @@ def virtual_event_loops(scheduler: Scheduler) -> Iterator[None]:
 
 
 def _select(real: Callable[..., Any], scheduler: Scheduler) -> Callable[..., Any]:
-    interrupted: set[int] = (
-        set()
-    )  # IDs of the selectors whose event loops have been notified of the end of the episode
+    interrupted: set[int] = set()  # IDs of the selectors whose event loops were told that the episode ends
 
     def select(selector: Any, timeout: float | None = None) -> Any:
         task = running_task()

@@ -1,4 +1,4 @@
-"""End only the node if a node calls `os._exit`; other code and forked children keep the real function."""
+"""If a node calls `os._exit`, end only this node; other code and forked children keep the real function."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from pytest_tarl.ros.scheduler import running_task
 
 
 class ProcessExit(SystemExit):
-    """The end of a node's whole process, from whichever of its threads."""
+    """Raised to end the whole process of a node, from any of its threads."""
 
 
 @contextmanager
 def exits_of_nodes() -> Iterator[None]:
-    """Replace `os._exit` while nodes run: it would end pytest without a verdict and with the node's status."""
+    """Replace `os._exit` while nodes run, because it would end pytest without a verdict and with the node's status."""
     real, owner = os._exit, os.getpid()
 
     def leave(status: int) -> NoReturn:

@@ -19,7 +19,8 @@ def generate_dynamic(core_type: str, msg_cat: str) -> dict[str, Any]:
         header, _, text = other.strip().partition("\n")
         texts[header.removeprefix("MSG:").strip()] = text
     made: dict[str, Any] = {}
-    for name in reversed(texts):  # reversed, because the text states each type before the types of its fields
+    # in reverse order, because the text states each type before the types of its fields
+    for name in reversed(texts):
         package, _, short = name.partition("/")
         known = ros1.message_class(package, short)
         made[name] = known or ros1.build(parse("ros1", package, short, texts[name]), f"{package}.msg")

@@ -52,7 +52,7 @@ def virtual_host_time(scheduler: Scheduler) -> Iterator[None]:
 
 
 def _clock(real: Callable[[], Any], virtual: Callable[[], Any], *, question: bool) -> Callable[[], Any]:
-    """Return a clock that nodes read. Each read counts as polling, unless the standard library reads it to wait."""
+    """Return a clock for nodes. A read counts as polling, except when the standard library reads it to wait."""
 
     def read() -> Any:
         if running_task() is None:

@@ -53,7 +53,7 @@ class StandinFinder:
         """Find a stand-in; return None to leave the name to other finders."""
         root = name.partition(".")[0]
         if root == "genpy" and _has_genpy():
-            # with an installed genpy, message classes may be installed, too, and these need the real package
+            # if genpy is installed, message classes may be installed, too, and these need the real genpy
             return None
         if name in STANDINS and root not in STANDALONE:
             return self._spec(name)
@@ -78,7 +78,7 @@ class StandinFinder:
         return not _is_ordinary_package(root) and sibling(root) is None
 
     def _installed_by_workspace(self, root: str) -> ModuleSpec | None:
-        """Find a module that a workspace package would install, unless the search path has one of that name."""
+        """Find a module that a workspace package would install, unless the search path has a module of that name."""
         if not packages() or _is_ordinary_package(root):
             return None
         return sibling(root) or (self._spec(root) if has_configurations(root) else None)
@@ -133,7 +133,8 @@ class StandinFinder:
         """Return the ROS generation of the importer, by the client library that its code names."""
         asked = asked_kind()
         if asked is not None:
-            return asked  # this look-up asks for one class, so it says nothing about the episode's nodes
+            # this look-up is for a single class, so it says nothing about the nodes of the episode
+            return asked
         if self._kind is None:
             return self._settle_kind(_kind_named_by(sys._getframe(2)) or "ros2")
         return self._kind
@@ -148,7 +149,7 @@ class StandinFinder:
 
 
 def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -> Any:
-    """Return a submodule of a stand-in (the test's own in `sys.modules` first), or a re-exported name."""
+    """Return a submodule of a stand-in (or the test's own one from `sys.modules`), or a re-exported name."""
     inner = f"{module}.{name}"
     if inner in sys.modules:
         return sys.modules[inner]

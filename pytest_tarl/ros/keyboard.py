@@ -23,7 +23,7 @@ _LOCAL_MODES = 3  # index of the local modes in the list that termios.tcgetattr 
 class NodeInterruptedError(KeyboardInterrupt):
     """Ends a read when the episode ends, as Ctrl-C does on a robot."""
 
-    tarl_shutdown = True  # this exception ends a node normally, so it is not reported
+    tarl_shutdown = True  # this exception is a normal end of a node, so it is not reported
 
 
 class Terminal(io.TextIOBase):
@@ -73,7 +73,7 @@ class Terminal(io.TextIOBase):
         return self._take(min(self._typed.find("\n") + 1 or limit, limit))
 
     def key(self, patience: int | None) -> str:
-        """Return the next typed character, as a window gets it; an empty string after `patience` (ns; None: no limit).
+        """Return the next typed character, or an empty string if none is typed within `patience` (ns; None: no limit).
 
         At the end of the episode return an empty string at once.
         """
@@ -204,8 +204,8 @@ def own_terminal() -> Terminal | None:
 def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None]:
     """Split the streams of a `select`.
 
-    Return the streams that are the node's terminal, all other streams, and the terminal (or None if it is not among
-    them).
+    Return three items: the streams that are the node's terminal, all other streams, and the terminal (None if no stream
+    is the terminal).
     """
     terminal = own_terminal()
     own = [one for one in streams if terminal is not None and terminal.owns(one)]

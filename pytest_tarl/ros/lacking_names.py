@@ -1,7 +1,7 @@
-"""Public names that modules of ROS have and their stand-ins lack, so that an error can tell them from misspelled names.
+"""Public names that modules of ROS have and their stand-ins lack, to tell such names from misspelled ones in errors.
 
-Every module whose source was compared is listed: rospy 1.15, rclpy 9.1, tf 1.13, tf2 0.7, actionlib 1.14 and the
-versions of Debian 12 of the others. Names that a module only imports from the standard library are left out.
+Every module whose source was compared is listed: rospy 1.15, rclpy 9.1, tf 1.13, tf2 0.7, actionlib 1.14, and for all
+other packages the versions in Debian 12. Names that a module only imports from the standard library are left out.
 """
 
 from __future__ import annotations

@@ -17,8 +17,8 @@ Start = tuple[Given, Path]
 def chosen(script: Path, package: Path | None, starts: Sequence[Start]) -> Given:
     """Return what the script gets; `package` is the folder of its package.
 
-    If the launch files differ, those of the package count; if these differ too, the one that is named after the script.
-    Otherwise, return what is equal in all of them.
+    If the launch files differ, only those of the package count. If these differ, too, the one named after the script
+    counts. If there is no such file, return what is equal in all of them.
     """
     giving = [one for one in starts if one[0].gives]
     near = [one for one in giving if package is not None and one[1].is_relative_to(package)]

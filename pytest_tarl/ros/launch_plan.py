@@ -76,7 +76,7 @@ class LaunchPlan:
     notes: tuple[str, ...] = ()
 
     def chosen(self, only: Collection[str] | None, replaced: Collection[str]) -> tuple[Launched, ...]:
-        """Return the nodes to start or to replace; a node in `replaced` need not be in `only`.
+        """Return the nodes to start or to replace; nodes in `replaced` are included even if they are not in `only`.
 
         Raise SettingsError for an unknown name, for a node in `only` that can be neither started nor replaced, and for
         two nodes that a launch never starts together.
@@ -116,7 +116,7 @@ class LaunchPlan:
 
 
 def _check_alternatives(nodes: Sequence[Launched]) -> None:
-    """Raise SettingsError if two nodes exclude each other, as with `if` and `unless` of one argument."""
+    """Raise SettingsError if two nodes exclude each other, by `if` and `unless` with the same argument."""
     for one, other in combinations(nodes, 2):
         if exclusive(one.node, other.node):
             argument = _ARGUMENT.search(one.node.condition)
@@ -177,7 +177,7 @@ def _plan(file: Path, arguments: tuple[tuple[str, str], ...]) -> LaunchPlan:
     _check_arguments(launch, [name for name, _ in arguments])
     nodes = [one for one in launch.nodes if one.kind != "test"]
     if not nodes:
-        # a part that may start nodes explains best why there are none
+        # a part of the file that may start nodes, but could not be evaluated, explains best why there are none
         reasons = [one.reason for one in sorted(launch.problems, key=lambda one: not one.hides)]
         why = f": {reasons[0]}" if reasons else " with these arguments"
         raise SettingsError(f"tarl.launch: {file.name} starts no node{why}.")
@@ -236,7 +236,7 @@ def _command_line(node: LaunchedNode, *, ros2: bool) -> Iterator[str]:
 
 
 def _symbolic(node: LaunchedNode, name: str, arguments: Collection[str]) -> str:
-    """Return why a node cannot be started if part of its description is only known on the robot, or ""."""
+    """Return why a node cannot be started, if a part of its description is known only on the robot, or ""."""
     remaps = [side for pair in node.remaps for side in pair]
     texts = [node.package, node.executable, node.name, node.namespace, node.arguments, *remaps]
     unknown = next((text for text in texts if "$(" in text), None)
@@ -270,7 +270,7 @@ def _notes(launch: Launch, workspace: Workspace) -> Iterator[str]:
 
 
 def _names_of_several(nodes: Sequence[LaunchedNode]) -> list[str]:
-    """Return the names that several nodes have which a launch may start together."""
+    """Return the names that are shared by several nodes, if a launch may start these nodes together."""
     found: dict[tuple[str, str], list[LaunchedNode]] = {}
     for one in nodes:
         if one.name:

@@ -1,4 +1,4 @@
-"""What launch files give a script, and advice from it for a node that lacks a parameter or its command line."""
+"""The settings that launch files give a script, and advice for a node that lacks a parameter or its command line."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ _LONGEST: Final = 40  # maximum length of a value in a sentence
 class Source:
     """A launch file that starts the script as `node`, with the values that it gives.
 
-    `name` is how `tarl.launch` finds the file. `argv` may contain substitutions that are only known on the robot, and
-    `valueless` names parameters with such values; `required` are the launch arguments without a value.
+    `name` is how `tarl.launch` finds the file. `argv` may contain substitutions that are only known on the robot;
+    `valueless` names the parameters whose values contain such substitutions. `required` holds the launch arguments
+    without a value.
     """
 
     file: Path
@@ -45,9 +46,9 @@ class Source:
 class Given:
     """What launch files give a script: `private` parameters by name, `shared` ones by absolute name, and `argv`.
 
-    `note` names the file. `node` is the absolute name of a node that `tarl.launch` starts; it is empty for one that
-    `tarl.start` starts. `valueless` holds names of parameters without a usable value: either the value is only known at
-    launch, or it is null in YAML, which ROS 1 cannot store. `sources` are all launch files that start the script.
+    `note` names the file. `node` is the absolute name of the node if `tarl.launch` starts it, and empty if `tarl.start`
+    starts it. `valueless` holds the names of parameters without a usable value: the value is known only at launch, or
+    it is null in YAML, which ROS 1 cannot store. `sources` are all launch files that start the script.
     """
 
     private: Mapping[str, Any] = field(default_factory=dict)

@@ -30,7 +30,7 @@ WITH_TEXTS: list[Callable[[], None]] = []  # functions that clear the caches of 
 
 @cache
 def given(script: Path, launch: Path | None = None) -> Given:
-    """Return what the file `launch` gives a script; without it, what the workspace's launch files give the script.
+    """Return what the file `launch` gives a script; without `launch`, what the launch files of the workspace give it.
 
     If these files differ, `launch_choice.chosen` decides. Raise SettingsError if the named file does not exist or does
     not start the script.
@@ -54,7 +54,7 @@ def given(script: Path, launch: Path | None = None) -> Given:
 def _starts(workspace: Workspace, script: Path) -> list[tuple[Launch, LaunchedNode]]:
     """Return the launch files that start a script, with its nodes.
 
-    Where a file needs launch arguments for the node, files that include it with these arguments take its place.
+    If a file needs launch arguments for the node, it is replaced by the files that include it with these arguments.
     """
     named = {one.name for package in workspace.packages for one in package.executables if one.path == script}
     direct = [
@@ -115,7 +115,7 @@ def _given(launch: Launch, node: LaunchedNode) -> Given:
     argv = plain(node.arguments, for_ros2=launch.ros2)
     known = argv if not any("$(" in one for one in argv) else ()
     named = {_rooted(name, node): value for name, value in found.shared.items()}
-    # a group's `<rosparam ns="NODE">` names private parameters of the node by absolute names
+    # a `<rosparam ns="NODE">` in a group sets private parameters of the node under their absolute names
     below = f"/{node.name}/" if node.name else "//"
     shared = {name: value for name, value in named.items() if not name.startswith(below)}
     private = {
@@ -198,7 +198,7 @@ def _read(file: Path, workspace: Workspace) -> Launch:
 
 @contextmanager
 def texts_replaced() -> Iterator[None]:
-    """Clear the caches of launch and parameter files on entry and on exit, because the texts differ in the context."""
+    """Clear the caches of launch and parameter files on entry and exit, because their texts differ in the context."""
     for clear in WITH_TEXTS:
         clear()
     try:

@@ -20,7 +20,7 @@ _STAND_IN: Final = (
     "give the node a small stand-in for it in your test (monkeypatch the call, or put a module of that name into "
     "sys.modules), or drive the node only through the parts that exist."
 )
-# minimum similarity of a suggested name; at this value, one letter of five to ten differs
+# minimum similarity of a suggested name; with this value, one letter in five to ten may differ
 _ALIKE: Final = 0.8
 _IMPORT_FROM: Final = opmap["IMPORT_FROM"]
 _REPLACE: Final = "put a module of that name into sys.modules in your test"
@@ -60,7 +60,7 @@ def refuse(module: str, name: str) -> Exception:
 
 
 def _of_name(module: str, name: str) -> str:
-    """Return the sentence about a missing name; it says whether the module of ROS has this name."""
+    """Return the message for a missing name, including whether the real ROS module has this name."""
     from pytest_tarl.ros.lacking_names import LACKING
 
     api = f"{module}.{name}"
@@ -75,7 +75,7 @@ def _of_name(module: str, name: str) -> str:
 
 
 def as_read_by(frame: FrameType | None, error: Exception) -> Exception:
-    """Return an UnsupportedNameError as an ImportError if the frame runs `from module import name`; else unchanged.
+    """Convert an UnsupportedNameError to an ImportError if the frame runs `from module import name`; else return it.
 
     Python replaces an AttributeError of this statement by an ImportError that has no advice.
     """

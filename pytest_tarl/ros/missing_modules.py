@@ -53,7 +53,7 @@ def module_advice(error: ModuleNotFoundError, line: str = "") -> str:
 
 
 def interface_advice(module: str) -> str:
-    """Return a sentence if a module, such as `robot.srv`, would hold types that no package defines; else ""."""
+    """Return a sentence if a module, such as `robot.srv`, should contain types but no package defines any; else ""."""
     root, _, part = module.partition(".")
     known = packages().get(root)
     if part not in PARTS or (known is not None and any(one.suffix == f".{part}" for one in known.interfaces)):

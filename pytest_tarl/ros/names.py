@@ -48,8 +48,8 @@ def require_remapping(old: str, new: str) -> None:
 def resolve(name: str, node: str, remappings: Mapping[str, str]) -> str:
     """Resolve a name used in the node with the fully qualified name `node`, as both ROS generations do.
 
-    `~x` is private to the node, `/x` global, `x` relative to the node's namespace. A remapping applies to resolved
-    names: its left side is resolved as well.
+    `~x` is private to the node, `/x` global, `x` relative to the node's namespace. A remapping is compared with the
+    resolved name: its left side is resolved, too.
     """
     resolved = expand(name, node)
     for old, new in remappings.items():

@@ -71,7 +71,7 @@ def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str
 
 
 def _of_values(error: BaseException, text: str, unset: Sequence[str]) -> str:
-    """Return advice for a node that lacks values, a partner, or an argument of a library; else ""."""
+    """Return advice for a node that lacks values, another node, or an argument of a library; else ""."""
     if unset and isinstance(error, TypeError | AttributeError | ValueError) and _NONE.search(text):
         return _of_unset(unset, _line_of(error))
     if type(error).__name__ in _ABSENT_PARTNERS:
@@ -90,7 +90,7 @@ def _of_import(error: ImportError) -> str:
         return module_advice(error, _line_of(error))
     if error.name is None:
         return ""
-    # a module without a path is a folder without Python files, or a part of Python itself
+    # a module without a path is a folder without Python files, or is part of Python itself
     return interface_advice(error.name) or removed_name(error.name, text_of(error))
 
 
@@ -204,7 +204,7 @@ def _checks_arguments(entry: TracebackType) -> bool:
 
 
 def _indexes_arguments(innermost: Sequence[TracebackType]) -> bool:
-    """Return whether the line that raised the error contains `argv` or a variable with the same value."""
+    """Return whether the line that raised the error contains `argv`, or a variable with the value of `sys.argv`."""
     for entry in innermost:
         line = linecache.getline(entry.tb_frame.f_code.co_filename, entry.tb_lineno)
         held = [name for name, value in entry.tb_frame.f_locals.items() if _is_argv(value)]
@@ -214,7 +214,7 @@ def _indexes_arguments(innermost: Sequence[TracebackType]) -> bool:
 
 
 def _is_argv(value: object) -> bool:
-    """Return whether a node's variable has the value of `sys.argv`, without calling code of the value.
+    """Return whether a node's variable has the value of `sys.argv`; call no code of the variable's class.
 
     Arrays compare element by element, and other objects may raise.
     """
@@ -224,7 +224,7 @@ def _is_argv(value: object) -> bool:
 def _statement_and_conditions(file: str, line: int) -> Iterator[str]:
     """Yield the line of a file, and the conditions of the `if` statements around it.
 
-    After a condition, yield the values that the file assigns to its names.
+    After each condition, yield the values that the file assigns to the names in the condition.
     """
     yield linecache.getline(file, line)
     try:

@@ -1,4 +1,4 @@
-"""Make polling tasks wait. A task polls if it reads the time or the state of ROS in a loop without a pause.
+"""Make polling tasks wait. A task polls if it reads the time or the state of ROS in a loop that never waits.
 
 On a robot, time passes while `while rospy.Time.now() < end: …` runs. The virtual clock advances only when every task
 waits, so such a loop would never end. Therefore a task that polls PATIENCE times at one instant waits for PAUSE. From

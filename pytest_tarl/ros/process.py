@@ -19,7 +19,7 @@ from pytest_tarl.ros.watchdog import WATCHDOG
 
 Part = TypeVar("Part")
 
-_PATIENCE = 1_000  # number of waits that return at once before a task counts as ignoring the shutdown
+_PATIENCE = 1_000  # a task ignores the shutdown if more than this number of its waits return at once
 _LONGEST = 100  # maximum length of a node's last words in a message
 _ROUNDS = 5  # number of rounds in which the tasks of an ending process may return before they are killed
 
@@ -44,7 +44,7 @@ class Network:
         self.services = ServiceDirectory(self.scheduler)
         self.bus = Bus(self.scheduler, run, self.services)
         self.processes: list[Process] = []
-        # numbers that nodes read as parameters, by absolute name, with slashes also between the keys of nested ones
+        # numbers that nodes read as parameters, by absolute name; the keys of nested parameters are joined by slashes
         self.parameters_read: dict[str, bool | int | float] = {}
         self._parts: dict[Any, Any] = {}
 
@@ -86,7 +86,7 @@ class Process:
         self.launched = NOTHING  # parameters from a launch file
         self.unset: dict[
             str, None
-        ] = {}  # parameters without a value that the node asked for, under the node's names for them
+        ] = {}  # parameters without a value that the node asked for, under the names that the node used
         self.label = name  # name shown in messages; as soon as the node has a name, this is the node's name
         self.errors: list[NodeError] = []  # errors during shutdown
         self._parts: dict[Any, Any] = {}
@@ -183,7 +183,7 @@ class Process:
             self.scheduler.wake(task)
 
     def refuse_to_wait(self) -> None:
-        """Count a wait that returns at once because the process is ending; suspend a task that keeps waiting."""
+        """Count a wait that returns at once because the process is ending; suspend a task that tries too often."""
         self._refused += 1
         while self._refused > _PATIENCE:
             self.scheduler.wait()

@@ -1,7 +1,7 @@
 """Names that a module of rclpy, rospy, tf2_ros or actionlib only imports from another module.
 
-Editors that complete names offer them, so nodes import them from there. The names are those of rclpy 9.1, rospy 1.15,
-tf2_ros 0.7 and actionlib 1.14.
+Editors offer such names for completion, so some nodes import them from there. The names are those of rclpy 9.1, rospy
+1.15, tf2_ros 0.7 and actionlib 1.14.
 """
 
 from __future__ import annotations

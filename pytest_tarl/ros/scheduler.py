@@ -1,7 +1,7 @@
 """Schedule tasks, which are greenlets, on a virtual clock.
 
 All tasks are resumed from one place, the greenlet that called into the episode. A task never resumes another task
-directly: it only requests this (`wake`, `later`) and continues until it waits itself. The order of execution is
+directly. It only requests this (`wake`, `later`) and continues until it waits itself. The order of execution is
 therefore deterministic.
 """
 
@@ -221,7 +221,7 @@ class Scheduler:
             self.time = max(self.time, until)
 
     def _run_tasks(self, until: int) -> None:
-        """Run the tasks that are due up to `until` and before the next alarm, which the tasks themselves may set."""
+        """Run the tasks that are due up to `until` and before the next alarm; the tasks may set an earlier alarm."""
         if self._ready:
             self.settle()
         sleeping, alarms = self._sleeping, self._alarms

@@ -39,7 +39,7 @@ class Endpoint(Protocol):
 
 
 class ServiceDirectory:
-    """The services of one episode. An offer is a service that is created on the first request for it."""
+    """The services of one episode. An offered service is created only when it is first requested."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler
@@ -153,7 +153,7 @@ class Reply:
         return self._response
 
     def take(self, response: Any) -> None:
-        """Store the response, or the reason for which there is none."""
+        """Store the response, or the reason why there is no response."""
         if isinstance(response, Refusal):
             self.error = response.reason
         else:

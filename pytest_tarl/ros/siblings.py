@@ -14,7 +14,7 @@ from tarl_lint.workspace.cfg_files import Configuration, configurations
 
 
 def sibling(root: str) -> ModuleSpec | None:
-    """Find a top-level module that a workspace package installs, or return None if no package does."""
+    """Find a top-level module that a workspace package installs, or return None if no package installs it."""
     for package in packages().values():
         for module in package.modules:
             if module.name == root:

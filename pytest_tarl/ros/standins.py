@@ -1,4 +1,4 @@
-"""The ROS modules that nodes can import: those with a stand-in, and those that are known to be absent."""
+"""The ROS modules that nodes may import: those with a stand-in, and those that are known but have none."""
 
 from __future__ import annotations
 

@@ -62,10 +62,10 @@ def _importer(frame: FrameType | None) -> FrameType | None:
 
 
 def _nearest(name: str, importer: Path) -> Path | None:
-    """Return the only module with that name in the importer's package, or else the only one in its workspace.
+    """Return the only module with that name in the package of the importer, or else in the workspace.
 
-    If there are several, choose the only one that is not inside another Python package, or else the only one
-    that a Python project installs.
+    If there are several, choose the one that is not inside another Python package, or else the one that a Python
+    project installs, provided that there is only one.
     """
     workspace = workspace_around(importer)
     if workspace is None:
@@ -124,7 +124,7 @@ def _importable(folder: Path, files: list[str]) -> Iterator[Path]:
 
 @cache
 def is_optional(file: str, line: int) -> bool:
-    """Return whether a line is in a `try` that catches a failed import, so that the node works without the name."""
+    """Return whether a line is in a `try` that catches a failed import; the node then works without the name."""
     try:
         tree = ast.parse(Path(file).read_bytes())
     except (OSError, SyntaxError, ValueError):

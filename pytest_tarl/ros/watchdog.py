@@ -12,11 +12,12 @@ from contextlib import suppress
 from pytest_tarl.held_interpreter import allow
 
 DEFAULT_LIMIT = 10.0  # limit of CPU time without progress of virtual time (s)
-_PATIENCE = 12  # multiple of the limit for waits outside ROS, which use no CPU time
-_HOLD = 12  # multiple of the limit for a node that holds the interpreter lock
+# multiple of the limit after which a node that waits outside ROS, without CPU time, is stopped
+_PATIENCE = 12
+_HOLD = 12  # multiple of the limit after which a node that holds the interpreter lock is stopped
 _INTERVAL = 0.1  # time between two checks (s)
 _IDLE_EXIT = 50  # number of checks after which an unused watching thread ends
-# maximum number of jumps in a loop in which the interpreter raises the sent exception; one jump is enough
+# maximum number of rounds of a loop in which the interpreter should raise the sent exception; one round is enough
 _MOST_JUMPS = 1000
 _DEBUGGERS = ("pdb", "bdb", "pydevd", "debugpy")
 _CLOCK_OF: Callable[[int], int] | None = getattr(
@@ -96,7 +97,8 @@ class Watchdog:
             idle = 0 if self._armed else idle + 1
             if idle > _IDLE_EXIT:
                 self._watching = False
-                if not self._armed:  # still not armed after the flag was cleared, so this thread may end
+                # the watchdog is still not armed after the flag was cleared, so this thread may end
+                if not self._armed:
                     return
                 self._watching = True
             self._allow(self._limit * _HOLD if self._armed else 0.0)
@@ -142,7 +144,7 @@ class Watchdog:
 
 
 def _debugged(thread: int) -> bool:
-    """Return whether a thread is stopped in a debugger, where time does not count."""
+    """Return whether a thread is stopped in a debugger, during which time does not count."""
     frame = sys._current_frames().get(thread)
     while frame is not None:
         if str(frame.f_globals.get("__name__", "")).startswith(_DEBUGGERS):
@@ -154,8 +156,8 @@ def _debugged(thread: int) -> bool:
 def _cancel_in(thread: int) -> None:
     """Cancel an exception that was sent to the running thread and may not have been raised yet.
 
-    Before Python 3.13, sending no exception would leave the interpreter's flag set that one is pending. With Python
-    3.11 and a trace function, such as that of coverage, the next call of a function would then never begin. Only
+    Before Python 3.13, sending "no exception" would leave the interpreter's flag for a pending exception set. With
+    Python 3.11 and a trace function, such as that of coverage, the next call of a function would then never begin. Only
     raising an exception resets the flag.
     """
     with suppress(Spinning):

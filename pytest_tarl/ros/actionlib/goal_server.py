@@ -13,8 +13,10 @@ from pytest_tarl.ros.rospy.node import this_node
 from pytest_tarl.ros.rospy.timing import Duration, Time, get_rostime
 from pytest_tarl.ros.rospy.timing import Timer as PeriodicTimer
 
-_PERIOD: Final = 0.2  # time between two publications of all states (s), as with actionlib_status_frequency 5
-_KEPT: Final = 5.0  # time for which the state of an ended goal is published (s), as with status_list_timeout
+# time between two publications of all states (s), the same as with the parameter actionlib_status_frequency at 5
+_PERIOD: Final = 0.2
+# time for which the state of an ended goal is published (s), the same as with the default status_list_timeout
+_KEPT: Final = 5.0
 _TOO_OLD: Final = (
     "This goal handle was canceled by the action server because its timestamp is before the timestamp of the last "
     "cancel request"
@@ -56,7 +58,7 @@ class ServerGoalHandle:
         return self.action_server.get_default_result()
 
     def set_accepted(self, text: str = "") -> None:
-        """Accept the goal; one whose cancellation is requested becomes PREEMPTING."""
+        """Accept the goal; if its cancellation is requested, it becomes PREEMPTING."""
         after = {protocol.PENDING: protocol.ACTIVE, protocol.RECALLING: protocol.PREEMPTING}
         self._change(after, "an active", "pending or recalling", text)
 
@@ -81,7 +83,7 @@ class ServerGoalHandle:
         self._end(after, "a succeeded", "active or preempting", result, text)
 
     def set_cancel_requested(self) -> bool:
-        """Note a cancel request. Return whether it has an effect, because the goal is waiting or running."""
+        """Note a cancel request. Return whether it has an effect, which is so if the goal is waiting or running."""
         after = {protocol.PENDING: protocol.RECALLING, protocol.ACTIVE: protocol.PREEMPTING}.get(self._status)
         if after is None:
             return False

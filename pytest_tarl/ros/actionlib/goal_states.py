@@ -1,4 +1,4 @@
-"""States of a goal as an ActionClient sees them, and the transitions that a status of the server implies."""
+"""States of a goal as an ActionClient sees them, and the transitions that follow from a status of the server."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ class ActionTypes:
 def wait_until(process: Process, condition: Callable[[], bool], timeout: Any, *, poll: bool = False) -> bool:
     """Wait until a condition holds; return whether it holds in time. There is no limit for None or zero.
 
-    Without `poll`, something must wake the caller's task whenever the condition may have changed.
+    Without `poll`, other code must wake the caller's task whenever the condition may have changed.
     """
     clock = process.scheduler
     span = 0 if timeout is None else timeout.to_nsec()

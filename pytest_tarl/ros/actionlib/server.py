@@ -22,7 +22,7 @@ _TOO_OLD = (
 
 
 class SimpleActionServer:
-    """Executes goals with `execute_cb(goal)` in its own task, or announces them by callbacks."""
+    """Executes goals with `execute_cb(goal)` in a task of the server, or announces them by callbacks."""
 
     def __init__(
         self,

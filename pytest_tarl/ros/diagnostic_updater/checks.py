@@ -57,7 +57,7 @@ class FrequencyStatus(DiagnosticTask):
         began, before = self._marks[0]
         self._marks = [*self._marks[1:], (_now(), self.count)]
         events, window = self.count - before, _now() - began
-        # virtual time may stand still between two calls, real time never does
+        # unlike real time, virtual time may stand still between two calls
         frequency = events / window if window else math.inf if events else 0.0
         least = self.params.freq_bound["min"] * (1 - self.params.tolerance)
         bound = self.params.freq_bound.get("max")

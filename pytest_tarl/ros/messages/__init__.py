@@ -30,7 +30,7 @@ def message_type(name: str) -> type[Any]:
     messages of either class: a subscriber always gets an instance of the class that it subscribed with. The names of
     services and actions have the same forms: `std_srvs/SetBool` (ROS 1), `std_srvs/srv/SetBool` and
     `nav2_msgs/action/NavigateToPose` (ROS 2). The definitions may be in the repository of the file that calls this
-    function, also before a node is started.
+    function, even before any node is started.
 
     Raise UnsupportedApiError if the type is unknown.
     """
@@ -49,7 +49,7 @@ def message_type(name: str) -> type[Any]:
 
 
 def _search_around(package: str, file: str | None) -> None:
-    """Put the repository of `file`, or else its folder, first, unless TARL itself knows the package."""
+    """Search the repository of `file`, or else its folder, before all others, unless TARL itself knows the package."""
     root = None if not file or has_known_types(package) else _root_around(file)
     if root is not None:
         workspace.prefer(root)

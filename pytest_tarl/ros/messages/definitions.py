@@ -19,7 +19,7 @@ Shape = Literal["one", "array", "sequence"]
 DEFAULTS: Mapping[str, Mapping[str, Any]] = {  # default values in common packages, which rosbags drops
     "ros2:geometry_msgs/Quaternion": {"w": 1.0},
 }
-# dummy member that ROS 2 gives empty types, hidden from programs
+# dummy member that ROS 2 adds to types without fields; programs do not see it
 _FILLER = "structure_needs_at_least_one_member"
 _PRIMITIVES = frozenset(
     [
@@ -125,8 +125,8 @@ def find_action(kind: Kind, package: str, name: str) -> tuple[Definition, Defini
 def identity(definitions: Iterable[Definition]) -> str:
     """Return the text that identifies the class of a message, or the classes of a service or action.
 
-    It contains the definitions and those of all messages in their fields, because workspaces may define the same
-    name differently.
+    The text contains the definitions, and the definitions of all messages in their fields, because two workspaces may
+    define the same name differently.
     """
     own = [*definitions]
     inside: dict[str, Definition | None] = {}
@@ -209,7 +209,7 @@ def _halves(package: str, name: str, part: Part) -> tuple[Definition, ...]:
 
 @cache
 def has_known_types(package: str) -> bool:
-    """Return whether `rosbags` or TARL has definitions of the package, whatever workspaces there are."""
+    """Return whether `rosbags` or TARL itself has definitions of the package."""
     kinds: tuple[Kind, ...] = ("ros1", "ros2")
     parts: tuple[Part, ...] = ("msg", "srv", "action")
     return any(_fixed_names(kind, package, part) for kind in kinds for part in parts)
@@ -217,7 +217,7 @@ def has_known_types(package: str) -> bool:
 
 @cache
 def _fixed_names(kind: Kind, package: str, part: Part) -> frozenset[str]:
-    """Return those names that do not depend on the user's workspace."""
+    """Return the names of types that do not depend on the user's workspace."""
     shipped = _store(kind) if part == "msg" else {}
     names = (name for table in (shipped, known_types(kind, part)) for name in table)
     return frozenset(name.rpartition("/")[2] for name in names if name.startswith(f"{package}/"))

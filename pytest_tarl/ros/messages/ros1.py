@@ -260,7 +260,7 @@ def _nested(base: str) -> type[Message]:
 
 
 def _copy_lines(field: Field, position: int, scope: dict[str, Any]) -> list[str]:
-    """Return source lines that copy one field: values of the exact type inline, others through `slow`."""
+    """Return source lines that copy one field: a value of the exact type inline, any other value by calling `slow`."""
     name, slow = field.name, f"slow{position}(v, {field.name!r})"
     exact = {"float64": "float", "string": "str", "bool": "bool"}.get(field.base)
     if field.shape == "one" and not field.primitive:
@@ -309,7 +309,7 @@ def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
 
 
 def _same_doubles(size: int, convert: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
-    """Reuse the last result if the bytes are equal, because covariances rarely change."""
+    """Return a conversion that reuses the last result if the bytes are equal, because covariances rarely change."""
     pack = Struct(f"{size}d").pack
     last: tuple[bytes, Any] = (b"", ())
 
@@ -322,7 +322,7 @@ def _same_doubles(size: int, convert: Callable[[Any, str], Any]) -> Callable[[An
         try:
             content = pack(*value)
         except StructError:
-            return convert(value, name)  # this call raises an error that states the reason
+            return convert(value, name)  # this call raises the error with the reason
         if content != last[0]:
             last = (content, convert(value, name))
         return last[1]

@@ -116,7 +116,7 @@ def _stamp_parts(message: Any) -> tuple[str, str] | None:
 
 
 def _copier(own: type) -> Callable[[Any], Any]:
-    """Return the copy function of a class; for an installed ROS 1, serialise and deserialise.
+    """Return the copy function of a class; a class of an installed ROS 1 is copied by serialisation.
 
     Raise FieldError if the class is not a message class.
     """

@@ -1,6 +1,6 @@
 """The workspaces of started nodes: their packages and message, service and action definitions.
 
-Of packages with the same name, the one in the workspace that was searched last counts. All caches of such facts are
+If packages have the same name, the one in the workspace that was searched last counts. All caches of such facts are
 keyed by the order of the workspaces.
 """
 
@@ -29,7 +29,8 @@ _KEPT: set[Path] = set()  # folders of nodes in packages with COLCON_IGNORE or C
 def search(folder: Path, test: Path | None = None) -> None:
     """Put the packages around `folder` first: those of its repository, or the enclosing ROS workspace.
 
-    Without either, take those in the folder of the test or beside it, if that contains definitions and `folder`.
+    If there is neither, take the packages in the folder of the test or, if it does not contain `folder`, in the folder
+    above. This is done only if the folder contains both definitions and `folder`.
     """
     root = root_around(folder, test)
     if root is None:
@@ -102,7 +103,7 @@ def _read(root: Path) -> Workspace:
 
 @by_order
 def workspaces() -> tuple[Workspace, ...]:
-    """Return descriptions of the workspaces, the one searched last first."""
+    """Return descriptions of the workspaces; the workspace that was searched last comes first."""
     return tuple(_read(root) for root in _SEARCHED)
 
 

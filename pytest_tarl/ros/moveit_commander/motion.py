@@ -26,7 +26,7 @@ UNDESCRIBED: Final = (
 
 
 class Motions:
-    """The robot of one process: its model, and the state of its joints by `joint_states` or by the last motion."""
+    """The robot of one process: its model, and the state of its joints from `joint_states` or from the last motion."""
 
     def __init__(self, process: Process) -> None:
         self._process = process
@@ -44,7 +44,7 @@ class Motions:
         return current_process("moveit_commander").part(cls)
 
     def model(self, description: str) -> RobotModel | None:
-        """Return the robot of a description; without one, None and a note for the user."""
+        """Return the robot of the description; if there is no description, add a note for the user and return None."""
         if description not in self._models:
             names = (description, f"{description}_semantic")
             self._models[description] = described({one: get_param(one, None) for one in names}, description)

@@ -75,7 +75,8 @@ class RobotModel:
     ) -> dict[str, float] | None:
         """Return joint values near `state` that bring a link to a pose, or None if none are found.
 
-        The search starts at the current state, then in the middle and at a quarter of the ranges.
+        The search starts from the current state. If it fails, it starts again from the middle and from a quarter of the
+        joints' ranges.
         """
         chain = self._tree.getChain(self.root, link)
         names = _moving(chain)

@@ -83,7 +83,7 @@ class PlanningSceneInterface:
         self._attach(attached_collision_object)
 
     def remove_attached_object(self, link: str | None = None, name: str | None = None) -> None:
-        """Detach the objects of a link, or the one of this name; they stay in the world."""
+        """Detach all objects of a link, or only the object of this name; detached objects stay in the world."""
         for key, one in [*self._attached.items()]:
             if name in (None, key) and link in (None, one.link_name):
                 del self._attached[key]

@@ -177,7 +177,7 @@ class Executor:
         """Return whether the entity's group lets its callback start now."""
         group = entity.callback_group
         if type(group) is MutuallyExclusiveCallbackGroup and group.active is None:
-            group.active = entity  # a fast path with the same result as the two calls below
+            group.active = entity  # fast path with the same result as the two calls below
             return True
         if group is None or (group.can_execute(entity) and group.beginning_execution(entity)):
             return True
@@ -294,7 +294,7 @@ class MultiThreadedExecutor(Executor):
 
 
 def _nothing(_: Future) -> None:
-    """Stand in for rclpy's callback that wakes the executor, so that done callbacks take as many turns as in rclpy."""
+    """Replace rclpy's callback that wakes the executor, so that done callbacks take as many turns as in rclpy."""
 
 
 def _until(now: int, timeout_sec: float | None) -> int | None:

@@ -11,10 +11,9 @@ from tarl_lint.workspace.parameter_yaml import dotted, matches, sections
 def overrides(given: Mapping[str, Any], full_name: str) -> dict[str, Any]:
     """Return the values for the node with an absolute name; nested mappings become dotted names.
 
-    Parameters that name no node apply to all nodes. Sections with `ros__parameters` apply to the nodes
-    that match their keys. A node in a namespace also gets the section with its own name. Mappings without
-    `ros__parameters` are a section if their key is the node's name or `**`, and nested parameters otherwise.
-    Later values win.
+    Parameters that name no node apply to all nodes. Sections with `ros__parameters` apply to the nodes that match their
+    keys. A node in a namespace also gets the section with its own name. A mapping without `ros__parameters` is a
+    section if its key is the node's name or `**`. Otherwise, it holds nested parameters. Later values win.
     """
     name = full_name.rpartition("/")[2]
     chosen: dict[str, Any] = {}

@@ -51,7 +51,7 @@ class NodeParameters:
     def declare_parameter(
         self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
     ) -> Parameter:
-        """Declare a parameter: an override takes precedence over the default, and the type is fixed from then on.
+        """Declare a parameter. An override takes precedence over `value`, and the type is fixed from then on.
 
         Raise ParameterAlreadyDeclaredException, InvalidParameterException for an invalid name, and
         InvalidParameterTypeException for a value of another type.

@@ -9,7 +9,7 @@ from pytest_tarl.ros import blame
 
 
 class ReturnedTypeError(TypeError):
-    """A callback returned a value of a wrong type. `tarl_place` is the callback, since the error arises after it."""
+    """A callback returned a value of a wrong type. `tarl_place` is the place of the callback's definition."""
 
     def __init__(self, message: str, callback: Callable[..., Any]) -> None:
         super().__init__(message)
