@@ -200,7 +200,7 @@ def _learner(fixture: Fixture, options: Options) -> str:
 
 @dataclass
 class _Watch:
-    """Stopping rule: compare at each planned look, and stop the run once the verdict is final."""
+    """Stopping rule: compare the worlds at each planned look, and stop the run once the verdict is final."""
 
     offline: Sample
     designation: Designation
@@ -292,6 +292,6 @@ def _paper_cells(tables: Sequence[tuple[Floats, Floats]], cells: Sequence[Cell])
 
 
 def _rows(region: Region, otherwise: Sequence[Cell], cells: Sequence[Cell]) -> Ints:
-    """Return the rows over which Eq. 2 sums: those of the region or, if it is empty, those of the paper's region."""
+    """Return the rows over which Eq. 2 sums: the rows of the region or, if it is empty, of the paper's region."""
     chosen = {*region.cells, *region.novel} or set(otherwise)
     return np.array([i for i, cell in enumerate(cells) if cell in chosen], dtype=np.int64)

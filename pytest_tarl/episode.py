@@ -277,7 +277,7 @@ class Tarl:
         self._situation.hear(topic, message)
 
     def type(self, text: str, node: str | None = None) -> None:
-        """Type text on the terminals of all running nodes, or on that of `node`, the name of a file or of a node.
+        """Type text on the terminals of all running nodes, or only on the terminal of `node` (a file or node name).
 
         Raise SettingsError if no such node runs.
         """

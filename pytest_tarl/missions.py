@@ -134,7 +134,7 @@ class Mission:
         return analysed(self.designation, self.folder, self.root)
 
     def _sensors(self, rollout_with: RolloutWith, fixture: Fixture | None) -> tuple[Sensor, ...]:
-        """Return the sensors with their bins: from the recording, or learned from separate episodes."""
+        """Return the sensors with their bins, which come from the recording or are learned from separate episodes."""
         asked = self.designation.sensors
         if fixture is not None:
             return with_edges(asked, {one.name: one.edges for one in fixture.sensors if one.learned})

@@ -91,7 +91,9 @@ class Guard:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """Where the worlds differ, as cells that deployed episodes visited; `novel` holds those that the recording lacks.
+    """The cells in which the worlds differ.
+
+    Deployed episodes visited `cells`, which are recorded, and `novel`, which the recording lacks.
 
     `left` holds recorded cells that deployed episodes avoid. If all deployed cells are new, the comparison ignores some
     sensors, so that deployed cells match recorded ones; `without` holds the indices of these sensors.

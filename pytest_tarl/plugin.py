@@ -73,7 +73,7 @@ def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
 
 @pytest.fixture
 def tarl_drift(request: pytest.FixtureRequest) -> Any:
-    """The drift value of this episode: that of the scenario, or else of the design's permanent drift, or else None."""
+    """The drift value of this episode: the value of the scenario or, without one, that of the design; else None."""
     _require_extra("The fixture `tarl_drift`")
     from pytest_tarl.item_episode import drift_value
 

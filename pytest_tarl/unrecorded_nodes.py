@@ -1,4 +1,4 @@
-"""Find the node files of a marker without any recorded statement."""
+"""Find the node files of a marker that contain no recorded statement."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"\n{self.prog}: {sentence(message)} Run {self.prog} --help for more.\n")
 
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
-        """Parse the arguments. Report an unknown argument with the usage of its command instead of that of `tarl`."""
+        """Parse the arguments; for an unknown one, print the usage of the command instead of the usage of `tarl`."""
         given = sys.argv[1:] if args is None else list(args)
         # argparse fills `argv` as soon as it meets the first positional argument, and would refuse options after it
         end = given.index("--") if given[:1] and given[0] in self.passing and "--" in given else len(given)

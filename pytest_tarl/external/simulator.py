@@ -92,7 +92,7 @@ class Simulator:
         self._usable = True
 
     def end(self) -> None:
-        """End the simulator, unless a reset makes it usable for further episodes, and print its output."""
+        """Print the simulator's output; end the simulator unless a reset makes it usable for further episodes."""
         _print(self.setup, self._client.output())
         if self.setup.reset is None or not self._usable:
             self._stop(self.setup)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pytest_tarl.free_memory import available
 
-FREE = 256_000_000  # number of unpacked bytes that every file may have, whatever its size
+FREE = 256_000_000  # number of unpacked bytes that are allowed for every file, even a small one
 RATIO = 100  # number of further unpacked bytes allowed per byte of the file; recordings need 2 to 20
 # bytes of memory per unpacked byte while a recording is read (benchmarks/limits.py, case recording)
 NEEDED = 9

@@ -213,9 +213,9 @@ def _drift(
 def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
     """Return the cells that deployed episodes avoid significantly, boolean of shape (cells,).
 
-    Let K of all N episodes visit a cell. If the worlds are equal, the probability that none of the n deployed episodes
-    visits it is C(N - K, n) / C(N, n). A cell counts as avoided if this is below α divided by the number of candidate
-    cells.
+    Let N be the number of all episodes, K the number of those that visit a cell, and n the number of deployed episodes.
+    If the worlds are equal, the probability that no deployed episode visits the cell is C(N - K, n) / C(N, n). A cell
+    counts as avoided if this is below α divided by the number of candidate cells.
     """
     been = np.unique(offline.chain.episode * len(offline.cells) + offline.chain.cell) % len(offline.cells)
     often = np.bincount(been, minlength=len(offline.cells))

@@ -27,8 +27,8 @@ def judgements(judged: Sequence[Judged]) -> Judgements | None:
 def together(samples: Sequence[Sample], picked: Sequence[tuple[int, int]]) -> Judgements | None:
     """Return one row per picked episode, with a column for every formula that occurs in any sample.
 
-    A picked episode is a pair: the index of its sample and its row there. Entries are NaN where a sample lacks a
-    formula.
+    A picked episode is a pair: the index of a sample, and the row of the episode in this sample. Entries are NaN where
+    a sample lacks a formula.
     """
     return _united([one.judgements for one in samples], picked)
 

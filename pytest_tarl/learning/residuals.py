@@ -66,8 +66,8 @@ def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:
 def residuals(compared: Sample, model: Model) -> Residuals:
     """Return the residuals of each episode by cell, minus the designed mean per visit.
 
-    Without a drift, both parts then have expectation zero, however often a cell is visited. The last step of an episode
-    has no move. Transitions from or to a cell of unknown utility are skipped.
+    If there is no drift, both parts then have expectation zero, no matter how often a cell is visited. The last step of
+    an episode has no move. Transitions from or to a cell of unknown utility are skipped.
     """
     chain, shape = compared.chain, (compared.episodes, len(compared.cells))
     known = ~np.isnan(model.utility)

@@ -1,6 +1,6 @@
 """Compute a confidence interval of the shift between two groups by inverting a studentised permutation test.
 
-The interval is exact if the groups differ by a constant (Janssen 1997), however skewed they are.
+The interval is exact if the groups differ by a constant, even if they are skewed (Janssen 1997).
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from pytest_tarl.observing.frames import LARGEST, Record
 BLOCK = 1 << 15  # number of bytes read at once: about 200 records
 _DECODED = json.JSONDecoder().raw_decode
 _TEXTS = b"".join(rb'"%s":"[^"\n]*",' % name for name in (b"site", b"flow", b"cell", b"step", b"thread"))
-# a mission in three consecutive records (mission, steps, end); short missions are written like this
+# a mission in three consecutive records (mission, steps, end), the usual form of a short mission
 _AT_ONCE = re.compile(
     rb'\{"kind":"mission","time":([0-9.e+-]+)\}\n'
     rb'\{"kind":"steps","cells":(\[[^"\n]*\]),'

@@ -13,7 +13,7 @@ octave of τ to the next, the weight falls by the factor 2^(-1/8). If a change c
 natural logarithm of the evidence is therefore lower by only about 15.
 
 Only sums, products and square roots are used, which IEEE 754 rounds equally on all platforms: equal observations give
-equal bits, however they are divided into portions.
+equal bits, no matter how they are divided into portions.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Compute scores of new missions, to compare them with the scores of held-out recorded missions.
 
-The model is fitted to one half of the recorded episodes; the scores of the other half start the pools. New missions are
-rounded as in a recording, so that their scores are exchangeable with the recorded ones.
+The model is fitted to one half of the recorded episodes. The scores of the other half are the initial pools. New
+missions are rounded as in a recording, so that their scores are exchangeable with the recorded scores.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ def shared_memory() -> int:
 
 
 class Ring:
-    """One end of the stream: one process calls `write`, the other `read`, each from one thread at a time."""
+    """One end of the stream: one process calls `write`, and the other calls `read`, each from one thread at a time."""
 
     def __init__(self, descriptor: int, *, writes: bool = False) -> None:
         self._memory = mmap.mmap(descriptor, 0)

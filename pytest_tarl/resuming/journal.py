@@ -64,7 +64,7 @@ class Journal:
         self._file = file
 
     def taken(self, key: bytes, count: int) -> bytes | None:
-        """Return the episode with index `count` among the episodes with this key, or None if there is none."""
+        """Return the `count`-th episode (from 0) with this key, or None if there are fewer."""
         places = self._places.get(key, ())
         if count >= len(places):
             return None

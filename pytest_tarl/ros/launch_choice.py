@@ -1,4 +1,4 @@
-"""Choose what a script gets if several launch files start it."""
+"""Choose the settings that a script gets if several launch files start it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def chosen(script: Path, package: Path | None, starts: Sequence[Start]) -> Given
 
 
 def is_named_after(launch: Path, script: Path) -> bool:
-    """Return whether the name of a launch file contains that of a script as whole words."""
+    """Return whether the name of a launch file contains the name of a script as whole words."""
     words = re.escape(script.stem.removesuffix("_node"))
     return re.search(rf"(?:^|[_-]){words}(?:[_-]|\.|$)", launch.name) is not None
 

@@ -53,7 +53,7 @@ def _sentence(api: str) -> str:
 
 
 def refuse(module: str, name: str) -> Exception:
-    """Return the error for a missing name of a stand-in module; for dunder names, that of Python."""
+    """Return the error for a name that a stand-in module lacks; for dunder names, return Python's own error."""
     if name.startswith("__"):
         return AttributeError(f"module {module!r} has no attribute {name!r}")
     return UnsupportedNameError(_of_name(module, name))

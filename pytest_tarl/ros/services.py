@@ -22,7 +22,7 @@ NO_RESPONSE = "service cannot process request: service handler returned None"
 
 
 class Refusal:
-    """Stands for the response if the handler of a ROS 1 service failed or returned None."""
+    """Takes the place of the response if the handler of a ROS 1 service failed or returned None."""
 
     def __init__(self, reason: str) -> None:
         self.reason = reason
@@ -60,7 +60,8 @@ class ServiceDirectory:
     def find_as(self, name: str, service_class: Any, caller: str) -> Endpoint | None:
         """Return the endpoint of a service for a node that calls it, or None if there is none.
 
-        An endpoint of another type is an error of the test: on a robot, its server and `caller` would not connect.
+        If the endpoint has another type, the test fails with an error: on a robot, the server and `caller` would not
+        connect.
         """
         endpoint = self.find(name)
         if endpoint is None or service_type(endpoint.service_class) == service_type(service_class):

@@ -1,4 +1,4 @@
-"""Let a function of the test replace a node of a launch file; it uses the node's topic and service names."""
+"""Let a function of the test replace a node of a launch file; the function uses the node's topic and service names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Import workspace modules that no package installs, and warn: on the robot the import would fail."""
+"""Import workspace modules that no package installs, and warn that the import would fail on the robot."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The margins of a test (how far each direction may change), stored in a small file below `.tarl/margins`.
+"""The margins of a test: how far each direction may change without breaking the guarantee.
 
-The file is meant to be committed.
+They are stored in a small file below `.tarl/margins`, which is meant to be committed.
 """
 
 from __future__ import annotations

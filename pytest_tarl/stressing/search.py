@@ -54,7 +54,7 @@ class Request:
 
 
 def stress(request: Request, *, combined: bool = True) -> Stress:
-    """Find the boundary in each direction, and failing combinations unless `combined` is false.
+    """Find the boundary in each direction and, if `combined` is true, failing combinations of directions.
 
     A failure of the guarantee is reported only if fresh seeds confirm it. The probability that any such report is wrong
     is at most alpha. Ctrl-C or a spent budget ends the search early, with the results so far. Raise RecordingError if

@@ -17,7 +17,7 @@ _FORM = re.compile(
 
 
 class _Field(NamedTuple):
-    """A field: the type of its elements, and their number: 1, the length of an array, or None for a sequence."""
+    """A field: the type of its elements, and their number (1, the length of an array, or None for a sequence)."""
 
     name: str
     base: str
@@ -56,7 +56,7 @@ def serialize(message: Any) -> bytes:
 
 
 def deserialize(data: bytes, kind: type[Any]) -> Any:
-    """Return the message of class `kind` that the bytes encode. Raise ValueError unless they are little-endian CDR."""
+    """Return the message of class `kind` that the bytes encode. Raise ValueError if they are not little-endian CDR."""
     if bytes(data[:2]) != _HEADER[:2]:
         raise ValueError("the bytes are not a message in little-endian CDR")
     try:

@@ -134,7 +134,7 @@ class RobotModel:
         )
 
     def _parts(self, name: str, seen: tuple[str, ...]) -> tuple[list[str], list[str]]:
-        """Return the names of the joints and links of a group, with those of its subgroups."""
+        """Return the names of the joints and links of a group and of its subgroups."""
         joints: list[str] = []
         links: list[str] = []
         group = next(

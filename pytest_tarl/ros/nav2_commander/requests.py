@@ -1,4 +1,4 @@
-"""What a navigator asks the servers of Nav2: paths, maps, costmaps, and the lifecycle of its nodes."""
+"""Requests of a navigator to the servers of Nav2: paths, maps, costmaps, and the lifecycle of Nav2's nodes."""
 
 # ruff: noqa: N802 (names are those of nav2_simple_commander)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 
 class CallbackGroup:
-    """Decides whether another of its callbacks may start. Base class for groups that nodes define."""
+    """Decides whether a further callback of the group may start. Base class for groups that nodes define."""
 
     def __init__(self) -> None:
         self.entities: set[Any] = set()

@@ -95,7 +95,7 @@ class QoSProfile:
         return None if self.history == HistoryPolicy.KEEP_ALL else max(self.depth, 1)
 
     def satisfies(self, wanted: QoSProfile) -> bool:
-        """Return whether a publisher with this profile connects to a subscription with the other one."""
+        """Return whether a publisher with this profile connects to a subscription with the profile `wanted`."""
         lossy = (
             self.reliability == ReliabilityPolicy.BEST_EFFORT
             and wanted.reliability == ReliabilityPolicy.RELIABLE

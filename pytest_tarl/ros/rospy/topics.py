@@ -126,7 +126,7 @@ class Inboxes:
         return inbox
 
     def close(self, inbox: Inbox, callback: Callback | None) -> None:
-        """Remove a callback; disconnect the inbox with its last subscriber, so that the next one connects anew."""
+        """Remove a callback; disconnect the inbox when its last subscriber leaves, so that the next connects anew."""
         if callback in inbox.callbacks:
             inbox.callbacks.remove(callback)
         inbox.subscribers -= 1

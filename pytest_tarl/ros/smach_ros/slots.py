@@ -39,7 +39,7 @@ def build(
 
 
 def view(state: State, ud: Any, callback: Any) -> Any:
-    """Return the userdata that a callback sees: the keys that it declares, else those of the state."""
+    """Return the userdata that a callback sees: the keys that the callback declares, or else the keys of the state."""
     read = getattr(callback, "_smach_input_keys", state.get_registered_input_keys())
     written = getattr(callback, "_smach_output_keys", state.get_registered_output_keys())
     return Remapper(ud, read, written)
