@@ -174,7 +174,7 @@ def clear(nearest: Nearest) -> list[Point]:
 
 
 def _vetted(nearest: Nearest, plan: Plan) -> Point | None:
-    """Run further episodes at the nearest predicted drifts; return the nearest that still fails by the model.
+    """Run further episodes at the nearest predicted drifts; return the first that still fails by the model.
 
     The further episodes are needed because the model often errs at the nearest of many predicted drifts. Return None if
     no drift fails. Raise BudgetSpentError.

@@ -30,7 +30,7 @@ SIZES = (4, 8, 16, 32)  # numbers of episodes at a drift after which the search 
 FRESH = (16, 32)  # numbers of fresh episodes after which a test along a ray checks for a decision
 # number of episodes at each new drift of the search in several directions; few suffice, because a model combines them
 GLANCE = 2
-# number of different seeds at which the drifts of this search start, in turn
+# the drifts of this search start, in turn, at different seeds among the first TURNS ones
 TURNS = 16
 # numbers of fresh episodes after which a test of a combination checks for a decision; more episodes can show failures
 # nearer to the boundary

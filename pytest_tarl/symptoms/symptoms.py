@@ -35,8 +35,8 @@ CROSSINGS = 3  # minimum number of times that a swing crosses its mean
 ASIDE = 0.5  # an offset has strength 1 if the mean at the end grows by at least this share of the range
 # an offset has strength 1 if values at the same time of a mission differ by at least this share of the range
 BESIDE = 0.25
-GROWTH = 0.2  # a runaway has strength 1 if (end - start) / (end + start) is at least this
-PAST = 0.1  # an overshoot has strength 1 if the value passes zero by at least this share of its start value
+GROWTH = 0.2  # a runaway has strength 1 if (end - start) / (end + start) grows by at least this
+PAST = 0.1  # an overshoot has strength 1 if the share by which a value passes zero grows by at least this
 FEWEST = 6  # minimum number of values in a series
 
 
