@@ -37,7 +37,7 @@ def test_a_test_that_runs_only_with_recording_or_only_without_counts_as_a_change
 
 
 @pytest.mark.parametrize(("failing", "left"), [({3}, []), (set(), ["a.py::test"])])
-def test_files_with_a_test_that_differs_run_again_until_its_outcome_occurs(
+def test_a_file_with_a_changed_outcome_runs_again_without_recording_until_this_outcome_occurs(
     suites: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, failing: set[int], left: list[str]
 ) -> None:
     passed, failed = ["call passed"], ["call failed"]

@@ -159,7 +159,7 @@ def test_functions_in_settings_have_qualified_names(in_directory):
     assert config.named == {"bus.listen", "robot.bus.Bus.send"}
 
 
-def test_the_setting_remaps_renames_topics(in_directory):
+def test_topics_are_renamed_by_the_setting_remaps(in_directory):
     config = settings(in_directory, 'tf2 = true\nremaps = {"/scan" = "/front/scan"}')
     assert config.tf2
     assert config.launched == {"scan": "/front/scan"}

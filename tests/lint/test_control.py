@@ -49,7 +49,7 @@ def test_statements_after_a_loop_do_not_depend_on_it():
     assert (found[1], found[2], found[3]) == ({(1, "body")}, {(1, "body")}, set())
 
 
-def test_the_rest_of_an_endless_loop_depends_on_the_exit_condition():
+def test_the_loop_body_after_the_exit_of_an_endless_loop_depends_on_the_exit_condition():
     found = dependence("""
         while True:
             if a:
@@ -85,7 +85,7 @@ def test_a_handler_depends_on_the_condition_of_the_raise():
     assert found[7] == set()
 
 
-def test_the_rest_of_a_loop_body_depends_on_continue():
+def test_the_rest_of_a_loop_body_depends_on_the_condition_of_a_continue_statement():
     found = dependence("""
         for x in y:
             if x:

@@ -207,7 +207,7 @@ def test_a_wrapper_can_be_declared_to_act_like_a_node_method():
     assert kinds(module("node", text), wrappers=wrappers) == [("explicit", ("a",), ("b",))]
 
 
-def test_a_callback_registered_with_an_unknown_object_does_not_fail():
+def test_a_callback_registered_with_an_unknown_object_causes_no_error():
     text = "from elsewhere import sync\nfrom rospy import Subscriber\nsync.registerCallback(print)\n"
     text += "def f(filters):\n    filters.registerCallback(f)\nf(None)\n"
     assert analyse([module("node", text)], Config()) == ()

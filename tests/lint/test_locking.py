@@ -299,11 +299,11 @@ ACTIVITY = """
     ("asked", "found"),
     [("blocking=False", 0), ("False", 0), ("blocking=True", 1), ("", 1), ("timeout=1.0", 1)],
 )
-def test_a_lock_that_no_function_waits_for_guards_no_state(asked, found):
+def test_a_lock_that_no_function_waits_for_protects_no_state(asked, found):
     assert len(lines("TARL201", ACTIVITY.format(asked=asked))) == found
 
 
-def test_a_lock_guards_state_if_at_least_one_function_waits_for_it():
+def test_a_lock_protects_state_if_at_least_one_function_waits_for_the_lock():
     waits = "with self.lock:\n                self.pub.publish(sum(self.seen.values()))"
     both = ACTIVITY.format(asked="False").replace("self.pub.publish(sum(self.seen.values()))", waits)
     assert lines("TARL201", both) == []

@@ -133,7 +133,7 @@ def test_an_unusual_but_valid_file_is_analysed(lint, data):
     ],
     ids=range(23),
 )  # fmt: skip
-def test_deep_and_long_code_is_analysed_or_named(lint, value):
+def test_deep_and_long_code_is_either_analysed_or_named_in_the_report(lint, value):
     result = lint({"odd.py": NODE.format(value)})
     assert set(reasons(result).values()) <= {
         "The code is nested too deeply to be parsed: split the expression, or exclude the file.",
@@ -142,7 +142,7 @@ def test_deep_and_long_code_is_analysed_or_named(lint, value):
 
 
 @pytest.mark.parametrize("header", ["def f{}(msg):", "class C{}:", "for i{} in rospy:", "with rospy as c{}:"])
-def test_deep_blocks_are_analysed_or_named(lint, header):
+def test_deep_blocks_are_either_analysed_or_named_in_the_report(lint, header):
     text = (
         "import rospy\n" + "".join(" " * i + header.format(i) + "\n" for i in range(95)) + " " * 95 + "pass\n"
     )

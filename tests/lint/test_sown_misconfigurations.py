@@ -124,7 +124,7 @@ def found(folder: Path, capsys: pytest.CaptureFixture[str]) -> list[dict[str, st
 
 
 @pytest.mark.parametrize("kind", SOWN)
-def test_a_sown_misconfiguration_is_found_and_nothing_else(kind, tmp_path, capsys):
+def test_an_injected_misconfiguration_is_found_and_nothing_else_is_reported(kind, tmp_path, capsys):
     code, message, edits = SOWN[kind]
     folder = Path(shutil.copytree(EXAMPLE, tmp_path / "src"))
     for name, old, new in edits:
@@ -140,5 +140,5 @@ def test_correct_launch_files_have_no_findings(capsys):
     assert found(EXAMPLE, capsys) == []
 
 
-def test_every_rule_has_a_sown_misconfiguration():
+def test_every_rule_has_an_injected_misconfiguration():
     assert {code for code, _, _ in SOWN.values()} == set(ARCHITECTURE)

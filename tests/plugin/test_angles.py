@@ -26,7 +26,7 @@ def test_the_hull_of_cells_on_both_sides_takes_the_shorter_arc() -> None:
 
 
 @given(st.floats(-20, 20))
-def test_a_guard_holds_in_the_bins_of_its_arc_after_any_number_of_turns(
+def test_a_condition_holds_in_the_bins_of_its_arc_after_any_number_of_turns(
     value: float,
 ) -> None:
     code = condition(Guard((ACROSS,)), {"heading": Reading("theta")}, {})
@@ -37,7 +37,7 @@ def test_a_guard_holds_in_the_bins_of_its_arc_after_any_number_of_turns(
         assert eval(code, {"theta": value}) is (index in (10, 11, 0, 1))
 
 
-def test_a_cell_matches_the_guard_of_its_arc() -> None:
+def test_a_cell_satisfies_the_condition_of_its_arc() -> None:
     assert [i for i in range(12) if holds(Guard((ACROSS,)), (i,), (HEADING,))] == [0, 1, 10, 11]
 
 

@@ -142,7 +142,7 @@ def watched(monkeypatch: pytest.MonkeyPatch, sure: set[int]) -> tuple[_Watch, li
     return _Watch(offline, marked, given, (Look(2, 0.25), Look(4, 0.75)), 999), asked
 
 
-def test_verdicts_are_computed_at_the_planned_looks_until_one_is_certain(
+def test_verdicts_are_computed_at_the_planned_checks_until_one_verdict_is_certain(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     watch, asked = watched(monkeypatch, {4})

@@ -63,7 +63,7 @@ def test_a_range_needs_two_numbers(ends: tuple[Any, Any]) -> None:
         Drift.range(*ends)
 
 
-def test_all_parts_of_a_scenario_are_permanent_or_none() -> None:
+def test_either_all_parts_of_a_scenario_are_permanent_or_none_is() -> None:
     lasting = Drift(0.8, permanent=True)
     assert drift("t", "worn", {"left": lasting, "right": lasting}).permanent
     assert drift("t", "worn", Drift({"left": 0.8, "right": 0.7}, permanent=True)).permanent

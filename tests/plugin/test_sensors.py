@@ -48,7 +48,7 @@ def test_booleans_integers_and_categories_need_no_bins() -> None:
 
 
 @pytest.mark.parametrize("expr", ["speed", "self.heading", "self.state['yaw'].value", "a.b[0]"])
-def test_a_guard_reads_the_variable_that_holds_the_sensor(expr: str) -> None:
+def test_a_condition_reads_the_variable_that_contains_the_value_of_the_sensor(expr: str) -> None:
     assert not Sensor("x").guardable
     assert Sensor("x", expr=expr).guardable
     assert Sensor("x", expr=expr).path == ""
@@ -177,7 +177,7 @@ def test_bins_cannot_be_learned_from_a_constant() -> None:
         learned_edges((Sensor("x", bins=4),), {"x": [2.0, 2.0, math.nan]})
 
 
-def test_a_sensor_may_be_a_function_and_is_then_never_in_a_guard() -> None:
+def test_a_sensor_that_is_a_function_is_never_in_a_condition() -> None:
     def nearest(scan: SimpleNamespace) -> float:
         return float(min(scan.ranges))
 

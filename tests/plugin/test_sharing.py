@@ -32,7 +32,7 @@ def test_ten_episodes_are_needed_for_each_comparison() -> None:
     assert "Raise it to 30 or more" in shortage(29, 3)
 
 
-def test_all_comparisons_begin_with_the_first_look() -> None:
+def test_all_comparisons_begin_with_the_first_check() -> None:
     assert [look.episodes for look in SHARED.looks] == [10, 20, 40, 60]
     assert (SHARED.first.looks, SHARED.first.episodes) == (SHARED.looks, 10)
 
@@ -44,7 +44,7 @@ def test_the_undecided_comparison_with_the_smallest_p_value_continues() -> None:
     assert SHARED.following([compared(60), compared(10, decided=True), "error"]) is None
 
 
-def test_the_next_look_must_fit_into_the_episodes_left() -> None:
+def test_the_next_check_must_fit_into_the_episodes_left() -> None:
     found = SHARED.following([compared(40, 0.01), compared(20, 0.2), compared(40, decided=True)])
     assert found is not None  # twenty are left, and either comparison needs twenty
     assert (found[0], found[1].episodes) == (0, 60)

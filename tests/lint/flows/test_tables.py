@@ -295,7 +295,7 @@ MARKS = {
 
 
 @pytest.mark.parametrize("mark", MARKS.values(), ids=MARKS)
-def test_marks_can_be_lists_wrappers_and_classes(mark):
+def test_the_marks_of_a_method_can_be_lists_wrappers_or_classes(mark):
     wiring = """
         for name in dir(type(self)):
             for topic in getattr(getattr(type(self), name), "topics", ()):
@@ -561,7 +561,7 @@ def test_data_that_one_table_row_stores_reaches_later_rows_and_the_code_after_th
     assert ("c/earlier", "y") not in found
 
 
-def test_a_loop_that_publishes_for_each_entry_connects_entries_by_its_own_state():
+def test_a_loop_that_publishes_for_each_entry_connects_the_entries_through_its_own_state():
     wiring = """
         self.last = {"a": 0.0, "b": 0.0}
         self.outs = {"a": self.x, "b": self.y}

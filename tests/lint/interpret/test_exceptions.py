@@ -83,7 +83,7 @@ self.pub.publish(1)
         ("OSError", "socket.OSError"),  # another class of this name
     ],
 )
-def test_statements_after_a_handler_that_might_miss_the_exception_depend_on_it(raised, caught):
+def test_statements_after_a_handler_that_might_miss_the_exception_depend_on_the_exception(raised, caught):
     assert flows(AROUND.format(raised=raised, caught=caught)) == ["implicit"]
 
 
@@ -102,7 +102,9 @@ def test_statements_after_a_handler_that_might_miss_the_exception_depend_on_it(r
         ("rospy.ROSException()", "Exception"),
     ],
 )
-def test_statements_after_a_handler_that_surely_catches_the_exception_do_not_depend_on_it(raised, caught):
+def test_statements_after_a_handler_that_surely_catches_the_exception_do_not_depend_on_the_exception(
+    raised, caught
+):
     assert flows(AROUND.format(raised=raised, caught=caught)) == []
 
 

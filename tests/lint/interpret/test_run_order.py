@@ -81,7 +81,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_a_state_depends_on_outcomes_of_which_only_some_lead_to_the_state(title):
+def test_a_state_depends_on_a_set_of_outcomes_if_only_some_of_them_lead_to_the_state(title):
     groups, outcomes, wanted = CASES[title]
     found = dependences(groups, lambda part: frozenset(outcomes.get(part, ())))
     text = {None: "{0} {1}?", frozenset(): "{0} in {1}"}

@@ -104,7 +104,7 @@ def test_the_members_are_the_public_attributes_with_known_values(ctx, channel):
     assert enumerations.members(ctx, cls) is None
 
 
-def test_a_constant_names_the_member_that_has_it_as_its_value(ctx, channel):
+def test_a_constant_selects_the_enumeration_member_whose_value_is_this_constant(ctx, channel):
     cls, _ = channel
     assert enumerations.with_value(ctx, cls, const(3)) == ctx.store.get((cls, "LEVEL"))
     assert enumerations.with_value(ctx, cls, const(4)) is None

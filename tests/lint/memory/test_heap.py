@@ -146,7 +146,7 @@ def test_an_unset_field_has_the_default_of_its_kind_of_object(ctx):
     assert heap.default(ctx, recency.intern(ctx, "closure", "f"), "x") is BOTTOM
 
 
-def test_the_field_shape_has_the_data_of_a_library_object_but_in_a_message_it_is_an_ordinary_field(ctx):
+def test_the_field_named_shape_has_the_data_of_a_library_object_but_is_ordinary_in_a_message(ctx):
     matrix, message = made(ctx, "lib", "a"), made(ctx, "lib", "b")
     message.info = BY_CLASS
     for obj in (matrix, message):

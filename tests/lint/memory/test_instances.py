@@ -24,7 +24,7 @@ def program(ctx):
     return ctx, base, view, made
 
 
-def test_a_library_method_that_queries_instances_gets_those_of_the_class_and_its_subclasses(program):
+def test_a_library_method_that_queries_instances_gets_instances_of_the_class_and_of_its_subclasses(program):
     ctx, base, view, made = program
     assert instances(looked_up(ctx, "query_one", [pointer(view)])) == {made["view"]}
     assert instances(looked_up(ctx, "get_component", [pointer(base)])) == {made["base"], made["view"]}

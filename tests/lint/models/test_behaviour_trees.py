@@ -256,5 +256,7 @@ CASES = dict(program(HEAD, part) for part in PROGRAMS.split("### ")[1:])
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_statuses_decide_and_the_blackboard_is_shared(title: str) -> None:
+def test_the_status_of_a_behaviour_decides_what_runs_and_all_behaviours_share_the_blackboard(
+    title: str,
+) -> None:
     assert differing(CASES[title]) == {}

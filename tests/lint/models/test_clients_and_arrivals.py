@@ -91,7 +91,7 @@ CASES = dict(part.split("\n", 1) for part in ARRIVALS.split("### ")[1:])
 
 @pytest.mark.parametrize("arrivals", [False, True])
 @pytest.mark.parametrize("title", CASES)
-def test_whether_a_message_has_arrived_decides_with_the_setting(title, arrivals):
+def test_the_arrival_of_a_message_counts_as_a_decision_only_with_the_setting_arrivals(title, arrivals):
     text = HEAD + re.sub(r"# (\w+) (\w+)$", r"# \2" if arrivals else r"# \1", CASES[title], flags=re.M)
     assert differing(text, flows(text, Config(arrivals=arrivals))) == {}
 

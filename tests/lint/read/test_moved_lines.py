@@ -113,7 +113,7 @@ def test_changed_functions_of_equal_names_require_a_new_analysis():
     assert moved(other.replace("2", "3"), other, unread=[(1, 0), (4, 0)]) == {1: 1, 4: 4}
 
 
-def test_a_query_of_the_text_with_a_changed_answer_requires_a_new_analysis():
+def test_a_new_analysis_is_needed_if_a_check_of_the_source_text_gives_another_answer():
     asked = (lambda text: "unread" in text, True)
     new = OLD.replace("return 1", "return 3")
     assert moved(new, answers=[asked]) is not None

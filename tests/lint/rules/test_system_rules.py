@@ -138,13 +138,13 @@ def test_a_subscription_that_may_have_a_publisher_is_not_reported(others):
 
 
 @pytest.mark.parametrize("other", [node("/c", unread=True), node("/c", interface=Interface("c.py"))])
-def test_a_misspelt_name_is_reported_beside_unread_nodes_that_do_not_mention_it(other):
+def test_a_misspelt_name_is_reported_even_if_there_are_unread_nodes_that_do_not_mention_it(other):
     assert len(messages(301, node("/a", HEARS), node("/b", SAYS), other)) == 1
     assert misspelt("/cmd_vel", "/cmd_val")
     assert not misspelt("/cmd_vel", "/left/cmd_vel")
 
 
-def test_subscriptions_of_unknown_type_or_name_or_in_the_publishing_node_are_not_compared():
+def test_subscriptions_in_the_publishing_node_or_with_an_unknown_type_or_name_are_not_compared():
     assert messages(301, node("/a", end("subscribes", "cmd_vel", "")), node("/b", SAYS)) == []
     several = end("subscribes", "", names=("cmd_vel", "cmd_vex"))
     assert messages(301, node("/a", several), node("/b", SAYS)) == []

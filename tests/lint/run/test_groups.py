@@ -77,7 +77,7 @@ def performed(monkeypatch) -> list[str]:
     return names
 
 
-def test_programs_are_analysed_once_and_their_reports_reused(performed):
+def test_programs_are_analysed_once_and_their_reports_are_reused(performed):
     cache, told = Memory(), []
     found = examine(scripts(0, 0), Config(), cache, tell=told.append)
     assert [one.flow.sink.topics for one in found.findings if one.flow] == [("a",), ("b",)]

@@ -271,7 +271,7 @@ int main(int argc, char** argv) {
 """
 
 
-def test_cpp_nodes_count_without_a_launch_file_too(arm, capsys):
+def test_cpp_nodes_are_also_counted_without_a_launch_file(arm, capsys):
     write(
         arm,
         {

@@ -166,7 +166,7 @@ def test_a_default_may_use_earlier_arguments_and_an_unknown_argument_is_reported
     assert reasons(found) == ["<arg name='c'>: the argument d has no value"]
 
 
-def test_files_that_include_each_other_end(package):
+def test_reading_files_that_include_each_other_ends(package):
     inner = '<include file="$(find arm)/b.launch"><arg name="n" value="$(eval n + 1)"/></include>'
     step = f'<launch><arg name="n"/>{inner}</launch>'
     (package / "b.launch").write_text(step)

@@ -524,7 +524,7 @@ def test_macros_and_loops_of_cmake_are_expanded(tmp_path):
         ),
     ],
 )
-def test_endless_and_unfinished_blocks_of_cmake_end(tmp_path, text, number):
+def test_reading_endless_and_unfinished_blocks_of_cmake_ends(tmp_path, text, number):
     found = called(tmp_path, text)
     assert len(found) < 10_000 if number is None else len(found) == number
 

@@ -135,7 +135,9 @@ def test_all_commands_of_a_topic_are_handled_before_the_step(monkeypatch: pytest
     assert simulator.handled == [asked, "/cmd", asked, "/cmd", asked, "/cmd", "/step"]
 
 
-def test_without_a_command_since_the_last_step_nothing_else_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_command_since_the_last_step_no_parameter_service_is_called(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     simulator = Simulator(["/cart/get_parameters"])
     link = linked(monkeypatch, simulator, [("/", "cart")])
     step(link)
@@ -149,7 +151,9 @@ def test_without_a_command_since_the_last_step_nothing_else_is_asked(monkeypatch
     assert simulator.handled == ["/step", "/cmd", "/cart/get_parameters", "/step", "/step"]
 
 
-def test_each_node_that_receives_a_command_is_asked_first(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_parameter_service_of_each_node_that_receives_a_command_is_called_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     simulator = Simulator(["/left/get_parameters", "/right/get_parameters", "/else/get_parameters"])
     link = linked(monkeypatch, simulator, [("/", "right"), ("/", "left"), ("/", "tarl_link")])
     command(link)
@@ -211,7 +215,7 @@ def test_a_topic_counts_as_subscribed_once_the_names_of_its_nodes_are_known_or_a
     assert link._receivers == {"/cmd": ["/cart/get_parameters"]}
 
 
-def test_a_node_that_runs_only_within_a_step_is_asked_once_and_delays_one_step(
+def test_a_node_that_runs_only_within_a_step_is_called_once_and_delays_one_step(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     now = [100.0]

@@ -249,7 +249,7 @@ def test_the_time_of_the_clock_and_the_stamp_of_a_message_are_passed_on(
     assert link._handled == 2
 
 
-def test_messages_before_an_answer_are_passed_on_before_it(
+def test_messages_that_arrive_before_an_answer_are_passed_on_before_the_answer(
     linked: tuple[Link, list[dict[str, Any]], Any],
 ) -> None:
     link, said, _ = linked

@@ -87,7 +87,7 @@ def test_errors_of_a_ros_that_was_shut_down_are_left_out_of_the_output(last: str
     assert without_interrupts(own) == own
 
 
-def test_what_the_handler_of_signals_logs_is_left_out_and_other_logged_errors_stay() -> None:
+def test_messages_that_the_signal_handler_logs_are_left_out_and_other_logged_errors_stay() -> None:
     failed = "rcl_trigger_guard_condition() failed: guard condition implementation is invalid, at guard_condition.c:170"
     handler = f"[ERROR] [1795828810.626488426] [rclpy.signals]: {failed}"
     own = f"[ERROR] [1795828810.626488426] [sim.signals]: {failed}"
@@ -103,7 +103,7 @@ def test_errors_while_the_simulator_ends_stay_in_the_output(kind: str) -> None:
 
 
 @pytest.mark.parametrize("killed", [False, True])
-def test_stopping_waits_for_the_guardian_but_not_for_one_that_has_ended(
+def test_stopping_waits_for_the_guardian_but_not_for_a_guardian_that_has_ended(
     killed: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(client, "PATIENCE", 10_000.0)  # s; a wait in vain would exceed the limit of the test

@@ -77,7 +77,7 @@ if __name__ == "__main__":
         ("self.ki", "ki", 0.75),
     ],
 )
-def test_an_entry_keeps_its_key_and_a_parameter_its_name(
+def test_a_changed_entry_keeps_its_key_and_a_changed_parameter_keeps_its_name(
     tmp_path: Path, use: str, name: str, value: float
 ) -> None:
     path = tmp_path / "mast.py"
@@ -120,7 +120,7 @@ rospy.spin()
         ("entries.get(rospy.get_name(), 0.28)", ""),
     ],
 )
-def test_the_default_of_an_entry_is_the_definition_and_its_key_the_parameter(
+def test_the_default_of_an_entry_is_the_definition_and_the_key_of_the_entry_is_the_parameter(
     tmp_path: Path, definition: str, name: str
 ) -> None:
     path = tmp_path / "mast.py"
@@ -329,7 +329,7 @@ numbers = st.floats(0.1, 10).map(lambda one: round(one, 3))
 @given(
     numbers, numbers, numbers, st.sampled_from(["{a} * base + {b}", "{b} - base / {a}", "({a} + base) * {b}"])
 )
-def test_each_found_number_scales_the_parameter_as_wanted(a, b, factor, form):  # type: ignore[no-untyped-def]
+def test_changing_each_found_number_scales_the_parameter_by_the_wanted_factor(a, b, factor, form):  # type: ignore[no-untyped-def]
     expression = form.format(a=a, b=b)
     text = f"base = 1.25\nNode(parameters=[{{'ki': {expression}}}])\n"
     whole = eval(expression, {"base": 1.25})

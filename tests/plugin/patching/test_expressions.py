@@ -122,7 +122,7 @@ def dump(text: str) -> str | None:
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_code_keeps_its_meaning_at_every_place_without_needless_parentheses(place: str) -> None:
+def test_inserted_code_keeps_its_meaning_everywhere_and_has_no_needless_parentheses(place: str) -> None:
     text = body(place.format(HOLE))
     source = document("a.py", text)
     node = hole(source)

@@ -65,7 +65,7 @@ def test_each_kind_of_sensor_has_its_condition(conjunct: Conjunct, expected: str
         (Conjunct(MODE, 0, 1), 'mode in ("dry", "wet")'),
     ],
 )
-def test_the_guard_checks_for_none_only_where_the_comparison_would_raise(
+def test_the_condition_checks_for_none_only_where_the_comparison_would_raise(
     conjunct: Conjunct, expected: str
 ) -> None:
     text = told(conjunct, readings=SILENT)
@@ -77,7 +77,7 @@ def test_conditions_are_combined_in_order() -> None:
     assert told(Conjunct(TERRAIN, 1, 1), Conjunct(POSITION, 4, 7)) == "terrain and 4.0 <= pos < 7.0"
 
 
-def test_a_guard_without_conditions_is_empty() -> None:
+def test_a_condition_without_bounds_is_written_as_an_empty_text() -> None:
     assert told() == told(Conjunct(POSITION, -INF, INF)) == ""
 
 
@@ -144,7 +144,7 @@ def test_the_first_safe_expression_is_used() -> None:
 @pytest.mark.parametrize(
     ("initial", "conjunct"), [("0.0", START), ("Pose()", START), ("False", FIRM), ("True", MUDDY)]
 )
-def test_a_variable_whose_initial_value_satisfies_the_guard_is_not_used(
+def test_a_variable_whose_initial_value_satisfies_the_condition_is_not_used(
     initial: str, conjunct: Conjunct
 ) -> None:
     text = f"value = {initial}\ndef step(): HERE = 1\n"
@@ -152,7 +152,9 @@ def test_a_variable_whose_initial_value_satisfies_the_guard_is_not_used(
 
 
 @pytest.mark.parametrize(("initial", "conjunct"), [("0.0", STRETCH), ("Pose()", STRETCH), ("False", MUDDY)])
-def test_a_variable_whose_initial_value_violates_the_guard_is_used(initial: str, conjunct: Conjunct) -> None:
+def test_a_variable_whose_initial_value_violates_the_condition_is_used(
+    initial: str, conjunct: Conjunct
+) -> None:
     text = f"value = {initial}\ndef step(): HERE = 1\n"
     assert choose(text, ("value",), conjunct) == Reading("value")
 
@@ -182,7 +184,7 @@ def test_a_variable_whose_initial_value_violates_the_guard_is_used(initial: str,
         ("def step(pos):\n    HERE = 1\ndef other():\n    pos = None", "pos", ""),
     ],
 )  # fmt: skip
-def test_the_guard_checks_for_none_unless_the_surrounding_code_excludes_it(
+def test_the_condition_checks_for_none_unless_the_surrounding_code_excludes_none(
     text: str, expression: str, absent: str
 ) -> None:
     assert choose(text, (expression,)) == Reading(expression, absent)
@@ -206,7 +208,7 @@ def test_the_guard_checks_for_none_unless_the_surrounding_code_excludes_it(
         ),
     ],
 )
-def test_if_only_a_callback_sets_an_attribute_a_guard_uses_it_only_where_the_code_also_reads_it(
+def test_if_only_a_callback_sets_an_attribute_a_condition_uses_it_only_where_the_code_also_reads_it(
     text: str, bound: bool
 ) -> None:
     assert (choose(text, ("self.p",)) is not None) is bound
@@ -221,7 +223,7 @@ def test_if_only_a_callback_sets_an_attribute_a_guard_uses_it_only_where_the_cod
         ("def step(p): HERE = 1", True),
     ],
 )
-def test_if_only_a_callback_sets_a_global_a_guard_uses_it_only_where_the_code_also_reads_it(
+def test_if_only_a_callback_sets_a_global_a_condition_uses_it_only_where_the_code_also_reads_it(
     text: str, bound: bool
 ) -> None:
     assert (choose(text, ("p",)) is not None) is bound

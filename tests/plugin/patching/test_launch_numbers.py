@@ -109,7 +109,7 @@ def test_an_expression_without_a_number_to_change_is_computed(expression: str) -
         "DeclareLaunchArgument('k')\n{'gain': LaunchConfiguration('k')}",
     ],
 )
-def test_no_number_is_found_behind_a_name_with_several_values_or_none(text: str) -> None:
+def test_no_number_is_found_through_a_name_that_has_several_values_or_no_value(text: str) -> None:
     assert found(text) == []
 
 

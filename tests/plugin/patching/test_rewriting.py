@@ -86,14 +86,14 @@ IN_MUD = [
 
 
 @pytest.mark.parametrize(("statement", "code", "value", "new", "expected"), ALWAYS)
-def test_without_a_guard_the_use_is_replaced(
+def test_without_a_condition_the_used_value_is_replaced(
     statement: str, code: str, value: Any, new: Any, expected: str
 ) -> None:
     assert written(statement, code, value, new, Guard()) == expected
 
 
 @pytest.mark.parametrize(("statement", "code", "value", "new", "expected"), IN_MUD)
-def test_a_guarded_change_has_the_expected_text(
+def test_a_conditional_change_has_the_expected_text(
     statement: str, code: str, value: Any, new: Any, expected: str
 ) -> None:
     assert written(statement, code, value, new, MUD) == expected
@@ -126,7 +126,7 @@ def step(delta, mud, pos):
 """
 
 
-def test_adjacent_statements_under_one_guard_share_one_if() -> None:
+def test_adjacent_statements_under_one_condition_share_one_if_statement() -> None:
     analysis = HandMade({"node.py": TWO}, held=HELD)
     uses = [analysis.operand("5", 5, "5 *"), analysis.operand("0.1", 0.1, "0.1 + a")]
     changed = rewrite(analysis, [Mutation(use, 2.5) for use in reversed(uses)], MUD, TOPICS)
@@ -221,7 +221,7 @@ def test_line_endings_indentation_and_the_end_of_the_file_are_kept(
     assert changed == ending.join([*lines[:-1], *new]) + (ending if final else "")
 
 
-def test_the_guard_is_reported_as_it_is_written() -> None:
+def test_the_condition_is_reported_as_it_is_written_in_the_file() -> None:
     text = "def step(delta, mud, pos):\n    return 5 * delta\n"
     analysis = HandMade({"node.py": text}, held=HELD)
     change = [Mutation(analysis.operand("5", 5, "5 *"), 12.0)]
@@ -335,7 +335,7 @@ class Log(list[float]):
     a=st.integers(-3, 3),
     b=st.integers(-3, 3),
 )
-def test_a_rewritten_program_is_the_original_unless_the_guard_holds(
+def test_a_rewritten_program_behaves_like_the_original_unless_the_condition_holds(
     statement: str, expression: str, mud: bool, a: int, b: int
 ) -> None:
     text = program(statement.format(expression))
@@ -369,7 +369,7 @@ def outcome(text: str, mud: bool, a: int, b: int) -> Any:
         return type(error), list(log)
 
 
-def test_a_rewritten_node_behaves_like_the_original_until_the_guard_holds() -> None:
+def test_a_rewritten_node_behaves_like_the_original_until_the_condition_holds() -> None:
     text = dedent(
         """\
         import rospy
@@ -408,7 +408,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 @pytest.mark.parametrize(
     "node", ["shuttle/traveller.py", "shuttle/traveller_swapped.py", "line_follower/line_follower.py"]
 )
-def test_a_guard_can_be_put_around_every_operand_of_the_examples(node: str) -> None:
+def test_a_condition_can_be_added_to_the_change_of_every_constant_of_the_examples(node: str) -> None:
     analysis = analyse([EXAMPLES / node], root=EXAMPLES)
     operands = [operand for step in analysis.sites for operand in analysis.operands(step.site)]
     assert len(operands) > 2

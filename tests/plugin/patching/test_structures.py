@@ -147,7 +147,7 @@ class Node:
         ),
     ],
 )
-def test_an_unnamed_value_is_assigned_to_a_name_before_its_statement(
+def test_an_unnamed_value_is_assigned_to_a_name_before_the_statement_that_uses_it(
     statement: str, at: str, lines: list[str]
 ) -> None:
     limited = "self.last_value += max(-0.1, min(0.1, value - self.last_value))"
@@ -169,7 +169,7 @@ def test_an_unnamed_value_is_assigned_to_a_name_before_its_statement(
         ("while self.gain * error > 1.0: error -= 1.0", "self.gain * error"),
     ],
 )
-def test_a_value_that_is_not_always_evaluated_is_not_assigned_to_a_name_before_its_statement(
+def test_a_value_that_may_not_be_evaluated_is_not_moved_to_an_assignment_before_the_statement(
     statement: str, at: str
 ) -> None:
     before = HOLDER.format(statement=statement)

@@ -36,7 +36,7 @@ def test_a_node_subscribes_to_the_sensor_in_its_own_style(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", NODES)
-def test_the_patched_node_runs_and_follows_the_guard(kind: str) -> None:
+def test_the_patched_node_runs_and_changes_its_behaviour_when_the_condition_holds(kind: str) -> None:
     text, _, call, api = NODES[kind]
     sources = {"node.py": text}
     ros = TinyRos()

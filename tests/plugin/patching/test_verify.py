@@ -21,7 +21,7 @@ def drive(delta, pub):
 """
 
 
-def test_a_guarded_change_keeps_all_statements_and_comments() -> None:
+def test_a_conditional_change_keeps_all_statements_and_comments() -> None:
     patched = NODE.replace(
         "    vel = GAIN * delta\n",
         "    if wet:\n        vel = 2.2 * GAIN * delta\n    else:\n        vel = GAIN * delta\n",

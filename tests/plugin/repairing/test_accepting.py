@@ -206,7 +206,7 @@ def test_the_budget_is_the_reason_only_if_no_candidate_was_refused_before_it_end
     assert refused.candidate == (field.candidates[0] if budget else None)
 
 
-def test_a_guard_is_narrower_if_it_has_all_conditions_of_the_other_guard_and_more() -> None:
+def test_a_condition_is_narrower_if_it_has_all_parts_of_the_other_condition_and_more() -> None:
     wet, dark = (Conjunct(Sensor(name, topic=f"/{name}", field="data"), 1, 1) for name in ("wet", "dark"))
     one, other, both = Guard((wet,)), Guard((dark,)), Guard((dark, wet))
     assert _narrower(both, one)
@@ -253,7 +253,7 @@ def examined(
     return [one.candidate.guard for one in examiner.tried], accepted.candidate.guard if accepted else None
 
 
-def test_a_guard_is_tried_if_the_change_harms_the_designed_world_without_it(
+def test_a_condition_is_tried_if_the_change_harms_the_designed_world_without_a_condition(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, _ = GUARDS
@@ -282,14 +282,14 @@ def test_a_parameter_that_is_changed_in_its_file_gets_no_condition(monkeypatch: 
 
 
 @pytest.mark.parametrize("kind", ["bad at once", "lucky on known seeds", "worse later than the original"])
-def test_no_guard_is_tried_if_the_change_gains_too_little_everywhere(
+def test_no_condition_is_tried_if_the_change_gains_too_little_everywhere(
     kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     always, wet, _, _ = GUARDS
     assert examined({always: kind, wet: "good"}, monkeypatch) == ([always], None)
 
 
-def test_no_other_guard_is_tried_if_one_guard_holds_exactly_under_the_drift_and_does_not_suffice(
+def test_no_other_condition_is_tried_if_a_condition_that_holds_exactly_under_the_drift_does_not_suffice(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, _ = GUARDS
@@ -300,7 +300,7 @@ def test_no_other_guard_is_tried_if_one_guard_holds_exactly_under_the_drift_and_
     assert examined(kinds, monkeypatch, never=wet) == ([always, wet, dark], dark)
 
 
-def test_a_narrower_guard_is_skipped_if_the_reward_is_too_low_under_the_wider_guard(
+def test_a_narrower_condition_is_skipped_if_the_reward_is_too_low_under_the_wider_condition(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, both = GUARDS
@@ -587,7 +587,7 @@ def test_a_candidate_within_a_few_percent_of_an_examined_candidate_is_not_examin
     assert [one.candidate for one in examiner.tried] == [again[0], again[3]]
 
 
-def test_no_operand_uses_up_all_acceptance_tests_and_every_candidate_stays_in_the_queue(
+def test_no_constant_uses_up_all_acceptance_tests_and_every_candidate_stays_in_the_queue(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Seven values of one constant hold only on known seeds; the right one after them still gets its test."""

@@ -73,7 +73,7 @@ def spot(text: str, code: str, kind: str = "value") -> Spot:
         ("goal.x - at.x", "goal.q - at.q", None),
     ],
 )
-def test_expressions_of_two_axes_differ_in_the_names_of_the_axes_only(
+def test_two_expressions_are_twins_if_they_differ_only_in_the_names_of_their_axes(
     one: str, other: str, axes: tuple[str, str] | None
 ) -> None:
     text = f"def f():\n    a = {one}\n    b = {other}\n"
@@ -151,7 +151,9 @@ def test_a_sensor_also_represents_the_same_field_of_the_other_axis(
     assert "ey = 1.0 - msg.pose.pose.position.y - 2.0 * msg.twist.twist.linear.y" in text
 
 
-def test_a_sensor_without_an_axis_serves_both(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_sensor_without_an_axis_is_used_for_both_axes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pallet = Pallet(tmp_path, monkeypatch)
     load = Sensor("load", topic="/odom", field="twist.load", low=-1.0, high=1.0, bins=4)
     pallet.order.comparison.sensors = (load,)
@@ -159,7 +161,7 @@ def test_a_sensor_without_an_axis_serves_both(tmp_path: Path, monkeypatch: pytes
     assert (form.sensor, form.sibling, form.partner) == (load, None, None)
 
 
-def test_a_change_is_made_for_both_axes_only_if_both_overshoot(
+def test_a_change_is_made_for_both_axes_only_if_both_axes_overshoot(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pallet = Pallet(tmp_path, monkeypatch)

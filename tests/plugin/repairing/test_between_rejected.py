@@ -50,7 +50,7 @@ def test_a_value_close_to_two_rejected_values_is_proposed_if_it_restores_their_m
     assert found[0] == pytest.approx((1.144 * 1.24) ** 0.5, rel=0.002)
 
 
-def test_no_value_is_proposed_that_loses_the_same_missions() -> None:
+def test_a_value_that_loses_the_same_missions_is_not_proposed() -> None:
     found, _ = proposed(5.0, (1.144, SHORT), (1.24, SHORT))
     assert found == []
 

@@ -149,7 +149,7 @@ def test_a_value_stays_one_step_away_from_failing_values() -> None:
 
 
 @pytest.mark.parametrize(("designed", "kept"), [(9.5, True), (9.9, False)])
-def test_a_value_is_not_fitted_to_seeds_whose_designed_missions_earn_as_little(
+def test_a_value_is_not_fitted_to_seeds_on_which_the_designed_missions_also_earn_little(
     designed: float, kept: bool
 ) -> None:
     trials = world(2.0, 0.3)

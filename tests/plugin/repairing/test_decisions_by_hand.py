@@ -58,7 +58,7 @@ def order(online: list[float], sizes: tuple[str, ...] = (), **changes: Any) -> O
     return Order(**usual | changes)
 
 
-def test_the_goal_has_the_failing_episodes_with_their_lengths_and_the_mean_length_as_designed() -> None:
+def test_the_goal_has_the_failing_episodes_their_lengths_and_the_mean_length_in_the_designed_world() -> None:
     found = order([5.0, 10.0, 6.0]).goal
     assert found.pairs == (Pair(52, 6.0, 12), Pair(50, 5.0, 10))
     assert (found.steps, found.ranged, found.online) == (10.5, False, 7.0)
@@ -69,7 +69,7 @@ def test_the_goal_has_the_failing_episodes_with_their_lengths_and_the_mean_lengt
 @pytest.mark.parametrize(
     ("sizes", "world", "ranged"), [(("",), True, True), (("",), False, False), ((), True, False)]
 )
-def test_with_a_range_of_sizes_the_first_episodes_span_it(
+def test_the_first_episodes_span_the_whole_range_of_drift_sizes(
     monkeypatch: pytest.MonkeyPatch, sizes: tuple[str, ...], world: bool, ranged: bool
 ) -> None:
     monkeypatch.setattr(request, "sizes", lambda world, drift, seed: {"": float(seed % 50)})
@@ -208,7 +208,9 @@ def test_a_candidate_is_refused_if_another_test_gets_worse(monkeypatch: pytest.M
     assert (good.beside.held, one.spent) == (("test_b as recorded",), good.acceptance.episodes + 7)
 
 
-def test_a_permanent_repair_is_shown_in_the_old_world(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_report_shows_how_a_repair_for_a_permanent_drift_behaves_in_the_old_world(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     one, field, _ = examiner(["bad as designed"], monkeypatch, permanent=True)
     monkeypatch.setattr(accepting, "firing", lambda *_: ())
     found = one._on_fresh_seeds(field.candidates[0])
@@ -376,7 +378,7 @@ class Phases:
         return [one[0] for one in self.log]
 
 
-def test_each_search_has_a_budget_of_its_own_and_structures_follow_if_nothing_is_accepted(
+def test_each_search_has_its_own_budget_and_structural_changes_follow_if_nothing_is_accepted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     phases = Phases(monkeypatch, None, None)
@@ -402,7 +404,7 @@ def test_each_search_has_a_budget_of_its_own_and_structures_follow_if_nothing_is
         (None, None, {"localize": "full", "searches": ("sweep",)}, ["search", "structure", "rank"]),
     ],
 )
-def test_a_repair_ends_when_it_is_interrupted_and_ranks_only_on_request(
+def test_the_search_for_a_repair_ends_when_it_is_interrupted_and_ranks_statements_only_on_request(
     monkeypatch: pytest.MonkeyPatch, accepts: Any, interrupts: Any, options: Any, expected: list[str]
 ) -> None:
     phases = Phases(monkeypatch, accepts, interrupts)

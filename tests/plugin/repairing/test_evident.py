@@ -97,7 +97,7 @@ def test_spikes_indicate_a_median_where_the_value_is_received(tmp_path: Path) ->
     assert ("median", "msg.data") in tried(order, {received: spiky})
 
 
-def test_spikes_of_a_comparison_indicate_its_confirmation(tmp_path: Path) -> None:
+def test_spikes_in_a_comparison_suggest_a_template_that_confirms_its_result(tmp_path: Path) -> None:
     order = order_of(tmp_path)
     told = tried(order, {site(order, "self.near = "): {"spikes": 0.9, "swing": 0.2}})
     assert told == [("confirmed", "self.range < 0.5")]

@@ -57,19 +57,19 @@ def forms(found: list[Candidate]) -> list[tuple[str, str, dict[str, float]]]:
     ]
 
 
-def test_the_power_leads_from_the_old_value_to_the_value_found() -> None:
+def test_the_exponent_is_fitted_to_the_old_value_and_the_value_found() -> None:
     # designed 1.5, drifted 6: four times the sensor and four times the constant
     found = list(following(order((1,), (6,), SPEED), FOUR_TIMES))
     assert forms(found) == [("above", "speed", {"power": pytest.approx(0.945, abs=0.01), "usual": 1.5})]
     assert found[0].guard == ALWAYS
 
 
-def test_a_smaller_value_at_a_larger_sensor_has_a_negative_power() -> None:
+def test_a_constant_that_shrinks_as_the_sensor_grows_has_a_negative_exponent() -> None:
     smaller = Candidate((Mutation(NAMED, 0.25),), FAST)
     assert forms(list(following(order((1,), (6,), SPEED), smaller)))[0][2]["power"] < 0.0
 
 
-def test_a_sensor_that_falls_scales_the_constant_only_below_its_designed_value() -> None:
+def test_a_falling_sensor_scales_the_constant_only_below_the_designed_value_of_the_sensor() -> None:
     (found,) = forms(list(following(order((6,), (1,), SPEED), FOUR_TIMES)))
     assert found[0] == "below"
     assert found[2]["power"] == pytest.approx(-0.945, abs=0.01)
@@ -81,7 +81,7 @@ def test_the_sensor_of_the_condition_comes_first() -> None:
 
 
 @pytest.mark.parametrize("mutation", [Mutation(NAMED, 1.2), Mutation(NAMED, 1000.0)])
-def test_powers_with_little_effect_or_extreme_values_are_left_out(mutation: Mutation) -> None:
+def test_exponents_with_little_effect_or_extreme_values_are_left_out(mutation: Mutation) -> None:
     assert list(following(order((1,), (6,), SPEED), Candidate((mutation,), FAST))) == []
 
 
@@ -93,7 +93,7 @@ def test_powers_with_little_effect_or_extreme_values_are_left_out(mutation: Muta
         Candidate((Mutation(operand(5, "True", True), value=False),), FAST),
     ],
 )
-def test_combinations_of_constants_zeros_and_booleans_do_not_follow_a_sensor(candidate: Candidate) -> None:
+def test_zeros_booleans_and_combinations_of_constants_do_not_follow_a_sensor(candidate: Candidate) -> None:
     assert list(following(order((1,), (6,), SPEED), candidate)) == []
 
 

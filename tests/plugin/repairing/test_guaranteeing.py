@@ -7,7 +7,9 @@ import pytest
 from tests.plugin.tank import ONLINE, RECORD, result
 
 
-def test_patch_page_and_result_state_bounds_of_the_repaired_program(tank: pytest.Pytester) -> None:
+def test_the_patch_the_page_and_the_result_state_the_bounds_of_the_repaired_program(
+    tank: pytest.Pytester,
+) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE, "--tarl-repair").stdout.fnmatch_lines(["*repaired: success at least*"])
     (patch,) = (tank.path / ".tarl" / "patches").glob("*.patch")

@@ -8,7 +8,7 @@ from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, furthest
 from tests.plugin.repairing.test_results import OTHER, WET, scaled
 
 
-def test_the_ledger_knows_which_values_were_examined_under_a_guard() -> None:
+def test_the_ledger_knows_which_values_were_examined_under_a_condition() -> None:
     ledger = Ledger()
     ledger.enter(Tried(scaled(2.0), "not shown", ()))
     ledger.enter(Tried(scaled(3.0, WET), "not shown", ()))

@@ -225,7 +225,7 @@ def test_the_search_is_still_waiting_after_a_candidate_is_accepted(early: Early)
     assert (early.spent, early.waiting) == (6, True)
 
 
-def test_the_pairs_are_recorded_once_and_given_to_the_changes(early: Early) -> None:
+def test_the_mission_pairs_are_recorded_once_and_passed_to_the_structural_changes(early: Early) -> None:
     other = Trials(lambda *_: Outcome(0.0, False), 1000)
     assert early.signs(other) is early.signs(early.trials)
     assert (other.spent, early.trials.spent) == (1, 0)
@@ -244,7 +244,7 @@ def test_effects_are_empty_until_changes_were_tried(early: Early) -> None:
     assert len(Fake.made) == 2  # the surest changes, and the others
 
 
-def test_changes_suggested_by_missions_use_the_pairs_of_the_early_search(early: Early) -> None:
+def test_changes_suggested_by_missions_reuse_the_mission_pairs_of_the_early_search(early: Early) -> None:
     found: Any = early.measured(["GAIN"])  # type: ignore[list-item]
     assert found == [("pair",), ["GAIN"]]
     assert early.trials.spent == 1

@@ -66,7 +66,7 @@ def guard(low: float, high: float, sensor: Sensor = X) -> Any:
     )
 
 
-def test_the_first_recorded_episodes_in_which_the_guard_holds_are_run_with_their_own_seeds() -> None:
+def test_the_first_recorded_episodes_in_which_the_condition_holds_are_run_with_their_own_seeds() -> None:
     mutants = Mutants([neighbour()])
     found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
     assert [seed for _, seed in mutants.ran] == [FIRST + 2 * n for n in range(3, 3 + EPISODES)]
@@ -77,13 +77,13 @@ def test_the_first_recorded_episodes_in_which_the_guard_holds_are_run_with_their
     )
 
 
-def test_only_episodes_in_which_the_guard_holds_are_run() -> None:
+def test_only_episodes_in_which_the_condition_holds_are_run() -> None:
     mutants = Mutants([neighbour(holding=range(38, 40))])
     assert beside(mutants, guard(7.0, 8.0)).episodes == 2  # type: ignore[arg-type]
     assert [seed for _, seed in mutants.ran] == [FIRST + 76, FIRST + 78]
 
 
-def test_nothing_runs_if_the_guard_never_holds_and_the_result_says_so() -> None:
+def test_no_episode_runs_if_the_condition_never_holds_and_the_result_says_so() -> None:
     mutants = Mutants([neighbour()])
     found = beside(mutants, guard(9.0, 10.0))  # type: ignore[arg-type]
     assert (mutants.ran, found.episodes, found.lost) == ([], 0, ())

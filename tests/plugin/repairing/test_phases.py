@@ -224,7 +224,7 @@ def test_a_structural_search_without_success_keeps_the_effects(monkeypatch: pyte
     assert (found.accepted, found.interrupted, found.structure, len(found.curves)) == (None, True, 1, 1)
 
 
-def test_structural_changes_are_tried_without_a_guard_and_under_the_first_guard() -> None:
+def test_structural_changes_are_tried_without_a_condition_and_under_the_first_condition() -> None:
     assert _chief((ALWAYS, WET)) == (ALWAYS,)
     assert _chief((WET, ALWAYS)) == (ALWAYS, WET)
 

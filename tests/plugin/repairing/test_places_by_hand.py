@@ -124,7 +124,7 @@ def test_a_change_that_earns_another_reward_at_the_definition_must_reach_the_goa
 
 @pytest.mark.parametrize("edit", ["auto", "definition"])
 @pytest.mark.parametrize("bad", [10, 11, 12])
-def test_a_change_that_fails_at_the_definition_stays_at_its_use_with_a_note(
+def test_if_a_change_fails_at_the_definition_it_stays_at_the_use_and_a_note_is_added(
     tmp_path: Path, bad: int, edit: str
 ) -> None:
     # on the other seeds, the change earns the same at both places
@@ -177,7 +177,7 @@ def test_a_change_that_cannot_be_written_at_the_definition_stays_at_its_use(tmp_
     assert of(candidate, trials) == candidate  # type: ignore[arg-type]
 
 
-def test_guarded_changes_and_changes_at_the_use_are_not_moved(tmp_path: Path) -> None:
+def test_conditional_changes_and_changes_that_must_stay_at_the_use_are_not_moved(tmp_path: Path) -> None:
     sensor = Sensor("x", topic="/x", field="data", low=0, high=1, bins=2)
     trials = Scripted(lambda moved, seed: 9.5)
     of = placing(tmp_path)

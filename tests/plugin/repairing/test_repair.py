@@ -297,7 +297,7 @@ def test_the_flag_localize_accepts_its_values_and_requires_the_flag_repair(tank:
         'Sensor("thick", expr="thick")',
     ],
 )
-def test_a_guard_reads_the_variable_that_a_sensor_names(tank: pytest.Pytester, sensor: str) -> None:
+def test_a_condition_reads_the_variable_that_a_sensor_names(tank: pytest.Pytester, sensor: str) -> None:
     heard = "def on_viscosity(msg):\n    global thick\n    thick = int(msg.data > 2)\n\n\ndef main():\n"
     changed(tank, "keeper", "level = None\n", "level = None\nthick = 0\n")
     changed(tank, "keeper", "def main():\n", heard)

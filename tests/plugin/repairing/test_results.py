@@ -545,7 +545,7 @@ def test_a_step_on_a_logarithmic_scale_is_reported_as_a_factor() -> None:
     assert factor(step) == pytest.approx(2.0, rel=0.01)
 
 
-def test_a_partial_gain_is_paired_by_seed_and_alpha_is_divided_among_its_bounds(
+def test_the_episodes_for_a_partial_gain_are_paired_by_seed_and_the_bounds_share_alpha(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(partial, "EPISODES", 4)

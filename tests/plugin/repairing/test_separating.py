@@ -14,7 +14,7 @@ DESIGNED = np.array([0.02, 0.05, 0.08, 0.03, 6.0])  # errors of a position, and 
 SLIPPED = np.array([0.02, 1.1, 1.15, 1.1, 4.9])
 
 
-def test_a_gate_moves_between_the_slip_and_the_outliers() -> None:
+def test_a_threshold_moves_between_the_values_with_slip_and_the_outliers() -> None:
     by = separating(0.5, [(DESIGNED, SLIPPED)])
     assert by is not None
     assert 0.5 * by == pytest.approx(np.sqrt(1.15 * 4.9))

@@ -373,7 +373,7 @@ def test_a_parameter_on_a_grid_takes_only_its_multiples(
 
 
 @pytest.mark.parametrize(("grid", "expected"), [(0.5, 0.94), (1.0, 1.0)])
-def test_a_power_that_nearly_earns_enough_is_moved_in_hundredths_and_a_count_is_not(
+def test_an_exponent_that_nearly_earns_enough_is_moved_in_hundredths_but_a_count_is_not(
     tmp_path: Path, grid: float, expected: float
 ) -> None:
     of = structures(order_of(tmp_path))
@@ -410,7 +410,7 @@ def test_a_step_is_weaker_if_it_reduces_the_effect_of_the_change(
     assert of.weaker(operand(1, "x", 2.0), factor) is weaker
 
 
-def test_the_fixed_parameters_of_the_same_change_are_given(tmp_path: Path) -> None:
+def test_a_parameter_is_listed_with_the_fixed_parameters_of_the_same_change(tmp_path: Path) -> None:
     of = structures(order_of(tmp_path))
     free, fixed = Parameter("k", 2.0), Parameter("base", 3.0, of="designed")
     made, other = template("made", parameters=(free, fixed)), template("other", parameters=(free, fixed))

@@ -78,7 +78,7 @@ def visited(*bins: tuple[int, float]) -> Any:
     return SimpleNamespace(cells=[(place,) for place, _ in bins], chain=chain)
 
 
-def test_the_size_of_a_change_is_compared_with_the_mean_over_the_steps_where_it_holds() -> None:
+def test_the_size_of_a_change_is_compared_with_the_sensor_mean_where_the_condition_holds() -> None:
     asked = order(0, 3)
     # 0.35 for 30 steps and 0.75 for 10 steps; the condition does not hold in the other bins
     asked.online.recorded.sample = visited((3, 30.0), (7, 10.0), (0, 500.0), (2, 100.0), (10, 70.0))

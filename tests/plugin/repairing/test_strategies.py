@@ -146,7 +146,7 @@ def test_a_sweep_gets_the_set_aside_operands_and_whether_structural_changes_foll
     assert {*found.given[0], *found.named["late"]} == {*operands(order)}
 
 
-def test_each_search_gets_its_guards(monkeypatch: pytest.MonkeyPatch, order: Any) -> None:
+def test_each_search_gets_the_conditions_that_it_can_use(monkeypatch: pytest.MonkeyPatch, order: Any) -> None:
     halving = made(monkeypatch, order, "halving", WET, DARK)
     assert halving.given[:3] == (operands(order), "mutate", (WET, DARK))
     learning = made(monkeypatch, order, "epsilon-greedy", WET, DARK)

@@ -120,7 +120,7 @@ def test_the_page_contains_the_patch_and_the_command_that_applies_it(shuttle):
     assert "tarl apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch" in text
 
 
-def test_a_constant_that_follows_a_sensor_is_not_shown_with_the_power_as_its_value(shuttle):
+def test_a_constant_scaled_by_a_sensor_is_not_shown_with_the_exponent_as_its_value(shuttle):
     law = OperandEffect("KP", 4.0, -1.7, 2.5, what="KP follows light")
     culprits = (replace(shuttle.culprits[0], operands=(law,)), *shuttle.culprits[1:])
     text = Page(render(replace(shuttle, culprits=culprits))).text

@@ -122,7 +122,7 @@ def test_absolute_paths_are_shown_relative_to_the_root(varied, shuttle):
     assert "1. src/a.py:3  x = 1  (no operand helps)" in told(varied(culprits=(culprit,)))
 
 
-def test_a_constant_that_follows_a_sensor_is_not_shown_with_the_power_as_its_value(varied, shuttle):
+def test_a_constant_scaled_by_a_sensor_is_not_shown_with_the_exponent_as_its_value(varied, shuttle):
     law = OperandEffect("KP", 4.0, -1.7, 2.5, what="KP follows light")
     text = told(varied(culprits=(replace(shuttle.culprits[0], operands=(law,)),)))
     assert "(KP follows light: +2.50)" in text

@@ -143,7 +143,7 @@ def test_without_the_resume_flag_a_message_mentions_the_kept_episodes(stopping: 
     assert kept(stopping) == []
 
 
-def test_without_kept_episodes_all_are_run(stopping: pytest.Pytester) -> None:
+def test_without_kept_episodes_every_episode_is_run(stopping: pytest.Pytester) -> None:
     found = stopping.runpytest(*RECORD, RESUME)
     found.assert_outcomes(passed=1, deselected=1)
     found.stdout.fnmatch_lines(["*no episodes are kept, so all of them are run."])

@@ -74,7 +74,7 @@ CLIENT = """
     ],
     ids=["succeeds", "is refused", "is cancelled"],
 )
-def test_goal_travels_between_nodes_with_feedback_and_result(
+def test_a_goal_travels_between_nodes_with_feedback_and_result(
     start: Start, order: int, log: list[object]
 ) -> None:
     ros = start(SERVER)
@@ -83,14 +83,14 @@ def test_goal_travels_between_nodes_with_feedback_and_result(
     assert ros.namespace["log"] == log
 
 
-def test_goal_without_a_final_state_is_aborted(start: Start) -> None:
+def test_a_goal_without_a_final_state_is_aborted(start: Start) -> None:
     ros = start(SERVER)
     start(CLIENT.replace("ORDER", "10"), ros=ros)
     ros.step(9.0)
     assert ros.namespace["log"][-1][0] == 6
 
 
-def test_client_can_wait_for_a_goal_while_another_thread_spins(start: Start) -> None:
+def test_a_client_can_wait_for_a_goal_while_another_thread_spins(start: Start) -> None:
     ros = start(SERVER)
     start(
         """
@@ -163,7 +163,7 @@ LIFECYCLE = """
 """
 
 
-def test_lifecycle_node_publishes_only_while_it_is_active(start: Start) -> None:
+def test_a_lifecycle_node_publishes_only_while_it_is_active(start: Start) -> None:
     change = message_type("lifecycle_msgs/srv/ChangeState")
     ros = start(LIFECYCLE)
     pictures, events = heard(ros, "/image"), heard(ros, "/camera/transition_event")
@@ -186,7 +186,7 @@ def test_lifecycle_node_publishes_only_while_it_is_active(start: Start) -> None:
     assert [event.goal_state.label for event in events[-2:]] == ["deactivating", "inactive"]
 
 
-def test_failing_transition_goes_through_error_processing(start: Start) -> None:
+def test_a_failing_transition_goes_through_error_processing(start: Start) -> None:
     change, state = (message_type(f"lifecycle_msgs/srv/{name}") for name in ("ChangeState", "GetState"))
     ros = start(LIFECYCLE)
     for number, success in ((1, True), (2, False), (4, False)):
@@ -244,7 +244,7 @@ def test_actionlib_goals_succeed_and_are_preempted(start: Start) -> None:
     ]  # fmt: skip
 
 
-def test_world_serves_an_actionlib_action_through_its_topics(start: Start) -> None:
+def test_the_world_serves_an_actionlib_action_through_its_topics(start: Start) -> None:
     ros = start("pass")
     result = message_type("move_base_msgs/MoveBaseActionResult")
 
@@ -273,7 +273,7 @@ def test_world_serves_an_actionlib_action_through_its_topics(start: Start) -> No
     assert (ros.namespace["ready"], ros.namespace["done"]) == (True, [3])
 
 
-def test_exception_in_an_execute_callback_aborts_the_goal(
+def test_an_exception_in_an_execute_callback_aborts_the_goal(
     start: Start, caplog: pytest.LogCaptureFixture
 ) -> None:
     ros = start("""
@@ -293,7 +293,7 @@ def test_exception_in_an_execute_callback_aborts_the_goal(
     assert "Exception in your execute callback: no" in caplog.text
 
 
-def test_error_on_an_unknown_service_lists_available_services(start: Start) -> None:
+def test_the_error_about_an_unknown_service_lists_the_available_services(start: Start) -> None:
     ros = start(LIFECYCLE)
     with pytest.raises(
         Exception, match=r"No node serves /camera/stop now; available services: /camera/change_state"
@@ -301,7 +301,7 @@ def test_error_on_an_unknown_service_lists_available_services(start: Start) -> N
         ros.bus.call("/camera/stop", message_type("std_srvs/srv/Trigger").Request())
 
 
-def test_world_answers_a_rospy_node(start: Start) -> None:
+def test_the_world_answers_a_rospy_node(start: Start) -> None:
     trigger = message_type("std_srvs/srv/Trigger")
     ros = start("pass")
     ros.bus.serve("/dock", trigger, lambda request: trigger.Response(success=True, message="docked"))
@@ -318,7 +318,7 @@ def test_world_answers_a_rospy_node(start: Start) -> None:
     assert ros.namespace["said"] == "docked"
 
 
-def test_rclpy_node_calls_a_service_of_the_world(start: Start) -> None:
+def test_an_rclpy_node_calls_a_service_of_the_world(start: Start) -> None:
     trigger = message_type("std_srvs/srv/Trigger")
     ros = start("pass")
     ros.bus.serve("/dock", trigger, lambda request: trigger.Response(success=True, message="docked"))
@@ -337,7 +337,7 @@ def test_rclpy_node_calls_a_service_of_the_world(start: Start) -> None:
     assert ros.namespace["said"] == "docked"
 
 
-def test_failing_service_handler_fails_the_call_and_not_the_server(start: Start) -> None:
+def test_a_failing_service_handler_fails_the_call_but_not_the_server(start: Start) -> None:
     ros = start("""
         import rospy
         from std_srvs.srv import SetBool
@@ -355,7 +355,7 @@ def test_failing_service_handler_fails_the_call_and_not_the_server(start: Start)
     assert ros.alive
 
 
-def test_rclpy_service_that_returns_no_response_ends_its_node(start: Start) -> None:
+def test_an_rclpy_service_that_returns_no_response_ends_its_node(start: Start) -> None:
     ros = start("""
         import rclpy
         from std_srvs.srv import Trigger

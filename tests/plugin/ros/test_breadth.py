@@ -125,7 +125,7 @@ def drive(ros: Ros, steps: int) -> list[float]:
     return path
 
 
-def test_waypoint_follower_sends_one_goal_after_another(start: Start) -> None:
+def test_a_waypoint_follower_sends_one_goal_after_another(start: Start) -> None:
     ros = start(NAVIGATOR)
     start(WAYPOINTS, ros=ros)
     path = drive(ros, 120)
@@ -187,7 +187,7 @@ MODES = """
 """
 
 
-def test_mode_switch_follows_service_calls(start: Start) -> None:
+def test_a_mode_switch_follows_service_calls(start: Start) -> None:
     ros = start(MODES, parameters={"/modes/limit": 1.0})
     enable, status = message_type("std_srvs/SetBool"), message_type("std_srvs/Trigger")
     scan = message_type("sensor_msgs/LaserScan")
@@ -254,7 +254,7 @@ TF_FOLLOWER = """
 """
 
 
-def test_follower_reaches_its_leader(start: Start) -> None:
+def test_a_follower_reaches_its_leader(start: Start) -> None:
     ros = start(TF_FOLLOWER)
     made: Any = message_type("geometry_msgs/msg/TransformStamped")()
     made.header.frame_id, made.child_frame_id = "odom", "leader"
@@ -369,7 +369,7 @@ def test_reentrant_groups_run_callbacks_concurrently_and_exclusive_groups_do_not
     assert ros.namespace["running"] == [0]
 
 
-def test_custom_callback_group_decides_when_a_callback_runs(start: Start) -> None:
+def test_a_custom_callback_group_decides_when_a_callback_runs(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.callback_groups import CallbackGroup

@@ -38,7 +38,7 @@ def test_cv_bridge_converts_images_to_arrays_and_between_encodings() -> None:
         bridge.imgmsg_to_cv2(picture("32FC1", depth), "bgr8")
 
 
-def test_node_publishes_arrays_as_images(start: Start) -> None:
+def test_a_node_publishes_arrays_as_images(start: Start) -> None:
     ros = start("""
         import numpy as np
         import rclpy
@@ -101,7 +101,7 @@ def test_numpy_msg_delivers_numpy_arrays(start: Start) -> None:
     assert tuple(ros.bus.latest("/out").data) == (1.0, 0.5)
 
 
-def test_cache_keeps_the_last_messages_ordered_by_stamp(start: Start) -> None:
+def test_the_cache_keeps_the_last_messages_ordered_by_stamp(start: Start) -> None:
     ros = start("""
         import message_filters, rospy
         from geometry_msgs.msg import PointStamped
@@ -198,7 +198,7 @@ def test_types_and_folders_of_workspace_packages_are_found(
     workspace.forget()
 
 
-def test_subscribe_listener_is_called_for_new_subscribers(start: Start) -> None:
+def test_a_subscribe_listener_is_called_for_new_subscribers(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -224,7 +224,7 @@ def test_subscribe_listener_is_called_for_new_subscribers(start: Start) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="select works on sockets only")
-def test_node_that_polls_its_keyboard_waits_in_virtual_time(start: Start) -> None:
+def test_a_node_that_polls_its_keyboard_waits_in_virtual_time(start: Start) -> None:
     reading, writing = os.pipe()
     ros = start(f"""
         import os, select

@@ -49,7 +49,7 @@ def test_moveit_types_have_their_constants() -> None:
     assert scene().operation == scene.ADD == b"\x00"
 
 
-def test_sound_client_publishes_requests(start: Start) -> None:
+def test_a_sound_client_publishes_requests(start: Start) -> None:
     ros = start("""
         import rospy
         from sound_play.libsoundplay import SoundClient
@@ -70,7 +70,7 @@ def test_sound_client_publishes_requests(start: Start) -> None:
     ]  # fmt: skip
 
 
-def test_blocking_sound_client_waits_for_its_server(start: Start) -> None:
+def test_a_blocking_sound_client_waits_for_its_server(start: Start) -> None:
     ros = start("""
         import actionlib, rospy
         from sound_play.msg import SoundRequestAction, SoundRequestResult

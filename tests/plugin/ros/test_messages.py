@@ -82,7 +82,7 @@ def test_parts_of_services_of_ros_1_can_be_copied(part: str) -> None:
     assert pickle.loads(pickle.dumps(made)) == made == copy.deepcopy(made)
 
 
-def test_ros1_constructor_takes_all_fields_by_position_or_some_by_keyword() -> None:
+def test_a_ros1_constructor_takes_all_fields_by_position_or_some_fields_by_keyword() -> None:
     vector = message_type("geometry_msgs/Vector3")
     assert vector(1.0, 2.0, 3.0) == vector(x=1.0, y=2.0, z=3.0)
     assert vector(y=2.0).x == 0.0
@@ -110,12 +110,12 @@ def test_ros1_messages_have_the_checksums_of_real_messages(name: str, checksum: 
     assert find_class("ros1", *name.split("/"))._md5sum == checksum  # type: ignore[union-attr]
 
 
-def test_ros1_message_is_printed_as_by_rostopic() -> None:
+def test_a_ros1_message_is_printed_as_by_rostopic() -> None:
     header = message_type("std_msgs/Header")(frame_id="map")
     assert str(header) == 'seq: 0\nstamp: \n  secs: 0\n  nsecs:         0\nframe_id: "map"'
 
 
-def test_ros2_constructor_takes_keywords_only_and_checks_types() -> None:
+def test_a_ros2_constructor_takes_only_keywords_and_checks_types() -> None:
     vector = message_type("geometry_msgs/msg/Vector3")
     assert repr(vector(y=2.0)) == "geometry_msgs.msg.Vector3(x=0.0, y=2.0, z=0.0)"
     with pytest.raises(TypeError):
@@ -194,7 +194,7 @@ def test_float32_fields_are_rounded(single: float, double: float) -> None:
     st.integers(0, 2**31 - 1),
     st.text(max_size=5),
 )
-def test_translation_between_ros1_and_ros2_messages_and_back_changes_nothing(
+def test_translating_a_message_between_ros1_and_ros2_and_back_changes_nothing(
     ranges: list[float], seconds: int, frame: str
 ) -> None:
     old, new = message_type("sensor_msgs/LaserScan"), message_type("sensor_msgs/msg/LaserScan")
@@ -270,7 +270,7 @@ def test_classes_of_an_installed_ros_are_used(tmp_path: Path, monkeypatch: pytes
     assert message_type("shop_msgs/Price").__module__ == "shop_msgs.msg._Price"
 
 
-def test_error_on_missing_rosbags_names_the_install_command(tmp_path: Path) -> None:
+def test_the_error_about_missing_rosbags_names_the_install_command(tmp_path: Path) -> None:
     program = """
 import sys
 sys.modules["rosbags"] = None

@@ -29,7 +29,7 @@ def camera(kind: str = "sensor_msgs/CameraInfo", tx: float = 0.0) -> object:
 
 
 @pytest.mark.parametrize("kind", ["sensor_msgs/CameraInfo", "sensor_msgs/msg/CameraInfo"])
-def test_camera_projects_points_and_back(kind: str) -> None:
+def test_a_camera_model_projects_points_to_pixels_and_back(kind: str) -> None:
     model = PinholeCameraModel()
     model.fromCameraInfo(camera(kind))
     assert model.project3dToPixel((0.5, -0.25, 2.0)) == pytest.approx((57.0, 9.0))
@@ -42,7 +42,7 @@ def test_camera_projects_points_and_back(kind: str) -> None:
     assert model.distortionCoeffs() is None
 
 
-def test_camera_model_respects_binning_and_region_of_interest() -> None:
+def test_a_camera_model_respects_binning_and_the_region_of_interest() -> None:
     info = camera()
     info.binning_x = info.binning_y = 2  # type: ignore[attr-defined]
     info.roi.x_offset, info.roi.width, info.roi.height = 8, 32, 48  # type: ignore[attr-defined]
@@ -52,7 +52,7 @@ def test_camera_model_respects_binning_and_region_of_interest() -> None:
     assert model.fullIntrinsicMatrix()[0, 0] == 100.0
 
 
-def test_stereo_camera_computes_depth() -> None:
+def test_a_stereo_camera_computes_depth() -> None:
     model = StereoCameraModel()
     model.fromCameraInfo(camera(), camera(tx=-20.0))
     (u, v), (u_right, _) = model.project3dToPixel((0.5, -0.25, 2.0))
@@ -139,7 +139,7 @@ def test_parts_of_a_message_package_need_no_explicit_import(start: Start) -> Non
     assert (ros.namespace["found"], ros.namespace["missing"]) == ("a", False)
 
 
-def test_lazy_transport_subscribes_because_the_world_is_a_subscriber(start: Start) -> None:
+def test_a_lazy_transport_subscribes_because_the_world_is_a_subscriber(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import Float64

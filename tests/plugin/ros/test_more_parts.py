@@ -356,7 +356,7 @@ PARAMETERS = """
 """
 
 
-def test_parameter_services_executors_and_timers_of_a_node(start: Start) -> None:
+def test_a_node_has_parameter_services_executors_and_timers(start: Start) -> None:
     import pytest_tarl.ros.rclpy.parameter_services as module
 
     (name,) = [one for one, kind in vars(module).items() if hasattr(kind, "set_parameters_atomically")]

@@ -24,7 +24,7 @@ def test_names_are_relative_global_or_private(name: str, resolved: str) -> None:
 
 @pytest.mark.parametrize("old", ["odom", "/robot/odom"])
 @pytest.mark.parametrize("new", ["pose", "/robot/pose"])
-def test_remapping_applies_to_the_resolved_name(old: str, new: str) -> None:
+def test_a_remapping_applies_to_the_resolved_name(old: str, new: str) -> None:
     assert resolve("odom", "/robot/node", {old: new}) == "/robot/pose"
     assert resolve("/robot/odom", "/robot/node", {old: new}) == "/robot/pose"
     assert resolve("other", "/robot/node", {old: new}) == "/robot/other"
@@ -34,7 +34,7 @@ def test_absolute_names_have_single_slashes() -> None:
     assert [absolute(name) for name in ("odom", "/odom/", "//a//b", "/")] == ["/odom", "/odom", "/a/b", "/"]
 
 
-def test_ros1_command_line_is_parsed() -> None:
+def test_the_ros1_command_line_is_parsed() -> None:
     line = parse_ros1(
         ["file.bag", "a:=b", "_gain:=2.5", "__name:=n", "__ns:=/r", "_on:=true", "_list:=[1, 2]"]
     )
@@ -43,7 +43,7 @@ def test_ros1_command_line_is_parsed() -> None:
     assert (line.name, line.namespace, line.rest) == ("n", "/r", ("file.bag",))
 
 
-def test_ros2_command_line_is_parsed() -> None:
+def test_the_ros2_command_line_is_parsed() -> None:
     line = parse_ros2(["x", "--ros-args", "-r", "a:=b", "-p", "gain:=2", "-r", "__node:=n", "--", "y", "-r"])
     assert (line.remappings, line.parameters, line.name) == ({"a": "b"}, {"gain": 2}, "n")
     assert line.rest == ("x", "y", "-r")

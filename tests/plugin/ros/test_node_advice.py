@@ -170,7 +170,7 @@ def test_variables_of_the_failing_function_are_not_compared_by_their_own_code(
         start(code)
 
 
-def test_a_variable_equal_to_the_arguments_is_advised_on(start: Start) -> None:
+def test_the_advice_on_arguments_covers_a_variable_that_equals_the_arguments(start: Start) -> None:
     with pytest.raises(NodeError, match="The node reads its command line"):
         start("import sys\n\n\ndef run(given):\n    return given[7]\n\n\nrun(list(sys.argv))\n")
 

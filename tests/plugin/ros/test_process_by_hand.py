@@ -60,7 +60,9 @@ def test_a_process_goes_on_while_its_main_program_waits_and_other_tasks_end(netw
     assert process.ended
 
 
-def test_hooks_are_called_before_tasks_are_woken_and_the_rest_is_killed(network: Network) -> None:
+def test_hooks_run_before_tasks_are_woken_and_the_remaining_tasks_are_killed_afterwards(
+    network: Network,
+) -> None:
     trail: list[str] = []
 
     def stubborn() -> None:

@@ -86,7 +86,7 @@ def test_a_sound_is_played_repeated_and_stopped(make: Any, sent: tuple[Any, ...]
 @pytest.mark.parametrize(("volume", "sent"), [(0.5, 0.5), (1.5, 1.0), (-1.0, 0.0)])
 @pytest.mark.parametrize("blocking", [False, True])
 @pytest.mark.parametrize("served", [True, False])
-def test_a_blocking_request_is_a_goal_and_any_other_a_message(
+def test_a_blocking_request_is_sent_as_a_goal_and_any_other_request_as_a_message(
     volume: float, sent: float, blocking: bool, served: bool
 ) -> None:
     client = SoundClient.__new__(SoundClient)
@@ -242,7 +242,7 @@ def test_a_lifecycle_node_goes_through_its_states_and_publishes_only_while_activ
 # event callbacks of rclpy
 
 
-def test_event_callbacks_are_kept_by_name_and_unknown_ones_are_refused() -> None:
+def test_event_callbacks_are_kept_by_name_and_unknown_event_callbacks_are_refused() -> None:
     def late() -> None:
         pass
 

@@ -50,7 +50,7 @@ FOLLOWER = """
 """
 
 
-def test_class_node_with_timer_uses_received_messages(start: Start) -> None:
+def test_a_node_class_with_a_timer_uses_received_messages(start: Start) -> None:
     ros = start(FOLLOWER, parameters={"follower": {"speed": 0.7}})
     commands = heard(ros, "/cmd_vel")
     ros.bus.publish("light", Float64(data=0.75))
@@ -59,7 +59,7 @@ def test_class_node_with_timer_uses_received_messages(start: Start) -> None:
     assert (ros.subscribed, dict(ros.published)) == ({"/light"}, {"/cmd_vel": 2})
 
 
-def test_end_of_an_episode_ends_spin_like_an_external_shutdown(start: Start) -> None:
+def test_the_end_of_an_episode_ends_spin_like_an_external_shutdown(start: Start) -> None:
     ros = start(FOLLOWER)
     ros.close()
     assert ros.namespace["ended"] == ["external", False]
@@ -94,7 +94,7 @@ def test_spin_once_handles_one_message_and_the_queue_respects_its_depth(start: S
     assert ros.namespace["counts"] == [2, (2, 1_500_000_000)]
 
 
-def test_late_timer_skips_missed_periods(start: Start) -> None:
+def test_a_late_timer_skips_missed_periods(start: Start) -> None:
     ros = start("""
         import time
         import rclpy
@@ -112,7 +112,7 @@ def test_late_timer_skips_missed_periods(start: Start) -> None:
     assert ros.namespace["calls"] == [0.1, 0.2, 0.55, 0.6, 0.7, 0.8]
 
 
-def test_integer_in_a_float_field_fails_as_in_ros(start: Start) -> None:
+def test_an_integer_in_a_float_field_fails_as_in_ros(start: Start) -> None:
     with pytest.raises(NodeError, match="AssertionError: The 'x' field must be of type 'float'"):
         start("""
             from geometry_msgs.msg import Twist
@@ -149,7 +149,7 @@ def test_a_declared_parameter_keeps_its_type_and_is_checked_by_the_callback(star
     assert ros.namespace["seen"] == [2.0, "b", [0.0, 1.0], "undeclared", True, False, False, 3.0]
 
 
-def test_override_of_another_type_is_refused_as_in_ros(start: Start) -> None:
+def test_an_override_of_another_type_is_refused_as_in_ros(start: Start) -> None:
     with pytest.raises(NodeError, match=r"InvalidParameterTypeException.*'gain'.*expecting type 'DOUBLE'"):
         start(
             """
@@ -176,7 +176,7 @@ def test_names_are_resolved_with_namespace_private_and_remapped(start: Start) ->
     assert sorted(ros.published) == ["/b", "/new", "/robot/a", "/robot/n/c"]
 
 
-def test_service_is_called_with_a_future_across_nodes(start: Start) -> None:
+def test_a_service_is_called_with_a_future_across_nodes(start: Start) -> None:
     ros = start("""
         import rclpy
         from example_interfaces.srv import AddTwoInts
@@ -232,7 +232,7 @@ def test_coroutine_callbacks_await_futures(start: Start) -> None:
     assert ros.namespace["log"] == ["yes"]
 
 
-def test_coroutine_that_awaits_a_response_in_its_own_exclusive_group_deadlocks(start: Start) -> None:
+def test_a_coroutine_that_awaits_a_response_in_its_own_exclusive_group_deadlocks(start: Start) -> None:
     ros = start("""
         import rclpy
         from std_srvs.srv import Trigger
@@ -253,7 +253,7 @@ def test_coroutine_that_awaits_a_response_in_its_own_exclusive_group_deadlocks(s
     assert ros.namespace["log"] == ["asked"]
 
 
-def test_multi_threaded_executor_continues_while_a_callback_waits(start: Start) -> None:
+def test_a_multi_threaded_executor_continues_while_a_callback_waits(start: Start) -> None:
     ros = start("""
         import time
         import rclpy
@@ -301,7 +301,7 @@ def test_spin_works_in_a_thread_beside_a_rate_in_the_main_program(start: Start) 
     assert ros.shutdown_errors == ()
 
 
-def test_custom_context_is_the_context_of_the_program(start: Start) -> None:
+def test_a_custom_context_is_the_context_of_the_program(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
@@ -412,7 +412,7 @@ def test_time_and_duration_support_arithmetic_and_conversion(start: Start) -> No
     ]  # fmt: skip
 
 
-def test_exception_in_a_callback_ends_the_node_and_is_reported(start: Start) -> None:
+def test_an_exception_in_a_callback_ends_the_node_and_is_reported(start: Start) -> None:
     ros = start(FOLLOWER.replace("self.error = msg.data - 0.5", "self.error = msg.dat - 0.5"))
     with pytest.raises(
         NodeError, match=r"'/follower' raised AttributeError.*node\.py, line \d+, in on_light"
@@ -460,7 +460,7 @@ def test_errors_name_missing_apis(start: Start) -> None:
             start(line)
 
 
-def test_world_can_publish_the_ros1_class_of_the_same_type(start: Start) -> None:
+def test_the_world_can_publish_the_ros1_class_of_the_same_type(start: Start) -> None:
     ros = start("""
         import rclpy
         from sensor_msgs.msg import LaserScan
@@ -496,7 +496,7 @@ def test_logging_uses_python_and_respects_once_and_throttle(
     assert {record.name for record in caplog.records} == {"rclpy.talker"}
 
 
-def test_introspection_and_overrides_of_services_and_topics_have_rclpys_names(start: Start) -> None:
+def test_introspection_and_overrides_of_services_and_topics_have_the_names_of_rclpy(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.qos_overriding_options import QosCallbackResult, QoSOverridingOptions

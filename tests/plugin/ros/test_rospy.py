@@ -48,7 +48,7 @@ def drive(ros: Ros, steps: int) -> list[float]:
     return path
 
 
-def test_script_node_shuttles_between_its_goals(start: Start) -> None:
+def test_a_script_node_shuttles_between_its_goals(start: Start) -> None:
     path = drive(start(TRAVELLER), 120)
     there = next(step for step, position in enumerate(path) if position > 9.5)
     assert min(path[there:]) < 0.5
@@ -67,7 +67,7 @@ def test_topics_are_counted_under_absolute_names(start: Start) -> None:
     assert ros.alive
 
 
-def test_class_node_with_timer_keeps_state_between_callbacks(start: Start) -> None:
+def test_a_node_class_with_a_timer_keeps_its_state_between_callbacks(start: Start) -> None:
     ros = start(
         """
         import rospy
@@ -227,7 +227,7 @@ def test_wait_for_message_returns_the_next_message_or_times_out(start: Start) ->
     assert "timeout exceeded while waiting for message on topic /word" in ros.namespace["late"][1]
 
 
-def test_sleeping_callback_does_not_block_the_test_and_later_messages_queue(start: Start) -> None:
+def test_a_sleeping_callback_does_not_block_the_test_and_later_messages_wait_in_a_queue(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String

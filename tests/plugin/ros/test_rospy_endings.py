@@ -11,7 +11,7 @@ from tests.plugin.ros.conftest import Start
 String = message_type("std_msgs/String")
 
 
-def test_end_of_an_episode_runs_hooks_and_interrupts_waits(start: Start) -> None:
+def test_the_end_of_an_episode_runs_hooks_and_interrupts_waits(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -38,7 +38,7 @@ def test_end_of_an_episode_runs_hooks_and_interrupts_waits(start: Start) -> None
     assert ros.shutdown_errors == ()
 
 
-def test_node_that_refuses_to_end_is_killed(start: Start) -> None:
+def test_a_node_that_refuses_to_end_is_killed(start: Start) -> None:
     ros = start("""
         import rospy
         rospy.init_node("stubborn")
@@ -53,7 +53,7 @@ def test_node_that_refuses_to_end_is_killed(start: Start) -> None:
     assert not ros.alive
 
 
-def test_node_that_never_waits_at_shutdown_is_reported_and_the_others_end(start: Start) -> None:
+def test_a_node_that_never_waits_at_shutdown_is_reported_and_the_other_nodes_end(start: Start) -> None:
     ros = start(
         """
         import rospy
@@ -71,7 +71,7 @@ def test_node_that_never_waits_at_shutdown_is_reported_and_the_others_end(start:
     assert not ros.alive
 
 
-def test_main_program_that_returns_ends_its_node_and_its_callbacks(start: Start) -> None:
+def test_a_main_program_that_returns_ends_its_node_and_the_callbacks_of_the_node(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -87,7 +87,7 @@ def test_main_program_that_returns_ends_its_node_and_its_callbacks(start: Start)
     assert not ros.alive
 
 
-def test_exception_of_a_node_names_node_exception_and_line(start: Start) -> None:
+def test_the_report_of_an_exception_names_the_node_the_exception_and_the_line(start: Start) -> None:
     ros = start("""
         import rospy
         rospy.init_node("faulty")
@@ -104,7 +104,7 @@ def test_exception_of_a_node_names_node_exception_and_line(start: Start) -> None
     assert ros.now == 1.0
 
 
-def test_exception_in_a_callback_is_raised_where_the_test_publishes(start: Start) -> None:
+def test_an_exception_in_a_callback_is_raised_where_the_test_publishes(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -116,13 +116,13 @@ def test_exception_in_a_callback_is_raised_where_the_test_publishes(start: Start
         ros.bus.publish("word", String("x"))
 
 
-def test_nonzero_exit_status_of_a_node_is_reported(start: Start) -> None:
+def test_a_nonzero_exit_status_of_a_node_is_reported(start: Start) -> None:
     start("import sys; sys.exit(0)")
     with pytest.raises(NodeError, match="exited with status 3"):
         start("import sys; sys.exit(3)")
 
 
-def test_node_that_never_waits_is_stopped_with_the_line(start: Start) -> None:
+def test_a_node_that_never_waits_is_stopped_and_its_line_is_reported(start: Start) -> None:
     with pytest.raises(NodeError, match=r"'/busy' never waits.*node\.py, line \d+, in look") as caught:
         start(
             """
@@ -169,7 +169,7 @@ def test_publishing_another_type_from_the_world_is_an_error(start: Start) -> Non
         ros.bus.publish("x", 5.0)
 
 
-def test_error_in_a_world_callback_is_raised_in_the_test_not_in_the_node(start: Start) -> None:
+def test_an_error_in_a_world_callback_is_raised_in_the_test_and_not_in_the_node(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String

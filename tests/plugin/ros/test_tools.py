@@ -20,7 +20,7 @@ TALKER = """
 """
 
 
-def test_master_lists_publishers_subscribers_and_services(start: Start) -> None:
+def test_the_master_lists_publishers_subscribers_and_services(start: Start) -> None:
     ros = start(TALKER)
     start(
         """
@@ -89,7 +89,7 @@ def test_nodes_topics_and_services_are_found_by_name(start: Start) -> None:
     assert told["left"] == ["/asker"]
 
 
-def test_blocking_topic_query_waits_for_a_publisher(start: Start) -> None:
+def test_a_blocking_topic_query_waits_for_a_publisher(start: Start) -> None:
     ros = start("""
         import rospy, rostopic
         rospy.init_node("asker")
@@ -131,7 +131,7 @@ def test_parameters_are_read_from_files(start: Start, tmp_path: object) -> None:
     assert told["said"][2].startswith("Invalid YAML in file [broken.yaml]")
 
 
-def test_buffer_server_answers_lookups_of_other_nodes(start: Start) -> None:
+def test_a_buffer_server_answers_lookups_of_other_nodes(start: Start) -> None:
     ros = start("""
         import rospy, tf2_ros
         from geometry_msgs.msg import TransformStamped

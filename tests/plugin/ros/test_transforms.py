@@ -30,7 +30,7 @@ def test_angles_of_a_rotation_give_the_same_rotation(
 
 
 @given(angles, angles, angles)
-def test_quaternion_survives_conversion_to_a_matrix(roll: float, pitch: float, yaw: float) -> None:
+def test_a_quaternion_survives_conversion_to_a_matrix(roll: float, pitch: float, yaw: float) -> None:
     quaternion = transformations.quaternion_from_euler(roll, pitch, yaw)
     found = transformations.quaternion_from_matrix(transformations.quaternion_matrix(quaternion))
     assert np.allclose(found, quaternion, atol=1e-9) or np.allclose(found, -quaternion, atol=1e-9)
@@ -50,7 +50,7 @@ def test_moving_axes_equal_fixed_axes_in_the_opposite_order() -> None:
 
 
 @given(angles, angles)
-def test_slerp_at_one_half_rotates_by_half_the_angle(start: float, end: float) -> None:
+def test_the_function_slerp_at_one_half_rotates_by_half_the_angle(start: float, end: float) -> None:
     turns = [tuple(transformations.quaternion_about_axis(a, (0, 0, 1)).tolist()) for a in (start, end)]
     half = slerp(turns[0], turns[1], 0.5)
     assert math.isclose(sum(a * b for a, b in zip(half, turns[0], strict=True)),
@@ -58,7 +58,7 @@ def test_slerp_at_one_half_rotates_by_half_the_angle(start: float, end: float) -
 
 
 @given(angles, st.floats(-5, 5), st.floats(-5, 5))
-def test_transform_times_its_inverse_is_the_identity(yaw: float, x: float, y: float) -> None:
+def test_a_transform_times_its_inverse_is_the_identity(yaw: float, x: float, y: float) -> None:
     pose = Rigid((x, y, 1.0), (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)))
     assert np.allclose((pose @ pose.inverse()).apply((1.0, 2.0, 3.0)), (1.0, 2.0, 3.0))
 
@@ -106,7 +106,7 @@ TF2_NODE = """
 """
 
 
-def test_buffer_interpolates_along_the_tree_and_names_missing_frames(start: Start) -> None:
+def test_a_buffer_interpolates_along_the_tree_and_names_missing_frames(start: Start) -> None:
     ros = start(TF2_NODE)
     message = message_type("tf2_msgs/msg/TFMessage")
     ros.step(1.0)
@@ -167,7 +167,7 @@ def test_transforms_reach_the_listener_of_another_node(start: Start) -> None:
     assert '"nowhere" passed to lookupTransform argument does not exist' in known["said"]
 
 
-def test_lookup_waits_until_the_transform_arrives(start: Start) -> None:
+def test_a_lookup_waits_until_the_transform_arrives(start: Start) -> None:
     ros = start("""
         import rclpy, tf2_ros
         from rclpy.callback_groups import ReentrantCallbackGroup

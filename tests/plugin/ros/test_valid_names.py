@@ -91,7 +91,7 @@ def test_a_name_that_a_node_can_use_is_accepted(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", RULES)
-def test_names_follow_in_ros_2_the_rules_of_rcl(name: str) -> None:
+def test_in_ros_2_names_follow_the_rules_of_rcl(name: str) -> None:
     for check, expected in zip(CHECKS, RULES[name], strict=True):
         problem = check(name)
         assert (problem is None) == (not expected), (check, problem)
@@ -214,7 +214,7 @@ def test_a_remapping_of_a_test_is_checked() -> None:
         Ros(remappings={"a": "b c"})
 
 
-def test_the_same_names_are_legal_as_in_an_installed_rosgraph(start: Start) -> None:
+def test_a_name_is_legal_if_an_installed_rosgraph_accepts_it(start: Start) -> None:
     """Compare with the module of an installed ROS 1, if there is one."""
     python = shutil.which("python3", path="/usr/bin")
     names = ["", "a", "/a", "~a", "~/a", "1a", "/1", "_a", "/_a", "a b", "a-b", "a//b", "a/", "a/~b", "a:b"]

@@ -56,7 +56,7 @@ def test_endless_waiting_outside_of_ros_is_stopped_much_later(monkeypatch: pytes
     assert "waiting for something outside" in dog.hanging(0.1)
 
 
-def test_debugger_can_pause_without_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_debugger_can_pause_without_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(watchdog, "_PATIENCE", 1)
     dog = Watchdog()
     prompt = {"__name__": "pdb", "wait": _sleep}
@@ -66,7 +66,7 @@ def test_debugger_can_pause_without_limit(monkeypatch: pytest.MonkeyPatch) -> No
     assert not dog.disarm()
 
 
-def test_thread_without_its_own_clock_is_measured_by_the_process(
+def test_a_thread_without_its_own_clock_is_measured_by_the_clock_of_the_process(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(watchdog, "_CLOCK_OF", None)

@@ -150,7 +150,7 @@ def test_configurations_are_generated_with_their_defaults(packages: Path, start:
     assert ros.namespace["seen"] == [(2.0, 4)]
 
 
-def test_error_names_a_configuration_without_a_file(packages: Path, start: Start) -> None:
+def test_the_error_names_a_configuration_without_a_file(packages: Path, start: Start) -> None:
     with pytest.raises(
         UnsupportedApiError, match=r"No \.cfg file of arm_base generates LegConfig.*ArmConfig"
     ):

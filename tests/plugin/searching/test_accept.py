@@ -82,7 +82,7 @@ def test_the_result_states_whether_the_designed_world_caused_the_rejection(loss:
     assert not judged(world(DESIGNED), world(DESIGNED, seed=1)).costly
 
 
-def test_the_candidate_does_not_run_in_the_designed_world_if_its_guard_never_holds_there() -> None:
+def test_the_candidate_does_not_run_in_the_designed_world_if_its_condition_never_holds_there() -> None:
     found = judged(world(DESIGNED))
     assert found.accepted
     assert found.nominal == ()
@@ -183,7 +183,9 @@ def test_59_missions_without_a_failure_show_a_failure_rate_below_five_percent() 
 
 @settings(max_examples=8)
 @given(st.sampled_from([0.02, 0.05, 0.1, 0.25, 0.6]), st.sampled_from([0.05, 0.0333, 0.0111, 0.0037]))
-def test_all_checks_together_accept_a_failing_program_with_at_most_the_risk(rate: float, risk: float) -> None:
+def test_all_checks_together_accept_a_failing_program_with_at_most_the_stated_risk(
+    rate: float, risk: float
+) -> None:
     numbers = acceptance_numbers(LOOKS, rate, risk)
     assert list(numbers) == sorted(numbers)
     failed = np.random.default_rng(1).random((15_000, LOOKS[-1])) < rate

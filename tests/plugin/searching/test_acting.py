@@ -54,9 +54,7 @@ def test_the_unchanged_program_runs_once_for_each_seed_that_is_compared() -> Non
     assert trials.beside == 2
 
 
-def test_before_any_change_gains_changed_commands_count_as_an_effect_and_for_named_constants_as_a_loss() -> (
-    None
-):
+def test_while_no_change_gains_different_commands_are_an_effect_and_for_named_constants_a_loss() -> None:
     named, other = Unit((TEETH,)), Unit((INERT[0],))
     gains = Gains(0.5, acting=lambda unit: unit == named)
     for unit in (named, other):

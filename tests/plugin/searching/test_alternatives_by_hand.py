@@ -193,7 +193,7 @@ def test_constants_without_any_effect_are_left_out_once_both_first_factors_were_
 # rivals
 
 
-def test_rivals_that_were_not_tried_are_included_and_others_are_not() -> None:
+def test_constants_of_the_same_function_are_alternatives_if_they_gained_or_were_not_tried() -> None:
     beside = [replace(one.operands[0], site=A.operands[0].site) for one in (B, C, D)]
     b, c, d = (Unit((one,)) for one in beside)
     far = Unit((replace(beside[0], site=replace(A.operands[0].site, module="other"), code="F"),))

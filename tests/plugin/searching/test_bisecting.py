@@ -33,7 +33,7 @@ def scripted(low: float, high: float, tried: dict[float, float]) -> Scripted:
     return made
 
 
-def test_a_value_far_beyond_the_good_range_is_replaced_by_one_inside() -> None:
+def test_a_value_far_beyond_the_good_range_is_replaced_by_a_value_inside_the_range() -> None:
     search = scripted(3.0, 25.0, {2.2: 0.0})
     found = bisected(search, FRONT, 19.77, ALWAYS, 0)
     assert found is not None
@@ -54,7 +54,7 @@ def test_a_value_far_beyond_the_good_range_is_replaced_by_one_inside() -> None:
     ],
     ids=["below", "above", "nothing tried", "close", "near the old value"],
 )
-def test_halfway_values_are_tried_until_two_are_close(
+def test_halfway_values_are_tried_until_two_values_are_close(
     low: float, tried: dict[float, float], factor: float, values: list[float]
 ) -> None:
     search = scripted(low, 25.0, tried)

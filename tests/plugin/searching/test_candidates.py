@@ -68,7 +68,7 @@ def evidence(
     return Evidence(sensors, *worlds, region, changes or {})
 
 
-def test_guards_on_one_sensor_come_before_guards_on_two_and_narrow_guards_before_wide_guards() -> None:
+def test_conditions_on_one_sensor_come_before_conditions_on_two_and_narrow_before_wide_conditions() -> None:
     guards = candidate_guards(evidence(REGION))
     assert guards[0] == ALWAYS
     assert guards[1] == Guard((Conjunct(WET, 1.0, 1.0),))
@@ -78,13 +78,13 @@ def test_guards_on_one_sensor_come_before_guards_on_two_and_narrow_guards_before
     assert max(sizes) == 2
 
 
-def test_the_guards_for_a_search_hold_where_much_changed_and_rarely_elsewhere() -> None:
+def test_the_conditions_for_a_search_hold_where_much_changed_and_rarely_elsewhere() -> None:
     mixed = merge([drive(3, range(4, 7)), drive(4, range(0))])
     seen = evidence(REGION, worlds=(OFFLINE, mixed), changes=CHANGES)
     assert telling(candidate_guards(seen), seen, most=2) == (Guard((Conjunct(WET, 1.0, 1.0),)), ALWAYS)
 
 
-def test_if_the_region_spans_everything_the_observed_changes_propose_a_guard() -> None:
+def test_if_the_region_spans_all_cells_a_condition_is_derived_from_the_observed_changes() -> None:
     spread = Region((*REGION.cells, (0, 0), (9, 0)))
     seen = evidence(spread, changes=CHANGES)
     assert Guard((Conjunct(WET, 1.0, 1.0),)) in candidate_guards(seen)
@@ -93,7 +93,7 @@ def test_if_the_region_spans_everything_the_observed_changes_propose_a_guard() -
 
 
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 3)), min_size=1, max_size=30), st.integers(0, 3))
-def test_every_drifted_value_of_an_unordered_sensor_is_a_guard(cells: list[Cell], at: int) -> None:
+def test_every_drifted_value_of_an_unordered_sensor_gives_a_condition(cells: list[Cell], at: int) -> None:
     kind = Sensor("kind", topic="/kind", field="data", categories=("a", "b", "c", "d"))
     worlds = (world(1, [(0, at), (5, (at + 1) % 4)]), world(2, cells))
     guards = candidate_guards(evidence(Region(()), (X, kind), worlds))
@@ -101,14 +101,14 @@ def test_every_drifted_value_of_an_unordered_sensor_is_a_guard(cells: list[Cell]
         assert Guard((Conjunct(kind, value, value),)) in guards
 
 
-def test_the_unguarded_search_comes_first_if_the_best_guard_holds_everywhere() -> None:
+def test_the_search_without_a_condition_comes_first_if_the_best_condition_holds_everywhere() -> None:
     stuck = world(3, [(2, 0)] * 10)
     cells = [(2, 0)]
     seen = evidence(Region(tuple(cells)), worlds=(OFFLINE, stuck), changes={(2, 0): 5.0})
     assert telling(candidate_guards(seen), seen, most=3) == (ALWAYS,)
 
 
-def test_a_guard_that_holds_nearly_everywhere_is_searched_after_no_guard() -> None:
+def test_the_search_without_a_condition_precedes_a_condition_that_holds_nearly_everywhere() -> None:
     stuck = world(3, [(2, 0)] * 39 + [(9, 1)])
     seen = evidence(Region(((2, 0),)), worlds=(OFFLINE, stuck), changes={(2, 0): 5.0})
     first, second = telling(candidate_guards(seen), seen, most=3)
@@ -116,13 +116,13 @@ def test_a_guard_that_holds_nearly_everywhere_is_searched_after_no_guard() -> No
     assert 0.9 < share(second, stuck, (X, WET)) < 1.0
 
 
-def test_without_a_useful_guard_the_search_is_unguarded() -> None:
+def test_without_a_useful_condition_the_search_uses_no_condition() -> None:
     seen = evidence(REGION, changes={})
     assert telling(candidate_guards(seen), seen, most=3) == (ALWAYS,)
     assert telling((), seen, most=3) == (ALWAYS,)
 
 
-def test_a_sensor_that_no_node_can_read_is_in_no_guard() -> None:
+def test_a_sensor_that_no_node_can_read_is_in_no_condition() -> None:
     online = drive(3, range(4, 7), 3)
     guards = candidate_guards(evidence(Region(((4, 1, 0),)), (X, WET, SEEN), (online, online)))
     assert all(conjunct.sensor != SEEN for guard in guards for conjunct in guard.conjuncts)
@@ -140,7 +140,7 @@ def test_an_interval_is_unbounded_if_no_bin_was_seen_beyond_it() -> None:
     assert Guard((Conjunct(X, 8.0, math.inf),)) in guards
 
 
-def test_new_cells_propose_a_guard_on_their_own_value() -> None:
+def test_new_cells_give_a_condition_on_the_new_value() -> None:
     seen = evidence(Region(((2, 0), (3, 0)), ((5, 1),)), worlds=(drive(1, range(0)), ONLINE))
     guards = candidate_guards(seen)
     assert Guard((Conjunct(WET, 1.0, 1.0),)) in guards
@@ -149,19 +149,19 @@ def test_new_cells_propose_a_guard_on_their_own_value() -> None:
 @pytest.mark.parametrize(
     ("cell", "expected"), [((4, 1), True), ((6, 1), True), ((7, 1), False), ((4, 0), False)]
 )
-def test_a_guard_holds_in_the_cells_of_its_bins(cell: Cell, expected: bool) -> None:
+def test_a_condition_holds_in_the_cells_of_its_bins(cell: Cell, expected: bool) -> None:
     guard = Guard((Conjunct(X, 4.0, 7.0), Conjunct(WET, 1.0, 1.0)))
     assert holds(guard, cell, (X, WET)) is expected
 
 
-def test_a_guard_stores_its_share_of_the_steps_and_the_episodes_in_which_it_holds() -> None:
+def test_a_condition_stores_the_share_of_steps_and_the_episodes_in_which_it_holds() -> None:
     guard = Guard((Conjunct(WET, 1.0, 1.0),))
     assert share(guard, OFFLINE, (X, WET)) == 3 / 20
     assert firing_episodes(guard, OFFLINE, (X, WET)) == (2,)
     assert firing_episodes(ALWAYS, OFFLINE, (X, WET)) == (1, 2)
 
 
-def test_a_widened_guard_includes_either_all_values_beyond_the_range_or_none() -> None:
+def test_a_widened_condition_includes_either_all_values_beyond_the_range_or_none() -> None:
     outside = world(9, [(x, 0) for x in (-1, 0, 1, 2, 5, 8, 9, 10)])
     for region in (((1, 0), (2, 0)), ((8, 0),)):
         guards = candidate_guards(evidence(Region(region), worlds=(outside, outside)))

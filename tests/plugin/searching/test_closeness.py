@@ -44,7 +44,7 @@ def test_a_mission_that_earns_its_reward_later_deviates_more_from_the_designed_m
     assert deviation(STEADY, (0.0, 0.0)) == 0.0
 
 
-def test_rival_constants_have_the_scale_of_the_repaired_constant() -> None:
+def test_alternative_constants_have_the_scale_of_the_repaired_constant() -> None:
     units = [Unit((LEAK,)), Unit((POWER,)), Unit((POWER,), SHARE)]
     tried = {unit for unit, _ in rivals(units[0], 2.0, units, Gains(0.1), ALWAYS)}
     assert tried == {units[1]}
@@ -53,7 +53,7 @@ def test_rival_constants_have_the_scale_of_the_repaired_constant() -> None:
     assert calls_of(getter, [getter, Unit((call,)), Unit((call,), SHARE)]) == [Unit((call,))]
 
 
-def test_rivals_are_named_constants_of_the_same_function_that_affect_missions_or_gain_elsewhere() -> None:
+def test_alternatives_are_named_constants_of_the_same_function_that_have_effects_or_gain_elsewhere() -> None:
     gains = Gains(0.1)
     for at, gain in ((LEAK, 9.0), (POWER, 0.3), (ROOM, 0.0), (ELSEWHERE, 1.0)):
         for factor in (2.2, 0.4):

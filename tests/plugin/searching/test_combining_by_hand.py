@@ -89,7 +89,7 @@ def searching(units: Sequence[Unit], *tries: tuple[Unit, float, float], **given:
 # the best operand with others
 
 
-def test_the_best_factor_of_all_constants_is_combined_with_the_gains_under_its_guard() -> None:
+def test_the_best_change_is_combined_with_other_changes_that_gain_under_the_same_condition() -> None:
     search = searching([A, B], (A, 2.2, 3.0), (A, 0.4, -1.0), (B, 2.2, 4.0), (B, 5.0, 2.0))
     search.gains.enter((A, WET), 1.5, 3.9)
     assert list(Combining(search).best_with_others()) == []
@@ -122,14 +122,14 @@ def test_a_proposal_is_combined_only_with_parameters_of_the_same_change() -> Non
 # the leaders
 
 
-def test_the_leaders_of_the_statements_are_combined_with_units_without_an_effect_of_their_own() -> None:
+def test_the_best_changes_of_the_statements_are_combined_with_constants_that_have_no_effect_alone() -> None:
     search = searching([A, B, C], (A, 2.2, 3.0), (B, 0.4, 4.0), (C, 2.2, 0.0))
     list(Combining(search).leaders(ALWAYS))
     assert search.calls == [("unions", [(B, 0.4), (A, 2.2)], ALWAYS, [C])]
 
 
 @pytest.mark.parametrize(("gain", "united"), [(1.0, False), (1.1, True), (8.9, True), (9.0, False)])
-def test_leaders_are_combined_if_their_gain_is_above_the_noise_and_clearly_below_the_wanted_gain(
+def test_the_best_changes_are_combined_if_their_gain_is_above_the_noise_and_clearly_below_the_wanted_gain(
     gain: float, united: bool
 ) -> None:
     search = searching([A, B], (A, 2.2, gain))
@@ -137,7 +137,7 @@ def test_leaders_are_combined_if_their_gain_is_above_the_noise_and_clearly_below
     assert bool(search.calls) is united
 
 
-def test_a_change_that_was_refused_under_a_guard_may_be_retried_only_under_this_guard() -> None:
+def test_a_change_that_was_refused_under_a_condition_may_be_retried_only_under_this_condition() -> None:
     search = searching([A, B], (A, 2.2, 3.0), refused={(A, ALWAYS), (A, WET), (B, WET)})
     list(Combining(search).leaders(ALWAYS))
     assert search.refused == {(A, WET), (B, WET)}
@@ -149,7 +149,7 @@ def test_proposals_and_worlds_without_any_gain_have_no_leaders() -> None:
         assert search.calls == []
 
 
-def test_the_best_constant_under_each_guard_is_refined() -> None:
+def test_the_best_constant_under_each_condition_is_refined() -> None:
     search = searching([A, B], (A, 2.2, 3.0), (B, 0.4, 4.0))
     search.gains.enter((A, WET), 1.5, 2.0)
     list(Combining(search).sharpened([WET, ALWAYS]))
@@ -184,7 +184,7 @@ def together(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
     return Together.made
 
 
-def test_the_joint_search_starts_at_the_three_best_points_of_the_best_guard(
+def test_the_joint_search_starts_at_the_three_best_points_under_the_best_condition(
     together: list[tuple[Any, ...]],
 ) -> None:
     tries = [(A, 2.2, 3.0), (B, 2.2, 4.0), (C, 2.2, 2.0), (D, 2.2, 1.5)]
@@ -223,7 +223,7 @@ def test_there_is_no_joint_search_for_proposals_for_one_constant_or_without_a_ge
 
 
 @pytest.mark.parametrize(("gain", "searched"), [(3.9, True), (4.0, False)])
-def test_there_is_no_joint_search_without_the_unit_that_gains_much(
+def test_there_is_no_joint_search_if_the_constants_that_gain_much_cannot_be_moved_jointly(
     gain: float, searched: bool, together: list[tuple[Any, ...]]
 ) -> None:
     several = Unit(
@@ -254,13 +254,13 @@ def selection(world: World, units: Sequence[Unit] = (A, B, C, D)) -> tuple[Forwa
 BASE = Joint(((A, 2.2),), ALWAYS)
 
 
-def test_units_without_an_effect_get_a_larger_and_then_a_smaller_value_under_the_change() -> None:
+def test_constants_without_an_effect_get_a_larger_and_then_a_smaller_value_under_another_change() -> None:
     joining, seen = selection(nothing)
     assert list(unmasked(BASE, [B, C], joining)) == []
     assert seen == ["A2.2", "A2.2 B2.2", "A2.2 C2.2", "A2.2 B0.4", "A2.2 C0.4"]
 
 
-def test_a_unit_with_an_effect_gets_finer_factors_immediately_and_is_refined_while_it_gains() -> None:
+def test_a_constant_with_an_effect_gets_finer_factors_immediately_and_is_refined_while_it_gains() -> None:
     def world(changes: Mapping[Operand, float]) -> Outcome:
         return Outcome(2.0 if B.operands[0] in changes else 0.0, False)
 
@@ -271,7 +271,7 @@ def test_a_unit_with_an_effect_gets_finer_factors_immediately_and_is_refined_whi
     assert seen[-2:] == ["A2.2 C2.2", "A2.2 C0.4"]
 
 
-def test_a_unit_that_only_loses_under_the_change_is_not_refined() -> None:
+def test_a_constant_that_only_loses_under_another_change_is_not_refined() -> None:
     def world(changes: Mapping[Operand, float]) -> Outcome:
         return Outcome(-2.0 if B.operands[0] in changes else 0.0, False)
 
@@ -280,7 +280,7 @@ def test_a_unit_that_only_loses_under_the_change_is_not_refined() -> None:
     assert seen == ["A2.2", "A2.2 B2.2", "A2.2 B1.5", "A2.2 B0.65"]
 
 
-def test_a_change_that_cannot_be_written_unmasks_nothing() -> None:
+def test_under_a_change_that_cannot_be_written_no_constant_is_retried() -> None:
     def world(changes: Mapping[Operand, float]) -> Outcome:
         raise RepairError("no place")
 
@@ -337,7 +337,7 @@ def test_constants_are_not_retried_under_a_change_whose_missions_do_not_last_lon
     assert search.seen == ["A2.2"]
 
 
-def test_nothing_is_unmasked_for_proposals_or_without_a_gain() -> None:
+def test_no_constant_is_retried_under_another_change_for_proposals_or_without_a_gain() -> None:
     for search in (unmasking(lasting, (A, 2.2, 5.0), proposed=True), unmasking(lasting)):
         assert list(Combining(search).unmasked(ALWAYS)) == []
         assert search.seen == []
@@ -380,7 +380,7 @@ def test_uses_are_changed_alone_only_if_an_episode_is_left_afterwards(budget: in
     assert len(search.tried) == learned
 
 
-def test_each_use_alone_is_attempted_once_under_each_guard() -> None:
+def test_each_use_alone_is_attempted_once_under_each_condition() -> None:
     search = Using()
     uses = Uses(search, PARTS)
     for guard in (ALWAYS, ALWAYS, WET):
@@ -401,7 +401,7 @@ def test_more_than_three_uses_are_not_changed_alone() -> None:
 # combinations
 
 
-def test_a_literal_is_combined_under_the_guard_of_the_base() -> None:
+def test_a_literal_is_combined_under_the_condition_of_the_first_change() -> None:
     literal = Unit((operand(9, "1.5", 1.5),))
     wider = Joint(((A, 2.2),), WET).with_part(literal, 0.4)
     assert wider.guard == WET

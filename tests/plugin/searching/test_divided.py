@@ -66,7 +66,7 @@ def test_two_values_divide_the_missions_if_each_reaches_the_goal_where_the_other
     assert trials.spent - spent == episodes
 
 
-def test_the_power_is_tried_as_proposed_then_larger_and_smaller() -> None:
+def test_the_exponent_is_tried_as_proposed_and_then_larger_and_smaller() -> None:
     law = Candidate((Mutation(SPEED, 1.0, form=LAW),), ALWAYS)
     assert [one.mutations[0].value for one in stronger_and_weaker(law)] == list(POWERS)
 

@@ -51,7 +51,7 @@ def test_a_constant_that_gains_much_gets_its_exact_value_before_it_is_combined()
     assert not any("," in label for label in trials.labels)
 
 
-def test_a_rival_constant_is_compared_at_its_own_exact_value() -> None:
+def test_an_alternative_constant_is_compared_at_its_own_exact_value() -> None:
     """LEAK hides that POWER is 0.72 of what it was; the factor that rivals try first, 0.667, is not exact."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:

@@ -48,7 +48,7 @@ def test_a_constant_that_loses_a_little_in_its_first_step_is_tried_with_five_tim
     assert len(ran) == before
 
 
-def test_constants_that_lose_much_gain_or_have_no_effect_get_no_farther_step() -> None:
+def test_constants_that_gain_or_lose_much_or_have_no_effect_get_no_farther_step() -> None:
     rewards = {"BAD": -BEARABLE * GOAL.wanted - 0.1, "GOOD": 0.3 * GOAL.wanted, "IDLE": 0.0, "NEAR": -0.5}
 
     def reward(factors: Mapping[str, float]) -> float:
@@ -61,7 +61,7 @@ def test_constants_that_lose_much_gain_or_have_no_effect_get_no_farther_step() -
     assert [one for one in ran if one.endswith("=5")] == ["NEAR=5"]
 
 
-def test_at_most_six_constants_get_a_step_those_that_lost_least_first() -> None:
+def test_at_most_six_constants_get_a_farther_step_beginning_with_those_that_lost_least() -> None:
     names = [f"C{number}" for number in range(MOST + 2)]
 
     def reward(factors: Mapping[str, float]) -> float:
@@ -75,7 +75,7 @@ def test_at_most_six_constants_get_a_step_those_that_lost_least_first() -> None:
 
 
 @pytest.mark.parametrize(("gain", "farther"), [(2.0, ["A=5", "A=0.15"]), (0.2, [])])
-def test_they_come_before_structural_changes_if_another_constant_gained(
+def test_farther_steps_come_before_structural_changes_if_another_constant_gained(
     gain: float, farther: list[str]
 ) -> None:
     begun: list[int] = []
@@ -97,14 +97,14 @@ def test_they_come_before_structural_changes_if_another_constant_gained(
     assert begun == [len(ran)]
 
 
-def test_parameters_of_a_structural_change_get_none() -> None:
+def test_parameters_of_a_structural_change_get_no_farther_step() -> None:
     tries, ran = trying(lambda factors: -0.1 * len(factors), "A", proposed=True)
     list(tries.sweep(2.2, ALWAYS, tries.units))
     list(tries.farther())
     assert ran == ["A=2.2"]
 
 
-def test_a_sweep_takes_them_before_it_combines_constants() -> None:
+def test_a_sweep_tries_farther_steps_before_it_combines_constants() -> None:
     def reward(factors: Mapping[str, float]) -> float:
         factor = factors.get("PLAY", 1.0)
         good = 4.0 < factor < 5.5

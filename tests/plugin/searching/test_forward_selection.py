@@ -23,7 +23,7 @@ def operand(line: int, code: str, value: float | None, column: int = 5, named: b
     return Operand(SiteId("node", "run", f"line {line}"), span, code, value, ELSEWHERE if named else span)
 
 
-def test_the_uses_of_a_constant_within_a_statement_are_one_unit() -> None:
+def test_the_uses_of_a_constant_within_a_statement_change_together() -> None:
     first, second = operand(3, "LIMIT", 2.0, 5, named=True), operand(3, "LIMIT", 2.0, 20, named=True)
     elsewhere = operand(4, "LIMIT", 2.0, 5, named=True)
     assert [unit.operands for unit in units([first, elsewhere, second])] == [(first, second), (elsewhere,)]

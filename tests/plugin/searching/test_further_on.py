@@ -62,7 +62,7 @@ def test_the_constants_of_the_statements_that_are_entered_come_first() -> None:
     assert trials.spent <= 10
 
 
-def test_a_change_that_enters_no_statement_is_not_held() -> None:
+def test_a_change_that_leads_to_no_new_statement_is_not_combined_with_other_constants() -> None:
     world = Climber()
     longer = Joint(((Unit((REST[0],)), 2.2),), ALWAYS)
     found, trials = found_by(world, [longer])

@@ -72,7 +72,7 @@ def test_the_unchanged_constant_has_gain_zero_unless_it_was_proposed() -> None:
     assert proposed.of(A, ALWAYS) == {1.0: -2.0}
 
 
-def test_gains_are_listed_separately_for_each_guard() -> None:
+def test_gains_are_listed_separately_for_each_condition() -> None:
     found = gains()
     assert [*found.under(WET)] == [B]
     assert [*found.under(ALWAYS)] == [A, B, C]
@@ -134,7 +134,7 @@ def test_constants_are_sorted_by_the_gain_that_each_has_with_a_given_factor() ->
     assert found.leading(2.2, ALWAYS, [A, B, C], -1.0, inert=True) == [A, C, B]
 
 
-def test_the_best_factor_of_each_constant_is_found_under_the_given_guards() -> None:
+def test_the_best_factor_of_each_constant_is_found_under_the_given_conditions() -> None:
     found = gains()
     assert found.best_under([ALWAYS, WET]) == [(A, 5.0), (B, 0.4)]
     assert found.best_under([ALWAYS]) == [(A, 5.0)]
@@ -285,7 +285,7 @@ def race(of: dict[tuple[Unit, float], dict[int, float]]) -> Race:
     return found
 
 
-def test_arms_are_ranked_by_gain_and_ties_with_the_best_are_found() -> None:
+def test_changes_are_ranked_by_gain_and_ties_with_the_best_change_are_found() -> None:
     found = race(
         {
             (A, 2.2): {0: 1.0, 1: 1.1, 2: 0.9},
@@ -300,7 +300,7 @@ def test_arms_are_ranked_by_gain_and_ties_with_the_best_are_found() -> None:
     assert found.gain(Arm(A, 9.0, ALWAYS)) == 0.0
 
 
-def test_a_new_arm_lies_between_neighbouring_factors_of_the_same_constant() -> None:
+def test_a_new_factor_lies_between_two_neighbouring_factors_of_the_same_constant() -> None:
     seen = {0: 1.0}
     found = race({(A, 4.0): seen, (A, 1.0): seen, (A, -2.0): seen, (B, 2.0): seen, (A, 1.05): seen})
     assert [arm.factor for arm in found.around(Arm(A, 4.0, ALWAYS))] == [round(math.sqrt(4.2), 3)]
@@ -313,7 +313,7 @@ def test_a_new_arm_lies_between_neighbouring_factors_of_the_same_constant() -> N
 @given(
     st.dictionaries(st.integers(0, 5), st.floats(-9, 9)), st.dictionaries(st.integers(0, 5), st.floats(-9, 9))
 )
-def test_an_arm_counts_as_worse_only_after_three_common_seeds(
+def test_a_change_counts_as_worse_only_after_three_common_seeds(
     one: dict[int, float], other: dict[int, float]
 ) -> None:
     differences = paired(one, other)
@@ -325,7 +325,7 @@ def test_an_arm_counts_as_worse_only_after_three_common_seeds(
         assert not (behind(other, one) and behind(one, other))
 
 
-def test_the_confidence_interval_of_a_lead_is_students_t_interval() -> None:
+def test_the_confidence_interval_of_the_lead_over_another_change_is_students_t_interval() -> None:
     low, high = ahead_by([1.0, 2.0, 3.0])  # 2 ± 4.3027·1/√3
     assert (low, high) == pytest.approx((2 - 4.3027 / math.sqrt(3), 2 + 4.3027 / math.sqrt(3)), abs=2e-3)
 
@@ -379,7 +379,7 @@ def test_an_interval_is_unrestricted_if_it_covers_all_visited_bins() -> None:
     assert not _spans((7, 9), {0, 7}, LINE)
 
 
-def test_a_guard_is_proposed_for_the_interval_with_the_largest_change_per_visit() -> None:
+def test_a_condition_is_proposed_for_the_interval_with_the_largest_change_per_visit() -> None:
     assert _steepest(evidence(REGION, changes=dict(CHANGES)), 0) == (4, 6)
     assert _steepest(evidence(REGION, changes=dict(CHANGES)), 1) == (1, 1)
 
@@ -410,14 +410,14 @@ def test_intervals_are_widened_by_two_bins() -> None:
         (ANGLE, 7.0 + 1e-10, 1.0 - 1e-10, [0, 7]),
     ],
 )
-def test_a_guard_holds_in_the_bins_that_it_covers_up_to_rounding(
+def test_a_condition_holds_in_the_bins_that_it_covers_up_to_rounding(
     sensor: Sensor, low: float, high: float, expected: list[int]
 ) -> None:
     guard = Guard((Conjunct(sensor, low, high),))
     assert [index for index in range(8) if holds(guard, (index,), [sensor])] == expected
 
 
-def test_a_unit_clearly_loses_if_each_factor_lost_more_than_the_slack() -> None:
+def test_a_constant_clearly_loses_if_each_of_its_factors_lost_more_than_the_slack() -> None:
     found = gains()
     assert found.clearly_lost(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
     assert found.clearly_lost(ALWAYS, [A, B, C], (0.4,)) == [A, B]
@@ -432,7 +432,7 @@ def many(moved: int) -> Gains:
     return found
 
 
-def test_a_guard_is_idle_if_hardly_any_change_under_it_has_an_effect() -> None:
+def test_a_condition_counts_as_idle_if_hardly_any_change_under_it_has_an_effect() -> None:
     assert many(2).idle_guard(WET)
     assert not many(3).idle_guard(WET)
     assert not gains().idle_guard(WET)  # too few units
@@ -442,7 +442,7 @@ def test_a_guard_is_idle_if_hardly_any_change_under_it_has_an_effect() -> None:
     assert not without.idle_guard(ALWAYS)  # it has no condition
 
 
-def test_tries_under_an_idle_guard_do_not_show_that_a_unit_has_no_effect() -> None:
+def test_tries_under_an_idle_condition_do_not_show_that_a_constant_has_no_effect() -> None:
     found = many(0)
     units = [unit for (unit, _), _ in found.items()]
     for unit in units:
@@ -453,7 +453,7 @@ def test_tries_under_an_idle_guard_do_not_show_that_a_unit_has_no_effect() -> No
     assert found.moving(units) == units[1:]
 
 
-def test_a_hollow_gain_may_be_refined_but_is_not_progress() -> None:
+def test_a_gain_in_a_mission_without_progress_may_be_refined_but_is_not_counted() -> None:
     found = Gains(0.5)
     found.enter((A, ALWAYS), 0.4, 2.0, True, hollow=True)
     assert found.most((A, ALWAYS)) == 2.0
@@ -473,7 +473,7 @@ def test_a_hollow_gain_may_be_refined_but_is_not_progress() -> None:
         ({}, False),
     ],
 )
-def test_units_act_alike_if_several_factors_change_the_reward_by_the_same_amount(
+def test_constants_act_alike_if_several_factors_change_the_reward_by_the_same_amount(
     its: dict[float, float], alike: bool
 ) -> None:
     found, other = gains(), Unit((constant(9, "D"),))

@@ -152,13 +152,13 @@ def test_the_bins_of_both_worlds_decide_whether_a_condition_always_holds() -> No
     assert list(_combined([(4, 6)], seen)) == [Guard((Conjunct(X, -inf, 7.0),))]
 
 
-def test_each_drifted_value_of_a_boolean_is_a_guard_but_no_value_of_a_number_is() -> None:
+def test_each_drifted_value_of_a_boolean_gives_a_condition_but_no_value_of_a_number_does() -> None:
     cells: list[Cell] = [(x, int(x > 3)) for x in range(6)]
     seen = Evidence((X, WET), world(1, [(0, 0), (1, 2)]), world(2, cells), Region(()), {})
     assert list(_values(seen)) == [Guard((Conjunct(WET, one, one),)) for one in (0, 1)]
 
 
-def test_guards_are_listed_once_by_size_and_by_their_share_of_designed_steps() -> None:
+def test_conditions_are_listed_once_by_size_and_then_by_their_share_of_designed_steps() -> None:
     cells: list[Cell] = [(x, int(x in (4, 5))) for x in range(10)]
     region = Region(((4, 1), (5, 1)))
     seen = Evidence((X, WET), world(1, cells), world(2, cells), region, {})
@@ -178,20 +178,20 @@ def guard_on(low: float, high: float, sensor: Sensor = X) -> Guard:
     return Guard((Conjunct(sensor, low, high),))
 
 
-def test_a_guard_has_the_share_of_steps_in_its_cells() -> None:
+def test_a_condition_stores_the_share_of_steps_in_the_cells_where_it_holds() -> None:
     driven = world(1, [(1,), (1,), (2,), (5,)])
     assert share(guard_on(1.0, 3.0), driven, (X,)) == 0.75
     assert share(guard_on(8.0, 9.0), driven, (X,)) == 0.0
     assert share(ALWAYS, driven, (X,)) == 1.0
 
 
-def test_a_guard_on_two_sensors_holds_if_both_conditions_do() -> None:
+def test_a_condition_on_two_sensors_holds_if_its_parts_for_both_sensors_hold() -> None:
     both = Guard((ON_X, ON_WET))
     cells: list[Cell] = [(4, 1), (4, 0), (8, 1), (3, 1), (7, 1)]
     assert [holds(both, one, (X, WET)) for one in cells] == [True, False, False, False, False]
 
 
-def test_the_best_guard_is_searched_before_the_search_without_a_guard_and_further_guards_follow() -> None:
+def test_the_best_condition_is_searched_first_then_no_condition_and_then_the_other_conditions() -> None:
     seen = along([1, 1, 2, 2, 3, 8, 8, 8], [1, 2, 3, 4, 5, 6, 7, 8], {1: 4.0, 2: 4.0, 3: 1.0})
     best, second, third = guard_on(1.0, 3.0), guard_on(1.0, 4.0), guard_on(2.0, 3.0)
     assert telling([third, second, best], seen, 4) == (best, ALWAYS, second, third)
@@ -199,19 +199,19 @@ def test_the_best_guard_is_searched_before_the_search_without_a_guard_and_furthe
     assert telling([third, second, best], seen, 1) == (ALWAYS,)
 
 
-def test_a_guard_with_little_merit_is_searched_after_the_search_without_a_guard() -> None:
+def test_the_search_under_a_condition_with_little_merit_follows_the_search_without_a_condition() -> None:
     seen = along([1, 2, 3, 4], [1, 2, 3, 4], {1: 1.3, 2: 1.0, 3: 1.0, 4: 1.0})
     assert telling([guard_on(1.0, 2.0)], seen, 2)[0] == ALWAYS
 
 
-def test_a_guard_that_never_holds_in_the_designed_world_gets_a_bonus() -> None:
+def test_a_condition_that_never_holds_in_the_designed_world_gets_a_bonus() -> None:
     harmless = along([1, 5, 5, 5], [1, 2], {1: 0.1, 5: 0.02}, novel=())
     assert telling([guard_on(5.0, 6.0)], harmless, 2)[0] == guard_on(5.0, 6.0)
     visited = along([1, 5, 5, 5], [1, 2, 1, 2, 1, 2, 1, 2, 1, 5], {1: 0.1, 5: 0.02})
     assert telling([guard_on(5.0, 6.0)], visited, 2)[0] == ALWAYS
 
 
-def test_if_two_guards_have_the_same_merit_the_guard_with_fewer_conditions_wins() -> None:
+def test_of_two_conditions_with_the_same_merit_the_condition_with_fewer_parts_wins() -> None:
     cells: list[Cell] = [(x, int(x in (4, 5))) for x in range(10)]
     dry: list[Cell] = [(x, 0) for x in range(10)]
     changes = {(4, 1): 1.0, (5, 1): 1.0}

@@ -59,7 +59,7 @@ def test_a_constant_that_helps_but_not_enough_is_moved_further() -> None:
     assert found == [({"GAIN": 2.2, "DAMPING": 3.3}, 6.6)]
 
 
-def test_constants_that_help_about_as_much_are_all_moved_further_best_first() -> None:
+def test_constants_that_help_about_equally_are_all_moved_further_beginning_with_the_best() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         by = {one.operand: float(one.value) for one in candidate.mutations}
         if seed == EASY:
@@ -85,7 +85,7 @@ def test_constants_that_help_about_as_much_are_all_moved_further_best_first() ->
         (10.0, 2.0, SEEDS + EPISODES),
     ],
 )
-def test_a_change_is_held_only_if_it_gains_a_good_part_on_average(
+def test_a_change_stays_applied_only_if_it_gains_a_good_part_on_average(
     easy: float, hard: float, spent: int
 ) -> None:
     trials = Trials(lambda _, seed: Outcome(easy if seed == EASY else hard, seed == EASY or hard > 9.0), 300)
@@ -107,7 +107,7 @@ def test_changes_that_cannot_be_written_are_skipped() -> None:
     assert list(held(BASE, OTHERS, selection(Trials(never, 300)))) == []
 
 
-def test_the_sweep_holds_the_change_before_it_tries_larger_steps() -> None:
+def test_the_sweep_tries_other_constants_under_the_change_before_it_tries_larger_steps() -> None:
     trials = Trials(swings, 300)
     found = next(Sweep((*REST, DAMPING, GAIN), mutations, (ALWAYS,), trials, GOAL).candidates())
     assert {one.operand for one in found.mutations} == {GAIN, DAMPING}

@@ -76,7 +76,7 @@ def test_improvement_is_expected_where_the_mean_is_high_or_little_is_known() -> 
     assert high == pytest.approx(0.1083, abs=1e-3)
 
 
-def test_all_uses_of_a_named_constant_in_a_file_are_one_unit() -> None:
+def test_all_uses_of_a_named_constant_in_a_file_change_together() -> None:
     first, again = operand(3, "WHEEL"), operand(8, "WHEEL")
     there, literal = operand(3, "WHEEL", path="other.py"), operand(9, "2.0")
     found = whole_constants(units([first, literal, again, there]))

@@ -43,7 +43,7 @@ def proportional(used: Sequence[Operand]) -> Iterator[Candidate]:
 
 
 @pytest.mark.parametrize("right", [1.7, -1.2, 0.6])
-def test_the_power_that_gains_is_adjusted(right: float) -> None:
+def test_the_exponent_that_gains_is_adjusted(right: float) -> None:
     trials = Trials(lambda candidate, seed: run(candidate, seed, right), 60)
     selection = ForwardSelection((), mutations, trials, GOAL, {}, 0.7)
     (found,) = laws([Unit((OTHER,)), Unit((LIGHT,))], proportional, selection)
@@ -53,7 +53,7 @@ def test_the_power_that_gains_is_adjusted(right: float) -> None:
     assert operand_effect(mutation, 8.0).what == "LIGHT follows distance"
 
 
-def test_a_power_that_gains_nothing_is_dropped_and_few_constants_are_tried() -> None:
+def test_an_exponent_that_gains_nothing_is_dropped_and_only_a_few_constants_are_tried() -> None:
     trials = Trials(run, 60)
     selection = ForwardSelection((), mutations, trials, GOAL, {}, 0.7)
     many = [Unit((constant(n, f"C{n}"),)) for n in range(3, 10)]
@@ -76,7 +76,7 @@ def test_the_law_that_gains_most_is_adjusted_first_and_each_constant_is_tried_on
     assert len({*trials.labels[:4]}) == 4
 
 
-def test_a_power_that_is_too_large_for_hard_missions_is_reduced() -> None:
+def test_an_exponent_that_is_too_large_for_hard_missions_is_reduced() -> None:
     def hard(candidate: Candidate, seed: int) -> Outcome:
         power = max(float(one.value) for one in candidate.mutations)
         return Outcome(0.0 if seed == 4 and power > 1.6 else min(10.0, 6.0 + 2.2 * power), True)
@@ -87,7 +87,7 @@ def test_a_power_that_is_too_large_for_hard_missions_is_reduced() -> None:
     assert 1.3 < float(mutation.value) <= 1.6
 
 
-def test_the_sweep_tries_laws_for_a_constant_that_loses_both_ways() -> None:
+def test_the_sweep_tries_laws_for_a_constant_that_loses_when_raised_and_when_lowered() -> None:
     trials = Trials(run, 40)
     sweep = Sweep((OTHER, LIGHT), mutations, (ALWAYS,), trials, GOAL, proportional=proportional)
     found = next(sweep.candidates())

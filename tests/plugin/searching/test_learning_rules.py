@@ -117,7 +117,7 @@ def binomial(n: int, k: int, p: float) -> float:
 
 
 @pytest.mark.parametrize(("look", "tolerated"), [(59, 0.05), (58, 0.05), (93, 0.05), (10, 0.5), (4, 0.9)])
-def test_one_look_has_the_bound_of_clopper_and_pearson(look: int, tolerated: float) -> None:
+def test_a_test_with_a_single_check_has_the_bound_of_clopper_and_pearson(look: int, tolerated: float) -> None:
     (found,) = acceptance_numbers((look,), tolerated, 0.05)
     tail = np.cumsum([binomial(look, k, tolerated) for k in range(look + 1)])
     assert found == int((tail <= 0.05).sum()) - 1
@@ -127,7 +127,7 @@ def test_one_look_has_the_bound_of_clopper_and_pearson(look: int, tolerated: flo
         assert found == NEVER
 
 
-def test_all_looks_together_accept_with_at_most_the_risk() -> None:
+def test_all_checks_together_accept_wrongly_with_at_most_the_stated_risk() -> None:
     looks, tolerated, risk = (4, 8), 0.5, 0.2
     first, second = acceptance_numbers(looks, tolerated, risk)
     risks = {}
@@ -152,7 +152,7 @@ def test_main_effects_equal_the_results_of_ridge_regression() -> None:
     assert main_effects(np.ones((2, 1)), np.array([3.0, 6.0])).tolist() == [3.0]
 
 
-def test_only_many_units_are_screened_and_split_into_blocks() -> None:
+def test_constants_are_screened_and_split_into_blocks_only_if_there_are_many() -> None:
     many: Any = list(range(MANY + 1))
     assert worth_screening(many) is True
     assert worth_screening(many[:-1]) is False

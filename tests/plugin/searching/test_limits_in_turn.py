@@ -87,7 +87,7 @@ def test_a_combination_that_clearly_loses_or_suffices_on_its_seed_is_not_extende
     assert [one.mutations for one in world.asked] == [()]
 
 
-def test_a_factor_has_a_largest_size_and_a_combination_a_largest_number_of_parts() -> None:
+def test_factors_have_a_maximum_size_and_combinations_have_a_maximum_number_of_parts() -> None:
     assert relaxed(Capper(TURNS, needed=30.0))[0] is None
     assert relaxed(Capper(*LIMITS, REST[0]))[0] is None
 
@@ -113,7 +113,7 @@ def test_limits_that_are_not_searched_are_left_out() -> None:
     assert relaxed(Capper(other))[0] is None
 
 
-def test_a_world_full_of_limits_costs_a_set_number_of_episodes() -> None:
+def test_a_world_full_of_limits_costs_a_fixed_number_of_episodes() -> None:
     world, steps = Capper(TURNS), iter(range(20, 999))
     world.run = lambda *_: Outcome(0.0, False, steps=next(steps))  # type: ignore[method-assign]
     world.reached = lambda candidate: [(one, 2.2) for one in LIMITS]  # type: ignore[method-assign]

@@ -55,7 +55,7 @@ def test_other_values_are_not_adjusted(best: float, width: float) -> None:
     assert finer == []
 
 
-def test_a_unit_is_adjusted_once() -> None:
+def test_each_constant_is_adjusted_only_once() -> None:
     finer: list[Operand] = []
     search = tries(2.5, 0.15, finer)
     list(search.attempt(UNIT, ALWAYS, 2.2, 0))

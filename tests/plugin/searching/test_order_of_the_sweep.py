@@ -152,7 +152,7 @@ def test_the_sign_is_changed_for_at_most_three_constants_and_only_for_those_that
     assert not seen[at + 1][0].endswith("=-1")
 
 
-def test_a_second_guard_is_searched_as_well_only_if_the_first_has_a_condition() -> None:
+def test_a_second_condition_is_searched_only_if_the_first_search_has_a_condition() -> None:
     unguarded = tried(dead, [LITERAL], guards=(ALWAYS, WET))
     assert unguarded[:6] == ["3.0=6.6", "3.0=1.2", "3.0=4.5", "3.0=4.5|", "3.0=1.95", "3.0=1.95|"]
     guarded = tried(dead, [LITERAL], guards=(WET, ALWAYS))

@@ -52,7 +52,7 @@ def test_steps_become_smaller_as_long_as_nothing_gains() -> None:
     assert spent <= 2 * (len(INERT) + 1) + 12
 
 
-def test_a_proposal_without_effect_is_made_stronger_before_others_are_moved() -> None:
+def test_a_proposal_without_effect_is_made_stronger_before_other_proposals_are_moved() -> None:
     """With a limit of 1 nothing changes and with a limit of 0.4 missions succeed; other values lose reward."""
     tried: list[tuple[object, float]] = []
 

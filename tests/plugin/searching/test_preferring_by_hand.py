@@ -233,7 +233,7 @@ def getter() -> Unit:
     return Unit((replace(made, site=site, value=None),))
 
 
-def test_a_changed_return_value_is_replaced_by_the_calls_that_need_the_factor() -> None:
+def test_instead_of_a_changed_return_value_only_the_calls_that_need_the_factor_are_changed() -> None:
     one, two, other = call(3), call(4), getter()
 
     def run(candidate: Candidate, _: int) -> Outcome:
@@ -509,20 +509,20 @@ def rivalling(
     return search, made
 
 
-def test_a_change_that_restores_the_designed_mission_exactly_has_no_rivals() -> None:
+def test_a_change_that_restores_the_designed_mission_exactly_is_compared_with_no_other_constant() -> None:
     search, made = rivalling({"A": 0.0, "B": 0.0, "C": 0.0}, [(B, 0.5)])
     assert list(made.before(change(A, 2.0), A, 2.0, 0, True, True)) == []
     assert search.log == []
 
 
-def test_a_rival_comes_first_if_its_missions_deviate_at_most_six_tenths_as_much() -> None:
+def test_an_alternative_constant_comes_first_if_its_missions_deviate_at_most_six_tenths_as_much() -> None:
     for level, rival in ((0.29, [change(B, 0.5)]), (0.31, [])):
         search, made = rivalling({"A": 0.5, "B": level, "C": 1.0}, [(B, 0.5)])
         assert list(made.before(change(A, 2.0), A, 2.0, 0, True, True)) == rival
         assert search.refused == ({(B, ALWAYS)} if rival else set())
 
 
-def test_each_rival_is_tried_with_the_reciprocal_then_with_the_factor() -> None:
+def test_each_alternative_constant_is_tried_with_the_reciprocal_and_then_with_the_factor() -> None:
     search, made = rivalling({"A": 0.5, "B": 1.0, "C": 1.0}, [], totals={"B": 0.0, "C": 0.0})
     list(made.before(change(A, 2.0), A, 2.0, 0, True, True))
     assert search.of("reaches") == [
@@ -531,13 +531,13 @@ def test_each_rival_is_tried_with_the_reciprocal_then_with_the_factor() -> None:
     assert len(search.of("reaches")) < RIVALS
 
 
-def test_a_rival_that_reached_the_goal_is_not_tried_with_another_factor() -> None:
+def test_an_alternative_constant_that_reached_the_goal_is_not_tried_with_another_factor() -> None:
     search, made = rivalling({"A": 0.5, "B": 1.0, "C": 1.0}, [], totals={"C": 0.0})
     list(made.before(change(A, 2.0), A, 2.0, 0, True, True))
     assert [code for code, _ in search.of("reaches")].count("B") == 1
 
 
-def test_constants_of_a_function_are_compared_once_and_of_two_functions_at_most() -> None:
+def test_the_constants_of_a_function_are_compared_once_and_at_most_two_functions_are_examined() -> None:
     search, made = rivalling({"A": 0.5, "B": 1.0, "C": 1.0}, [], totals={"B": 0.0, "C": 0.0})
     for _ in range(2):
         list(made.before(change(A, 2.0), A, 2.0, 0, True, True))
@@ -554,7 +554,7 @@ def test_constants_of_a_function_are_compared_once_and_of_two_functions_at_most(
     assert FUNCTIONS == 2
 
 
-def test_the_exact_value_of_the_constant_is_tried_before_any_rival() -> None:
+def test_the_exact_value_of_the_constant_is_tried_before_any_alternative_constant() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         (one,) = candidate.mutations
         late = min(abs(one.value - 1.6246), 1.0)
@@ -569,7 +569,7 @@ def test_the_exact_value_of_the_constant_is_tried_before_any_rival() -> None:
     assert search.log == [("holding", "A", 1.625, 0)]
 
 
-def test_changes_set_aside_follow_by_their_mean_reward() -> None:
+def test_changes_that_were_set_aside_follow_in_the_order_of_their_mean_reward() -> None:
     search = Scripted([A, B, C], courses({"A": 0.0, "B": 0.0, "C": 0.0}, {"B": 9.2, "C": 9.6}))
     made = Preferences(search)
     for unit in (A, B, C):

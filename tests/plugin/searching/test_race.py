@@ -22,7 +22,7 @@ def arms(*factors: float) -> list[Arm]:
     return [Arm(unit, factor, ALWAYS) for factor in factors]
 
 
-def test_arms_run_on_the_same_seeds_and_no_seed_is_repeated() -> None:
+def test_all_changes_run_on_the_same_seeds_and_no_seed_is_repeated() -> None:
     ran: list[tuple[float, int]] = []
 
     def counted(candidate: Candidate, seed: int) -> object:
@@ -42,7 +42,7 @@ def test_gains_are_paired_so_that_noise_of_a_seed_cancels() -> None:
     assert race.gains[arms(2.0)[0]] == pytest.approx(dict.fromkeys(range(5), 6 * math.log(2.0)))
 
 
-def test_refinement_adds_arms_between_neighbours_down_to_the_finest_ratio() -> None:
+def test_refinement_adds_factors_between_neighbouring_factors_down_to_the_finest_ratio() -> None:
     race = Race(mutations, Trials(run, 100), PAIRS)
     race.run(arms(1.5, 2.4, 5.0), 1)
     assert [arm.factor for arm in race.around(arms(2.4)[0])] == [round(math.sqrt(1.5 * 2.4), 3), 3.464]
@@ -50,7 +50,7 @@ def test_refinement_adds_arms_between_neighbours_down_to_the_finest_ratio() -> N
     assert 2.405 not in [arm.factor for arm in race.around(arms(2.4)[0])]
 
 
-def test_three_common_seeds_suffice_to_drop_an_arm() -> None:
+def test_three_common_seeds_suffice_to_drop_a_change() -> None:
     assert behind({0: 1.0, 1: 1.1, 2: 0.9}, {0: 5.0, 1: 5.2, 2: 4.9})
     assert not behind({0: 1.0, 1: 1.1}, {0: 5.0, 1: 5.2})
     assert not behind({0: 1.0, 1: 9.0, 2: 5.0}, {0: 5.0, 1: 5.2, 2: 4.9})
@@ -66,7 +66,7 @@ def test_halving_finds_the_right_value_between_its_initial_factors() -> None:
     assert max(effects, key=lambda site: effects[site][0].effect) == str(GAIN.site)
 
 
-def test_halving_spends_its_later_rounds_on_arms_that_gain() -> None:
+def test_halving_spends_its_later_rounds_on_changes_that_gain() -> None:
     ran: list[object] = []
 
     def counted(candidate: Candidate, seed: int) -> object:
@@ -114,7 +114,7 @@ def test_a_ranking_whose_budget_ends_is_incomplete() -> None:
     assert ranking.effects()
 
 
-def test_the_full_ranking_runs_units_without_effect_on_the_first_seed_only() -> None:
+def test_the_full_ranking_runs_constants_without_an_effect_on_the_first_seed_only() -> None:
     ran: dict[str, set[int]] = {}
 
     def noted(candidate: Candidate, seed: int) -> object:

@@ -48,7 +48,7 @@ def test_only_the_goal_decides_if_there_is_no_margin_or_the_designed_rewards_are
     assert ran.beside == 0
 
 
-def test_a_failed_mission_and_a_world_without_design_are_not_compared() -> None:
+def test_a_failed_mission_is_not_compared_and_without_a_designed_world_no_mission_is_compared() -> None:
     failed, bare = trials(7.9, 7.9, passed=False), trials(7.9, None)
     assert not failed.reaches(CANDIDATE, 1, GOAL)
     assert not bare.reaches(CANDIDATE, 1, GOAL)

@@ -215,7 +215,7 @@ def test_episodes_in_the_designed_world_count_towards_the_budget() -> None:
         trials(Candidate((mutation,), ALWAYS), 2)
 
 
-def test_a_failed_mission_is_not_near_if_missions_are_required_to_pass() -> None:
+def test_a_failed_mission_is_not_a_near_miss_if_missions_are_required_to_pass() -> None:
     failed = Outcome(OFFLINE, passed=False)
     assert GOAL.reached(failed, 0)
     assert not replace(GOAL, passing=True).reached(failed, 0)

@@ -85,7 +85,7 @@ def test_a_gain_is_the_mean_over_the_executed_seeds_and_is_unknown_if_nothing_ca
     assert end.value.value is None
 
 
-def test_each_of_the_two_near_factors_is_added_the_better_one_first() -> None:
+def test_both_near_factors_are_added_beginning_with_the_better_factor() -> None:
     gains = {B: {2.2: -1.0, 0.4: 2.0}, C: {2.2: 1.0}}
     search, _ = selection(lambda by, seed: 0.0, gains=gains)
     found = [one.parts[1] for turn in (0, 1) for one in search._with_another(joint((A, 2.2)), turn)]
@@ -264,7 +264,7 @@ def test_the_first_part_is_combined_with_the_next_five_and_the_best_pair_with_a_
     assert len(triples) == 4  # 4.5 of 10 is not promising, so the best one is not balanced
 
 
-def test_a_promising_combination_is_balanced_and_units_without_an_effect_are_added_to_the_pair() -> None:
+def test_a_promising_combination_is_balanced_and_constants_without_an_effect_are_added_to_the_pair() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 3.0 * ("A" in by) + 3.0 * ("B" in by) + 2.0 * (by.get("D", 0) == 5.0 and len(by) == 3)
 
@@ -277,7 +277,7 @@ def test_a_promising_combination_is_balanced_and_units_without_an_effect_are_add
     assert any("D7.5" in words for words in tried)  # 8 exceeds 6 by more than the slack, so it is balanced
 
 
-def test_units_without_an_effect_are_added_to_the_first_two_parts_of_the_best_combination() -> None:
+def test_constants_without_an_effect_are_added_to_the_first_two_parts_of_the_best_combination() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 2.0 * len(by.keys() & {"A", "B", "C"})
 
@@ -289,7 +289,7 @@ def test_units_without_an_effect_are_added_to_the_first_two_parts_of_the_best_co
     assert [words for words in first(seen) if "D" in words] == ["A2.2 B2.2 D5"]
 
 
-def test_a_pair_that_cannot_run_is_not_combined_with_a_hidden_unit() -> None:
+def test_a_pair_that_cannot_run_is_not_combined_with_a_constant_without_an_effect() -> None:
     def world(by: dict[str, float], _: int) -> float:
         raise refused(by)
 
@@ -358,7 +358,7 @@ def many(count: int) -> list[Unit]:
 
 
 @pytest.mark.parametrize("count", [5, 41])
-def test_the_number_of_runs_of_a_screening_grows_with_the_root_of_the_number_of_units(
+def test_the_number_of_runs_of_a_screening_grows_with_the_square_root_of_the_number_of_constants(
     count: int,
 ) -> None:
     search, seen = selection(lambda by, seed: 0.0, many(count))
@@ -368,7 +368,7 @@ def test_the_number_of_runs_of_a_screening_grows_with_the_root_of_the_number_of_
     assert {len(words.split()) for words in first(seen)} == {4}
 
 
-def test_a_screening_returns_the_gaining_unit_first_and_then_the_others_in_their_order() -> None:
+def test_a_screening_lists_the_constant_that_gained_first_and_then_the_others_in_their_order() -> None:
     units = many(10)
     search, _ = selection(lambda by, seed: 5.0 if by.get("N107") == 0.4 else 0.0, units)
     order = yield_from(screened(search, ALWAYS, np.random.default_rng(1)))
@@ -409,7 +409,7 @@ def racing(
     return Race(mutations, Trials(run, 900), pairs), seen
 
 
-def test_arms_run_seed_by_seed_and_gain_over_the_unmutated_run_of_the_seed() -> None:
+def test_changes_run_seed_by_seed_and_each_gain_is_relative_to_the_unmutated_run_of_the_seed() -> None:
     race, seen = racing(lambda name, factor, seed: seed + factor)
     arms = [Arm(A, 2.2, ALWAYS), Arm(B, 0.4, ALWAYS), Arm(C, 1.0, ALWAYS)]
     race.run(arms, 2)
@@ -420,7 +420,7 @@ def test_arms_run_seed_by_seed_and_gain_over_the_unmutated_run_of_the_seed() -> 
     assert seen[4:] == [("A", 2.2, 2)]
 
 
-def test_an_arm_that_cannot_be_written_has_no_gain() -> None:
+def test_a_ranked_change_that_cannot_be_written_has_no_gain() -> None:
     def world(name: str, factor: float, seed: int) -> float:
         if name == "A":
             raise RepairError("no place")
@@ -431,7 +431,7 @@ def test_an_arm_that_cannot_be_written_has_no_gain() -> None:
     assert list(race.gains) == [Arm(B, 2.2, ALWAYS)]
 
 
-def test_new_arms_lie_halfway_to_the_neighbours_under_the_same_guard() -> None:
+def test_new_factors_lie_halfway_to_the_neighbouring_factors_under_the_same_condition() -> None:
     race, _ = racing(lambda name, factor, seed: 0.0)
     for unit, factor, guard in (
         (A, 0.4, ALWAYS),
@@ -452,7 +452,7 @@ def test_new_arms_lie_halfway_to_the_neighbours_under_the_same_guard() -> None:
     assert [one.factor for one in race.around(Arm(A, 0.4, ALWAYS))] == [round(sqrt(0.4 * 2.2), 3)]
 
 
-def test_the_best_arm_of_an_operand_is_its_effect() -> None:
+def test_the_effect_of_a_constant_is_the_effect_of_its_best_change() -> None:
     race, _ = racing(lambda name, factor, seed: seed + (factor if name == "A" else -1.0))
     race.run([Arm(A, 2.2, ALWAYS), Arm(A, 5.0, ALWAYS), Arm(A, 0.4, ALWAYS), Arm(B, 2.2, ALWAYS)], 1)
     effects = arm_effects(race)
@@ -462,7 +462,7 @@ def test_the_best_arm_of_an_operand_is_its_effect() -> None:
     assert two.effect == -1.0
 
 
-def test_halving_keeps_the_better_half_of_the_gaining_arms_and_adds_arms_around_the_best_arm() -> None:
+def test_halving_keeps_the_better_half_of_the_gaining_changes_and_adds_changes_around_the_best() -> None:
     seen: list[tuple[str, float, int]] = []
 
     def run(candidate: Candidate, seed: int) -> Outcome:
@@ -513,25 +513,25 @@ def table(*tries: tuple[Unit, float, float], slack: float = 1.0, **given: Any) -
     return found
 
 
-def test_the_best_units_under_guards_are_sorted_by_gain_and_not_by_factor() -> None:
+def test_the_best_constants_under_conditions_are_sorted_by_gain_and_not_by_factor() -> None:
     found = table((A, 5.0, 2.0), (B, 0.4, 9.0), (C, 2.2, -1.0), (D, 1.5, 4.0))
     assert found.best_under([ALWAYS]) == [(B, 0.4), (D, 1.5), (A, 5.0)]
     assert found.best_under([WET]) == []
 
 
-def test_the_leaders_of_statements_are_sorted_by_gain() -> None:
+def test_the_best_changes_of_the_statements_are_sorted_by_gain() -> None:
     found = table((A, 5.0, 2.0), (A, 0.4, 3.0), (B, 2.2, 9.0), (C, 2.2, 0.0))
     assert found.leaders(ALWAYS) == [(9.0, (B, 2.2)), (3.0, (A, 0.4))]
 
 
-def test_units_are_ordered_in_a_step_by_their_gain_with_the_step_before() -> None:
+def test_in_each_step_the_constants_are_ordered_by_their_gain_in_the_previous_step() -> None:
     found = table((A, 2.2, -0.5), (B, 2.2, 3.0), (C, 2.2, 1.0), (D, 0.4, 9.0))
     assert found.leading(2.2, ALWAYS, [A, B, C, D], -1.0) == [B, C, A]
     assert found.leading(2.2, ALWAYS, [A, B, C, D], 1.0) == [B, C]
     assert found.leading(2.2, WET, [A, B, C, D], -1.0) == []
 
 
-def test_units_that_have_no_effect_in_two_tries_are_not_moved_further() -> None:
+def test_constants_that_have_no_effect_in_two_tries_are_not_moved_further() -> None:
     found = table((A, 2.2, 0.0), (A, 0.4, 0.0), (B, 2.2, 0.0), (C, 2.2, 0.0), (C, 0.4, -1.0))
     assert found.moving([A, B, C, D]) == [B, C, D]
     assert [found.moves(one) for one in (A, B, C, D)] == [False, False, True, False]
@@ -577,7 +577,7 @@ def test_episodes_of_the_designed_world_are_announced_only_for_new_seeds() -> No
     assert heard == [[3, 4], [5]]
 
 
-def test_the_tolerated_failure_rate_is_five_points_above_the_recorded_rate_and_at_most_one() -> None:
+def test_the_tolerated_failure_rate_is_five_percentage_points_above_the_recorded_rate_up_to_one() -> None:
     reference = Reference((10.0, 8.0), 0.9, 0.5, 0.0)
     assert reference.tolerated == pytest.approx(0.15)
     assert replace(reference, pass_rate=0.01).tolerated == 1.0
@@ -632,7 +632,7 @@ def test_outcomes_of_another_phase_and_of_an_equal_candidate_are_known() -> None
     assert other.spent == 1
 
 
-def test_the_second_factor_of_each_unit_is_skipped_if_the_better_factor_has_no_effect_on_any_unit() -> None:
+def test_the_second_factor_is_skipped_if_the_better_factor_has_no_effect_on_any_constant() -> None:
     gains = {A: {2.2: 5.0}, B: {2.2: 1.0}, C: {0.4: 1.0}}
     search, seen = selection(lambda by, seed: 5.0, gains=gains)
     assert list(search.candidates(joint((A, 2.2)))) == []

@@ -63,7 +63,7 @@ def test_a_named_constant_gets_a_smaller_step_before_literals_if_its_smallest_st
 
 
 @pytest.mark.parametrize(("lost", "early"), [(5.0, True), (-1.0, False)])
-def test_a_named_constant_that_loses_both_ways_gets_smaller_steps_before_literals(
+def test_a_named_constant_that_loses_in_both_directions_gets_smaller_steps_before_literals(
     lost: float, early: bool
 ) -> None:
     def constant(line: int, name: str) -> Operand:

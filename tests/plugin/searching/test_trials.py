@@ -250,7 +250,7 @@ def test_the_risks_of_all_tests_sum_to_alpha() -> None:
     assert sum(risk_of(0.06, n) for n in range(40)) == pytest.approx(0.06)
 
 
-def test_the_reference_tolerates_five_points_more_failures_and_clips_losses() -> None:
+def test_the_reference_tolerates_five_percentage_points_more_failures_and_clips_losses() -> None:
     one = Reference([4.0, 6.0], 0.9, 1.0, 5.0)
     assert one.mean == 5.0
     assert one.tolerated == pytest.approx(0.15)
@@ -287,7 +287,7 @@ def test_a_candidate_makes_missions_fail_sooner_only_if_each_mission_fails_soone
         (False, None, 9.5, False),
     ],
 )
-def test_a_mission_that_stands_still_until_its_end_feigns_a_gain(
+def test_the_gain_of_a_mission_that_stands_still_until_its_end_does_not_count(
     passed: bool, steps: int | None, total: float, feigned: bool
 ) -> None:
     goal = replace(GOAL, passing=True, steps=100.0)

@@ -70,7 +70,7 @@ def test_a_constant_is_also_tried_on_its_second_scale_and_a_zero_only_on_its_sec
     assert charted([zero], {}) == (zero,)
 
 
-def test_the_uses_of_a_named_constant_in_a_file_are_one_unit() -> None:
+def test_the_uses_of_a_named_constant_in_a_file_change_together() -> None:
     elsewhere = replace(SECOND, site=SiteId("node", "run", "t"))
     other_file = replace(SECOND, span=replace(SECOND.span, path="b.py"))
     flag = use("FLAG", True, named=2)
@@ -137,7 +137,9 @@ def returned(text: str, qualname: str = "Node.gain") -> Unit:
         ("gain(", False),
     ],
 )
-def test_a_changed_return_value_is_replaced_by_changes_at_its_calls(code: str, called: bool) -> None:
+def test_changes_at_the_calls_of_a_function_replace_the_change_of_its_return_value(
+    code: str, called: bool
+) -> None:
     call = Unit((use(code, None),))
     among = [call, Unit(call.operands, SHARE)]
     assert calls_of(returned("return self.kp"), among) == ([call] if called else [])

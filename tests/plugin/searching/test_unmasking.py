@@ -59,14 +59,14 @@ def test_missions_of_unknown_length_do_not_count_as_longer() -> None:
     assert not longer(base, selection(trials))
 
 
-def test_units_without_an_effect_under_the_change_take_two_episodes_each() -> None:
+def test_constants_without_an_effect_under_another_change_take_two_episodes_each() -> None:
     trials = Trials(wrap, 300)
     base, hidden = Joint(((Unit((PULL,)), 0.65),), ALWAYS), [Unit((one,)) for one in REST]
     assert not list(unmasked(base, hidden, selection(trials)))
     assert trials.spent == 1 + 2 * len(REST)
 
 
-def test_no_more_than_a_set_number_of_units_is_tried() -> None:
+def test_at_most_a_fixed_number_of_constants_is_tried() -> None:
     many = [Unit((constant(n, f"C{n}"),)) for n in range(3, 2 * MOST)]
     trials = Trials(wrap, 300)
     assert not list(unmasked(Joint(((Unit((PULL,)), 0.65),), ALWAYS), many, selection(trials)))

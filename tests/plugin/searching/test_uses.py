@@ -87,7 +87,7 @@ def test_a_use_with_a_small_gain_is_not_credited_with_the_possible_gain_of_an_un
     assert (found[str(FIRST.site)][0].effect, found[str(SECOND.site)][0].effect) == (1.0, 9.0)
 
 
-def test_uses_outside_the_search_change_with_the_others_and_units_on_a_scale_stay_separate() -> None:
+def test_uses_outside_the_search_change_with_the_other_uses_and_constants_on_a_scale_stay_separate() -> None:
     plain = [*units([FIRST, *OTHERS, SECOND]), Unit((SECOND,), SHARE)]
     united, parts = uses_apart(plain, units([OUTSIDE, constant(30, "ELSEWHERE", 1.0)]))
     whole = Unit((FIRST, SECOND, OUTSIDE))

@@ -124,7 +124,7 @@ def test_a_chain_whose_first_test_exceeds_the_budget_yields_no_episodes_for_the_
     assert not evaluator.knows(point)
 
 
-def test_the_risks_of_all_chains_and_of_all_looks_of_a_test_add_up_to_the_whole_risk() -> None:
+def test_the_risks_of_all_chains_and_of_all_checks_of_a_test_add_up_to_the_whole_risk() -> None:
     assert RECORDED + sum(_share(number) for number in range(60)) == pytest.approx(1.0)
     assert _share(len(SHARES)) > _share(len(SHARES) + 1) > 0.0
     assert sum(SPENT) == pytest.approx(1.0)

@@ -85,7 +85,7 @@ def test_a_drift_that_always_fails_is_confirmed_after_the_first_block_that_shows
     assert tests.ran == tests.failed == {*ran}
 
 
-def test_a_drift_that_never_fails_ends_when_no_failure_can_be_shown_any_more() -> None:
+def test_the_test_of_a_drift_that_never_fails_ends_once_a_failure_can_no_longer_be_shown() -> None:
     shown, (ran,), (count,), tests = confirmed(lambda _: False)
     assert shown == [False]
     assert 0 < len(ran) < LOOKS[-1]
@@ -94,7 +94,7 @@ def test_a_drift_that_never_fails_ends_when_no_failure_can_be_shown_any_more() -
     assert tests.ran == tests.failed == set()
 
 
-def test_failures_after_a_look_do_not_count_in_that_look() -> None:
+def test_failures_after_an_interim_check_do_not_count_in_that_check() -> None:
     # one failure fewer than needed among the first 16 seeds, and all further seeds pass
     assert not confirmed(lambda row: row < LEAST[0] - 1)[0][0]
     # the missing one follows among the first 32 seeds, which need more failures

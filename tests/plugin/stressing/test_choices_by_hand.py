@@ -91,7 +91,7 @@ def searching(
     return found
 
 
-def test_predictions_vary_in_the_error_that_they_allow_for_and_each_is_tried(
+def test_predictions_allow_for_errors_of_different_sizes_and_each_prediction_is_tried(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     model = Model([np.array([0.5, 0.0]), np.array([0.4, 0.0]), np.array([0.3, 0.0])])
@@ -361,7 +361,7 @@ def test_a_margin_with_failures_has_an_error_of_at_least_a_tenth() -> None:
     assert flat <= 1.0
 
 
-def test_a_test_of_one_part_ignores_the_other() -> None:
+def test_a_test_of_one_part_of_the_guarantee_ignores_the_other_part() -> None:
     losing, failing = outcomes(*[9.0] * 32), outcomes(*[10.0] * 32, failed=16)
     for part, by_loss, by_rate in (("both", True, True), ("loss", True, False), ("rate", False, True)):
         found = [refuted(GIVEN, one, USUAL[:32], 0.01, part) for one in (losing, failing)]  # type: ignore[arg-type]

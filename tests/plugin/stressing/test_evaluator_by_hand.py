@@ -125,20 +125,20 @@ def test_fresh_seeds_differ_from_the_seeds_of_the_search() -> None:
 # confirmations
 
 
-def test_a_clear_failure_is_confirmed_after_the_first_look() -> None:
+def test_a_clear_failure_is_confirmed_after_the_first_check() -> None:
     made, ran = evaluator(constant(10.0, passed=False))
     assert made.confirm(UP, "chain 0", 0.01)
     assert made.spent == 2 * FRESH[0]
     assert {plan.seed for plan in ran.plans} == set(seeds("chain 0", FRESH[0]))
 
 
-def test_testing_a_drift_without_any_loss_ends_after_the_first_look() -> None:
+def test_testing_a_drift_without_any_loss_ends_after_the_first_check() -> None:
     made, _ = evaluator(constant(10.0))
     assert not made.confirm(UP, "chain 0", 0.01)
     assert made.spent == 2 * FRESH[0]
 
 
-def test_each_look_has_its_share_of_the_risk(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_interim_check_has_its_share_of_the_risk(monkeypatch: pytest.MonkeyPatch) -> None:
     risks: list[float] = []
 
     def refuted(given: Any, outcomes: Any, nominal: Any, risk: float, part: str) -> bool:
@@ -155,7 +155,7 @@ def test_each_look_has_its_share_of_the_risk(monkeypatch: pytest.MonkeyPatch) ->
     assert risks == pytest.approx([0.01, 0.02, 0.07])
 
 
-def test_whether_a_test_is_hopeless_is_judged_by_its_last_look(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_test_is_judged_hopeless_by_its_last_check(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[tuple[int, int, float, str]] = []
 
     def hopeless(

@@ -138,7 +138,7 @@ def test_if_the_budget_ends_before_the_near_end_of_a_boundary_is_found_only_the_
     assert (boundary["held_up_to"], boundary["confidence"]) == (None, CONFIDENCE)
 
 
-def test_a_direction_with_a_suspected_failure_is_shown_to_hold_up_to_it() -> None:
+def test_a_direction_with_a_suspected_failure_is_shown_to_hold_up_to_the_failure() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(draws.random() > 0.07 * (point["size"] > 0.8)), 1.0  # too rare to be confirmed
 

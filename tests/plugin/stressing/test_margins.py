@@ -140,7 +140,7 @@ def repository(folder: Path, before: Margins, after: Margins) -> None:
     path.write_text(text(after), "utf-8")
 
 
-def test_diff_compares_with_a_revision_and_fails_if_asked(
+def test_the_command_diff_compares_with_a_revision_and_fails_on_request(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     worse = replace(

@@ -213,9 +213,7 @@ def test_a_chain_tests_the_part_of_the_guarantee_that_its_nearest_drift_breaks(
     assert part_of(model_of([], []), []) == "both"
 
 
-def test_of_the_clear_failures_those_at_half_at_three_quarters_and_at_the_end_of_the_list_are_tested() -> (
-    None
-):
+def test_the_clear_failures_at_one_half_three_quarters_and_the_end_of_the_list_are_tested() -> None:
     tried = [drift(a=size, b=size) for size in (0.2, 0.9, 0.5, 0.4, 0.7)]
     tried += [drift(a=0.1), drift(a=0.3, c=0.3)]
     results = {0.3: "holds"}
@@ -541,7 +539,7 @@ def test_chains_follow_further_searches_until_the_budget_is_spent(
     assert plans == [NEXT] * 11  # at most six searches
 
 
-def test_the_end_of_a_search_improves_tests_pairs_and_confirms_from_far_to_near(
+def test_at_its_end_a_search_improves_the_best_drift_then_tests_pairs_and_then_confirms_from_far_to_near(
     leading: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     order: list[Any] = []

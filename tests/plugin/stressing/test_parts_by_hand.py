@@ -403,7 +403,7 @@ def test_episodes_of_failures_alternate_and_are_compared_with_similar_episodes_t
 # sentences
 
 
-def test_a_limit_is_below_or_above_by_the_side_of_nominal() -> None:
+def test_the_side_of_nominal_decides_whether_a_limit_is_printed_as_below_or_above() -> None:
     assert [_sign(ray) for ray in (MUD, FLAT, STEEP)] == ["≥", "≥", "≤"]
     up = Ray(space_of(a=Drift.range(0.0, 0.5, nominal=0.0)), ("a",), {"a": 0.5})
     assert _sign(up) == "≤"
@@ -622,7 +622,7 @@ def test_the_margins_of_an_option_are_zero_and_one() -> None:
 # guarantees
 
 
-def test_the_failure_rate_to_hope_for_is_a_standard_error_higher() -> None:
+def test_the_optimistic_failure_rate_is_about_a_standard_error_higher() -> None:
     assert hopeful(3, 16) == pytest.approx(5 / 16)
     assert hopeful(0, 8) == pytest.approx(1 / 8)
 
@@ -636,7 +636,7 @@ def test_the_minimum_number_of_episodes_that_show_a_rate_equals_that_of_clopper_
     assert least(share, failed, risk) == expected
 
 
-def test_a_low_rate_needs_eight_episodes_at_least() -> None:
+def test_a_low_rate_needs_at_least_eight_episodes() -> None:
     assert least(0.1, 0, 0.05) == 8
 
 

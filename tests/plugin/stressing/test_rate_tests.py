@@ -106,7 +106,7 @@ def test_the_model_learns_a_rate_that_the_order_of_the_seeds_does_not_bias() -> 
         assert np.mean(shares) == pytest.approx(0.3, abs=0.06)
 
 
-def test_each_look_has_a_risk_and_the_risks_of_all_looks_add_up_to_the_whole_risk() -> None:
+def test_each_interim_check_has_a_risk_and_these_risks_add_up_to_the_whole_risk() -> None:
     assert sum(SPENT) == pytest.approx(1.0)
     assert len(SPENT) == len(LOOKS)
     assert list(LOOKS) == sorted(LOOKS)

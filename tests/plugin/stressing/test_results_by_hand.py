@@ -284,13 +284,13 @@ def test_a_bisection_halves_the_interval_to_a_fiftieth_of_the_range() -> None:
     assert undecided.bracket == (0.5, 0.53125)
 
 
-def test_directions_that_do_not_fail_alone_are_listed_with_the_share_up_to_which_they_hold() -> None:
+def test_directions_that_do_not_fail_alone_are_listed_with_the_share_at_which_the_guarantee_holds() -> None:
     harmless = [curve(MUD, {1.0: 1.0}), curve(LEFT, {1.0: 1.0})]
     failing = [curve(FLAT, GOOD), curve(STEEP, {0.25: -1.0}), curve(DOWN, {1.0: -1.0})]
     assert [*_inside([harmless[0], *failing, harmless[1]])] == [(MUD, 1.0), (FLAT, 0.45), (LEFT, 1.0)]
 
 
-def test_a_drift_contains_another_if_no_direction_of_the_other_is_farther_from_nominal() -> None:
+def test_a_drift_contains_another_drift_if_it_is_at_least_as_far_from_nominal_in_every_direction() -> None:
     one = combined(mud=2.0, slope=-0.5).point
     assert contains(SPACE, one, combined(mud=2.0).point)
     assert contains(SPACE, one, one)

@@ -98,7 +98,7 @@ def test_half_of_the_explored_drifts_lie_where_the_model_expects_losses() -> Non
     assert min(point["a"] for point in guided) > np.mean([point["a"] for point in spread])
 
 
-def test_drifts_around_the_best_one_are_tried() -> None:
+def test_drifts_around_the_best_drift_are_tried() -> None:
     evaluator = evaluator_of(sloping, SQUARE)
     nearest = Nearest(evaluator, [], [{"a": 0.9, "b": 0.6}])
     evaluator.examine(nearest.tried[0], 16)

@@ -327,7 +327,7 @@ def test_an_offset_needs_three_values_in_each_second_half() -> None:
     assert strength("offset", pair(np.ones(20), ends(4.0, 2.0))) == 0.0
 
 
-def test_one_pair_with_too_few_values_is_enough_to_find_no_offset_and_no_swing() -> None:
+def test_if_one_pair_has_too_few_values_no_offset_and_no_swing_is_found() -> None:
     known, few = pair(ends(4.0, 0.0), ends(4.0, 2.0)), pair(ends(4.0, 0.0, 4), ends(4.0, 2.0, 4))
     assert strength("offset", known) == 1.0
     assert strength("offset", known, few) == strength("offset", few, known) == 0.0

@@ -54,7 +54,7 @@ class Contested(io.BytesIO):
         raise ValueError("I/O operation on closed file")
 
 
-def test_two_threads_may_end_a_worker_at_once() -> None:
+def test_two_threads_may_end_a_worker_at_the_same_time() -> None:
     process = Process()
     process.stdin, process.stdout = Contested(), Contested()
     one = worker(process)

@@ -120,7 +120,7 @@ def test_a_worker_whose_pipe_is_closed_can_be_dismissed(start: Any) -> None:
     assert "kill" in process.signals
 
 
-def test_a_worker_that_ended_is_awaited_before_its_last_words_are_read(start: Any) -> None:
+def test_a_worker_that_ended_is_awaited_before_its_last_output_is_read(start: Any) -> None:
     one, process, _ = start(hangs=True)
     one._log.write("first\n\xfc last\n\n".encode("latin-1"))
     with pytest.raises(WorkerDiedError, match=r"^ended with status 3: \ufffd last$"):
@@ -135,7 +135,9 @@ def test_a_worker_that_ended_is_awaited_before_its_last_words_are_read(start: An
 @pytest.mark.parametrize(
     ("status", "held"), [(-signal.SIGABRT, False), (-(pool.SIGNAL or 0), True), (0, False)]
 )
-def test_a_worker_that_a_signal_of_the_watchdog_ended_was_held(start: Any, status: int, held: bool) -> None:
+def test_a_worker_that_the_watchdog_ended_by_a_signal_is_reported_as_hung(
+    start: Any, status: int, held: bool
+) -> None:
     one, process, _ = start()
     process.returncode = status
     one._log.write(b'  File "/robot/keeper.py", line 12 in control\n')
@@ -167,7 +169,7 @@ def test_a_silent_worker_is_killed_even_if_it_ignores_the_signal(
         ('File "/r/n.py", line 12 in g\n', "n.py"),
     ],
 )  # fmt: skip
-def test_the_place_that_held_a_worker_is_the_innermost_code_of_the_user(log: str, place: str) -> None:
+def test_the_place_at_which_a_worker_hung_is_the_innermost_code_of_the_user(log: str, place: str) -> None:
     found = pool.place_held(log.format(ours=pool.WORKER_MAIN.parent.parent))
     assert (place in found) if place else (found == pool.describe_first([]))
     assert "m.py" not in found
@@ -223,7 +225,7 @@ def test_a_worker_is_greeted_once_and_serves_only_its_own_job(willing: Any) -> N
 
 
 @pytest.mark.parametrize("error", [TarlError("no marker"), WorkerHeldError("a.py:3"), KeyboardInterrupt()])
-def test_an_error_that_would_come_again_is_not_tried_again(willing: Any, error: BaseException) -> None:
+def test_an_episode_whose_error_would_occur_again_is_not_retried(willing: Any, error: BaseException) -> None:
     willing.failing = error
     one = Pool()
     with pytest.raises(type(error)):
