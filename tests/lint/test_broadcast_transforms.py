@@ -1,4 +1,4 @@
-"""Transforms that a node broadcasts are sinks for a program that runs the code, and not in reports."""
+"""Broadcast transforms are sinks only for a program that runs the code; reports do not contain them."""
 
 from __future__ import annotations
 

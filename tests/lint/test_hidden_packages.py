@@ -41,7 +41,7 @@ WAYS = {
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Return a workspace in which `arms/CATKIN_IGNORE` hides a node, and `legs/COLCON_IGNORE` another."""
+    """Return a workspace in which `arms/CATKIN_IGNORE` hides one node, and `legs/COLCON_IGNORE` hides another node."""
     hidden = {
         f"{one}s/{one}/{name}": text
         for one in ("arm", "leg")

@@ -253,7 +253,7 @@ def test_an_unknown_condition_is_reported(tmp_path: Path) -> None:
 
 
 Statements = list[tuple[object, ...]]
-MOST = 5  # maximum number of conditions of one launch file; the oracle reads it for all their values
+MOST = 5  # maximum number of conditions of a launch file; the oracle reads the file for all their values
 
 
 def blocks(depth: int, *, loop: bool) -> st.SearchStrategy[Statements]:

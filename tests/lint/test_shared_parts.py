@@ -1,4 +1,4 @@
-"""Results for a set of nodes are the same, whether computed at once or extended from those of a subset."""
+"""Results for a set of nodes are the same, whether computed at once or extended from the results for a subset."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ KNOWN = ["--select", "--exclude"]
 
 
 def graph(count: int, **parts) -> SimpleNamespace:
-    """Return a graph in which `data` and `control` map a node to what it is made from."""
+    """Return a graph in which `data` and `control` map each node to the nodes on which it depends."""
 
     def table(name):
         given = parts.pop(name, {})

@@ -59,7 +59,7 @@ def test_statements_of_other_functions_that_a_loop_uses_come_before_the_loop():
 
 
 def ahead(edges, turns, function) -> set[int]:
-    """Return the statements that precede the loop's head 9 for the loop's sake."""
+    """Return the statements that precede the loop's head 9 because the loop uses their values."""
     order = Precedence(edges)
     known = order.formers(9)
     order.add_ahead_of_loops(turns, function)

@@ -1,4 +1,4 @@
-"""What is said of files that cannot be nodes."""
+"""The messages about files that cannot be nodes."""
 
 from __future__ import annotations
 

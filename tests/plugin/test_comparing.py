@@ -1,4 +1,4 @@
-"""The parts of a comparison: sites of the recording today, tables by cell, rows to sum over, and drift sizes."""
+"""The parts of a comparison: current positions of recorded sites, tables by cell, rows to sum over, and drift sizes."""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ def published(code: CodeType, lines: Sequence[str], events: Sequence[Event]) -> 
 
 
 def dependences(text: str, seed: int, times: int) -> set[tuple[str, str]]:
-    """Return (input topic, output topic) pairs of which executions show that the output depends on the input."""
+    """Return the pairs (input topic, output topic) for which executions show that the output depends on the input."""
     draw = random.Random(seed)
     code, lines = compile(text, "node.py", "exec"), text.splitlines()
     found: set[tuple[str, str]] = set()

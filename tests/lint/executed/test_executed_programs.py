@@ -1,4 +1,4 @@
-"""Whatever an executed program shows to depend on a topic's messages, the linter reports as a flow from this topic."""
+"""If an execution shows that an output depends on a topic's messages, the linter reports a flow from this topic."""
 
 from __future__ import annotations
 

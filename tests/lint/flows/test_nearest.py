@@ -1,4 +1,4 @@
-"""Results are extended from those for large subsets, and do not depend on which subsets are known."""
+"""Results are extended from the results for large subsets, and do not depend on which subsets are known."""
 
 from __future__ import annotations
 

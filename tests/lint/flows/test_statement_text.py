@@ -1,4 +1,4 @@
-"""The text, span and identity of each statement; of a compound statement, those of its header."""
+"""The text, span and identity of each statement; a compound statement has those of its header."""
 
 from __future__ import annotations
 

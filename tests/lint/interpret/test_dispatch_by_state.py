@@ -1,4 +1,4 @@
-"""Dispatch by state: what chose the state decides which method runs, also if only one was possible at first."""
+"""Dispatch by state: the choice of the state decides which method runs, even if at first only one was possible."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Loops over objects: the answer of an earlier one decides whether later ones are asked, but not the reverse."""
+"""Loops over objects: the answer of an object decides whether later objects are called, but not earlier objects."""
 
 from __future__ import annotations
 

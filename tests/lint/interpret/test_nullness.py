@@ -1,4 +1,4 @@
-"""A check for None depends on data if it tells what a message contains, not if it tells whether one has arrived."""
+"""A check for None depends on data if it shows what a message contains, not if it shows that a message has arrived."""
 
 from __future__ import annotations
 

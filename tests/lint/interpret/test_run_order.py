@@ -1,4 +1,4 @@
-"""Which parts of state machines and behaviour trees depend on the outcomes of others."""
+"""Which parts of state machines and behaviour trees depend on the outcomes of other parts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Objects that replace each other, each made by a method of the one before, are represented by few objects."""
+"""Objects that replace each other, each made by a method of the previous object, are represented by few objects."""
 
 from __future__ import annotations
 

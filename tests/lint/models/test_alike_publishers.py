@@ -1,4 +1,4 @@
-"""Which of several publishers a message goes through decides nothing if they have the same topic and node."""
+"""The choice between several publishers is not a decision if all of them have the same topic and node."""
 
 from __future__ import annotations
 

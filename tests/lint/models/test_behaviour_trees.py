@@ -1,4 +1,4 @@
-"""Behaviours of py_trees share a blackboard, and the status of one decides whether others run."""
+"""Behaviours of py_trees share a blackboard, and the status of a behaviour decides whether others run."""
 
 from __future__ import annotations
 

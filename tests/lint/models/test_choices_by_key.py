@@ -1,4 +1,4 @@
-"""What `sorted`, `min`, `max` and their relatives compare decides which element is where; it is not its data."""
+"""The keys that `sorted`, `min` or `max` compare decide the place of each element, but are not data of the element."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is logged reaches the handlers of the logger and of those above it, from their level on."""
+"""A log record reaches the handlers of its logger and of the parent loggers, if its level is high enough."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is sent to a generator is the value of its `yield`, and decides what it does between two of them."""
+"""A value that is sent to a generator is the value of its `yield`, and decides what the generator does next."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run analyses its programs one by one, reuses reports, and tells what is final so far."""
+"""A run analyses its programs one by one, reuses reports, and states which findings are final so far."""
 
 from __future__ import annotations
 

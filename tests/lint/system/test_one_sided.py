@@ -1,4 +1,4 @@
-"""Topics, services and actions of a launch file that only have the side that uses them."""
+"""Topics, services and actions of a launch file that are used, but have no publisher or server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Each command hands the arguments of its command line on, with the documented defaults, and returns its status."""
+"""Each command forwards its command-line arguments, with the documented defaults, and returns its exit status."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ LOG = list[tuple[Any, ...]]
 
 
 class Part:
-    """A group, a link, a domain or a master, which notes what it is told."""
+    """A stand-in for a group, a link, a domain or a master that records its calls."""
 
     number = 7
     uri = "http://master"
@@ -54,7 +54,7 @@ class Now:
 
 
 class Made:
-    """A guardian, what its parts were told, and what it said."""
+    """A guardian, the recorded calls of its parts, and its events."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, events: Path) -> None:
         self.log: LOG = []

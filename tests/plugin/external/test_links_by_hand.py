@@ -25,7 +25,7 @@ Noted = list[tuple[Any, ...]]
 
 
 class Part:
-    """A context, node, executor or profile of rclpy that notes what it is told."""
+    """A stand-in for a context, node, executor or profile of rclpy that records its calls."""
 
     def __init__(self, log: Noted, kind: str, *given: Any, **options: Any) -> None:
         self.log, self.kind, self.options = log, kind, options
@@ -45,7 +45,7 @@ class Part:
 
 @pytest.fixture
 def log(monkeypatch: pytest.MonkeyPatch) -> Noted:
-    """Put a stand-in of rclpy into `sys.modules`; return what it is told."""
+    """Put a stand-in for rclpy into `sys.modules`; return its recorded calls."""
     noted: Noted = []
 
     def put(name: str, **contents: Any) -> None:

@@ -1,4 +1,4 @@
-"""A lost simulator is reported: how many episodes, why, and that they were run again (no ROS)."""
+"""Lost simulators are reported: the number of episodes, the reasons, and that the episodes ran again (no ROS)."""
 
 from __future__ import annotations
 

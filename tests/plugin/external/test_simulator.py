@@ -102,7 +102,7 @@ def test_a_running_simulator_drives_the_clock_and_topics_of_the_nodes(guardian: 
         guardian.events.put(event)
     made.advance(1.0)
     assert (ros.now, made.clock) == (3.0, 3.0)
-    assert heard == [(2.0, 0.5), (2.5, 1.0)]  # what came while it started, then as it comes
+    assert heard == [(2.0, 0.5), (2.5, 1.0)]  # first the output of the start, then output as it arrives
     guardian.events.put(clock(5.5))
     made.advance(1.0)  # the last message of the first step comes at once, and the clock may run ahead
     assert heard[2:] == [(3.0, 2.0)]

@@ -65,7 +65,7 @@ def effect(repair: str = "guard-1", reward: float = 0.5, low: float = 0.25, **ch
 
 
 def unknown(repair: str = "guard-1") -> Effect:
-    """Return the effect of a repair for which no stratum has missions in both arms."""
+    """Return the effect of a repair if no stratum has missions both with and without the repair."""
     nothing = bound(-inf, inf)
     return Effect(repair, (), (0, 0), (0, 0), 0, float("nan"), nothing, float("nan"), nothing)
 

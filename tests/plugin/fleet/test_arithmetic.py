@@ -85,7 +85,7 @@ def test_an_interval_needs_four_robots_with_and_four_without_the_repair(without:
 
 
 def test_the_jackknife_of_a_plain_mean_is_its_classical_interval() -> None:
-    """Each robot has one mission in each arm, so its jackknife pseudo-value is the difference of the two."""
+    """Each robot has one mission with and one without the repair; their difference is its jackknife pseudo-value."""
     number, gain = np.repeat(np.arange(6), 2), np.array([0.0, 1.0, 2.0, 3.0, 4.0, 8.0])
     arm = np.tile([0, 1], 6)
     total = np.where(arm == 1, gain[number], 0.0)

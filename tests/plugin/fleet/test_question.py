@@ -1,4 +1,4 @@
-"""`tarl fleet` applies the method for one robot to groups and robots, bitwise equally for any storage of the rows."""
+"""`tarl fleet` applies the method for one robot to each robot and group; any storage of the rows gives equal bits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Comparisons that share a number of episodes: their checks, the choice of the next one, and false alarms."""
+"""Comparisons that share a number of episodes: their checks, the choice of the next comparison, and false alarms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes in four styles, before and after a repair whose guard reads a topic that the node does not subscribe to."""
+"""Nodes in four styles, before and after a repair whose condition reads a topic that the node does not subscribe to."""
 
 from __future__ import annotations
 
@@ -248,7 +248,7 @@ NODES = {
 def repaired(
     sources: Mapping[str, str], flows: Any = (), guard: Guard = MUD, topics: Any = TOPICS, held: Any = ()
 ) -> dict[str, str]:
-    """Change the first 5 of the first file to 12 under the guard; return all files, changed or not."""
+    """Change the first 5 of the first file to 12 under the condition; return all files, changed or not."""
     analysis = HandMade(sources, flows, dict(held))
     changed = rewrite(analysis, [Mutation(analysis.operand("5", 5, "5 *"), 12.0)], guard, topics)
     return {**sources, **changed}

@@ -1,4 +1,4 @@
-"""Guards as Python: their conditions, the expressions they read, and no effect before the first message."""
+"""Conditions of repairs in Python: their text, the expressions they read, and no effect before the first message."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers of Python launch files that determine a parameter, with the share of the parameter that each one moves."""
+"""Numbers of Python launch files that determine a parameter, and the share of it that each number determines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The source text that mutations produce, without and under a guard."""
+"""The source text that mutations produce, without and under a condition."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Subscriptions that a guard needs have the right place and text, and the node runs with them."""
+"""Subscriptions that a condition needs have the right place and text, and the node runs with them."""
 
 from __future__ import annotations
 

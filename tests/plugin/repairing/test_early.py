@@ -1,4 +1,4 @@
-"""What is tried within the search of constants, by the episodes that the search has taken and its best gain."""
+"""Changes that are tried during the search of constants, depending on its episodes so far and its best gain."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A definition counts as used if a change there alters missions, perhaps only beside the other changes of a repair."""
+"""A definition counts as used if changing it alters missions, alone or with the other changes of a repair."""
 
 from __future__ import annotations
 

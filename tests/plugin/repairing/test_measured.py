@@ -1,4 +1,4 @@
-"""Changes of constants that recorded missions suggest, from how values differ between both worlds."""
+"""Recorded missions suggest changes of constants by the differences of values between both worlds."""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ def test_the_use_of_a_constant_that_a_constructor_stores_is_searched(tmp_path: P
 
 @dataclass(frozen=True)
 class Use:
-    """An operand of a statement, and what it is part of."""
+    """A constant of a statement, and the expression that contains it."""
 
     code: str
     definition: str | None = None

@@ -1,4 +1,4 @@
-"""Templates at values that do not vary: what they cannot change is not tried."""
+"""At values that do not vary, templates that can have no effect are not tried."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which operands and guards each search gets, and in which order."""
+"""The constants and conditions that each search gets, and their order."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Workspaces in one session whose packages have the same names: each node and test gets those of its own."""
+"""Workspaces with equally named packages in one session: nodes and tests get the packages of their own workspace."""
 
 from __future__ import annotations
 

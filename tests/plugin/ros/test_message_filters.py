@@ -56,7 +56,7 @@ def test_a_queue_forgets_its_oldest_message() -> None:
         ([(0, 1.0), (1, 1.1)], [(1.0, 1.1)]),
         ([(0, 1.0), (1, 1.101)], []),
         ([(0, 1.0), (0, 1.06), (1, 1.04)], [(1.06, 1.04)]),  # the nearest
-        ([(0, 1.0), (0, 1.1), (1, 1.05)], [(1.0, 1.05)]),  # of two that are as near, the older
+        ([(0, 1.0), (0, 1.1), (1, 1.05)], [(1.0, 1.05)]),  # of two equally near messages, the older one
         ([(0, 1.0), (1, 1.05), (1, 1.0)], [(1.0, 1.05)]),  # each message once
     ],
 )

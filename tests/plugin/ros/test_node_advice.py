@@ -280,7 +280,7 @@ def test_a_parameter_without_a_value_is_not_set(
 
 
 def in_package(folder: Path, **files: str) -> Given:
-    """Write a package `saver` with a node and these launch files; return what they give the node."""
+    """Write a package `saver` with a node and these launch files; return the settings that the files give the node."""
     (folder / ".git").mkdir()
     (folder / "package.xml").write_text("<package><name>saver</name></package>")
     for name, text in files.items():

@@ -1,4 +1,4 @@
-"""Parameters by prefix, ranges and their edges; logs once and at most every so often; functions called twice."""
+"""Parameters by prefix, ranges and their ends, logs once or at most once per period, and functions called twice."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Candidate guards are proposed from the region and from new cells; how often each guard holds."""
+"""Conditions are proposed from the region and from new cells; each one states how often it holds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which constants are combined, unmasked or changed at one use, with a scripted search around them."""
+"""Which constants are combined, tried under another change, or changed at one use; the search is scripted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A constant of which no single value suits all missions follows what differs between them."""
+"""If no single value of a constant suits all missions, the constant follows a sensor that differs between missions."""
 
 from __future__ import annotations
 

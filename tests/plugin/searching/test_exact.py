@@ -1,4 +1,4 @@
-"""Values at which missions follow the designed ones exactly are found before combinations and before rivals win."""
+"""Values with which missions equal the designed ones are found before combinations and alternative constants win."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_a_constant_that_gains_much_gets_its_exact_value_before_it_is_combined()
 
 
 def test_an_alternative_constant_is_compared_at_its_own_exact_value() -> None:
-    """LEAK hides that POWER is 0.72 of what it was; the factor that rivals try first, 0.667, is not exact."""
+    """LEAK hides that POWER is 0.72 of what it was; the factor tried first on alternatives, 0.667, is not exact."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
         off = abs(log(changed(candidate, POWER) / 0.72))

@@ -1,4 +1,4 @@
-"""How a sweep uses hints: small gains, gains under another guard, hidden parts, and seeds that fail."""
+"""How a sweep uses hints: small gains, gains under another condition, hidden parts, and seeds that fail."""
 
 from __future__ import annotations
 

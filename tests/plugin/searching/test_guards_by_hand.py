@@ -1,4 +1,4 @@
-"""Shares of the change, intervals and merits of guards, worked out by hand."""
+"""Shares of the change, intervals and merits of conditions, worked out by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A constant of which every other value is worse follows what varies."""
+"""If every other value of a constant is worse, the constant follows a sensor that varies."""
 
 from __future__ import annotations
 

@@ -186,7 +186,7 @@ def test_the_next_factors_lie_halfway_to_the_neighbours(
 
 
 def test_halving_confirms_a_candidate_on_the_seeds_after_the_first() -> None:
-    """All arms ran on the first seed and were chosen by it, so only the next seeds are independent evidence."""
+    """All changes ran on the first seed and were chosen by it, so only the next seeds are independent evidence."""
     ran: list[int] = []
 
     def run(candidate: Candidate, seed: int) -> Outcome:

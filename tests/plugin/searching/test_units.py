@@ -1,4 +1,4 @@
-"""Units of a search: which uses of constants change together, on which scale, and their best gains."""
+"""Uses of constants that change together in a search, their scales, and their best gains."""
 
 from __future__ import annotations
 

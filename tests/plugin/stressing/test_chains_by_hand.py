@@ -33,7 +33,7 @@ GIVEN = Guarantee(0.95, 0.5, (1.0,) * 100, 1.0)
 RISK = 0.05
 LEAST = tuple(
     size - most_passed(GIVEN, size, RISK * share, "rate") for size, share in zip(LOOKS, SPENT, strict=True)
-)  # number of failures at each look that shows the failure of a drift
+)  # number of failures at each check that shows that a drift fails
 
 
 class Scripted:

@@ -1,4 +1,4 @@
-"""Which part of the guarantee the tests of a chain are about, and the drifts that chains of failures add."""
+"""The part of the guarantee that a chain tests, and the drifts that chains of failures add."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ GIVEN = Guarantee(0.95, 0.5, (1.0,) * 100, 1.0)
 
 @dataclass
 class Told:
-    """A search whose model tells probabilities by the first coordinate of a drift."""
+    """A search whose model predicts probabilities from the first coordinate of a drift."""
 
     by_loss: dict[float, float]
     by_rate: dict[float, float]

@@ -1,4 +1,4 @@
-"""Each symptom on synthetic series: strong where its cause is, weak for a design that has it, and for other causes."""
+"""On synthetic series, each symptom is strong for its cause, and weak for other causes or if the design has it, too."""
 
 from __future__ import annotations
 
