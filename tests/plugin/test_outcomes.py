@@ -102,7 +102,7 @@ def test_a_skipped_test_is_skipped_with_its_reason_unless_a_bag_was_replayed() -
     assert ran(skipped, replayed=True).passed
 
 
-def test_marks_for_expected_failures_do_not_change_the_result_of_a_mission() -> None:
+def test_a_mark_for_an_expected_failure_does_not_change_the_result_of_a_mission() -> None:
     run = ran(report(outcome="skipped", told="reason", wasxfail="reason"), error=AssertionError("too far"))
     assert (run.passed, run.broken) == (False, "")
     assert ran(report(outcome="failed", told="[XPASS(strict)] reason")).passed

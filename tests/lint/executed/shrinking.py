@@ -35,7 +35,7 @@ def _fulfils(text: str, holds: Callable[[str], bool]) -> bool:
 
 
 def _variant(text: str, number: int) -> str | None:
-    """Return the program after the edit with this number; None if there is none, "" if the edit removes a whole body."""
+    """Return the program after the edit with this number; None if there is none, "" if it removes a whole body."""
     tree = ast.parse(text)
     for count, (block, place, new) in enumerate(_edits(tree)):
         if count == number:

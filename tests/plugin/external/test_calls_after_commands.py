@@ -104,7 +104,7 @@ def command(link: Link) -> None:
 
 
 @pytest.mark.parametrize("place", [("/", "cart"), ("/a", "cart")])
-def test_a_command_that_arrives_between_the_looks_of_an_executor_is_handled_before_the_step(
+def test_a_command_that_arrives_between_two_checks_of_an_executor_is_handled_before_the_step(
     monkeypatch: pytest.MonkeyPatch, place: tuple[str, str]
 ) -> None:
     simulator = Simulator([f"{place[0].rstrip('/')}/cart/get_parameters"])

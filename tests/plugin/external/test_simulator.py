@@ -56,7 +56,7 @@ def test_events_of_the_previous_simulator_are_ignored(guardian: Guardian, ros: R
         ([graph("", "/odom"), clock(0.0)], "no time on /clock"),
     ],
 )
-def test_a_simulator_that_is_not_ready_in_time_is_reported_with_what_is_missing(
+def test_the_error_about_a_simulator_that_is_not_ready_in_time_states_what_is_missing(
     guardian: Guardian, ros: Ros, events: list[dict[str, Any]], words: str
 ) -> None:
     guardian.react = lambda what, **_: [{"kind": "stopped"}, *events] if what == "start" else []

@@ -313,7 +313,7 @@ def test_a_formula_counts_only_episodes_in_which_it_was_judged() -> None:
     assert stacked([[], []]) is None
 
 
-def test_formulas_keep_the_given_order_and_additional_ones_are_sorted_by_name() -> None:
+def test_formulas_keep_the_given_order_and_additional_formulas_are_sorted_by_name() -> None:
     one = judgements([GOOD, Judged("b", 1.0), Judged("a", 1.0)])
     found = rows(["g", "never"], {"offline": None, "online": one})
     assert [row.formula for row in found] == ["g", "never", "a", "b"]

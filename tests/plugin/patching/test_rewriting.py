@@ -25,7 +25,7 @@ from tarl_lint.api import analyse
 from tests.plugin.patching.repairs import MUD, MUDDY_STRETCH, TOPICS, HandMade, TinyRos
 
 HELD = {("/terrain", "data"): ("mud",), ("/odom", "pose.pose.position.x"): ("pos",)}
-# Each case: a statement, its operand, the new value (None: the old one), the result without a guard and in mud.
+# Each case: a statement, its operand, the new value (None: the old one), the result without a condition and in mud.
 ALWAYS = [
     ("vel = 5 * delta", "5", 5, 12.0, "vel = 12.0 * delta"),
     ("vel = self.kp * delta", "self.kp", 0.5, 2.4, "vel = 2.4 * self.kp * delta"),
@@ -146,7 +146,7 @@ def test_a_condition_is_repeated_after_a_statement_that_may_change_it(first: str
     assert changed.count("if mud:") == 2
 
 
-def test_several_operands_of_a_statement_change_together() -> None:
+def test_several_constants_of_a_statement_change_together() -> None:
     text = "def step(delta, mud):\n    return min(5, max(-3, 2 * delta))\n"
     analysis = HandMade({"node.py": text}, held=HELD)
     uses = [

@@ -238,7 +238,7 @@ class Guarded(Field):
 def examined(
     kinds: dict[Guard, str], monkeypatch: pytest.MonkeyPatch, never: Guard | None = None
 ) -> tuple[list[Guard], Guard | None]:
-    """Return the guards that were examined, in order, and the guard of the accepted candidate.
+    """Return the conditions that were examined, in order, and that of the accepted candidate.
 
     The guard `never` holds in no designed mission.
     """

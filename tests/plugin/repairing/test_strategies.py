@@ -87,7 +87,7 @@ def codes(found: Any) -> list[str]:
     return [f"{one.code} in {one.span.line}" for one in found]
 
 
-def test_operands_of_the_first_slices_come_first_among_equally_readable_changes(order: Any) -> None:
+def test_among_equally_readable_changes_constants_of_the_first_slices_come_first(order: Any) -> None:
     ranked(order, "self.out.publish", "speed = ")
     late = codes(operands(order))
     ranked(order, "speed = ", "self.out.publish")
@@ -107,7 +107,7 @@ def test_the_constants_of_several_objects_of_a_class_are_changed_where_the_objec
     assert len(found) == len(set(found))
 
 
-def test_the_rate_of_a_loop_is_an_operand_that_is_set_aside(order: Any) -> None:
+def test_the_rate_of_a_loop_is_a_constant_that_is_set_aside(order: Any) -> None:
     assert codes(aside_operands(order, operands(order))) == ["20.0 in 29"]
     assert not set(aside_operands(order, operands(order))) & set(operands(order))
 
@@ -134,7 +134,7 @@ def made(monkeypatch: pytest.MonkeyPatch, order: Any, method: str, *guards: Guar
     return strategy(mutants, method, guards, trials)  # type: ignore[return-value]
 
 
-def test_a_sweep_gets_the_set_aside_operands_and_whether_structural_changes_follow(
+def test_a_sweep_gets_the_constants_that_were_set_aside_and_whether_structural_changes_follow(
     monkeypatch: pytest.MonkeyPatch, order: Any
 ) -> None:
     found = made(monkeypatch, order, "sweep", WET, ALWAYS)

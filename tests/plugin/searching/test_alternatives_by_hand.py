@@ -92,7 +92,7 @@ def test_the_exponent_nearest_to_one_is_taken_if_deviations_are_equal() -> None:
 def published(
     units: dict[Unit, Any], **given: Any
 ) -> tuple[Acting, Trials, Callable[[Unit, float, int], None]]:
-    """Return the comparison, its trials, and a function that runs a change; `units` map to what is published."""
+    """Return the comparison, its trials, and a function that runs a change; `units` maps a constant to its messages."""
     of = {unit.operands[0]: value for unit, value in units.items()}
 
     def run(candidate: Candidate, seed: int) -> Outcome:

@@ -28,7 +28,7 @@ from pytest_tarl.sensors import Cell
 
 X = Sensor("x", topic="/odom", field="x", low=0, high=10, bins=10)
 WET = Sensor("wet", topic="/wet", field="data")
-SEEN = Sensor("seen")  # observed only: no guard can read it
+SEEN = Sensor("seen")  # observed only: no condition can read it
 
 
 def world(seed: int, cells: list[Cell]) -> Sample:

@@ -282,7 +282,7 @@ def test_epsilon_greedy_yields_candidates_that_reach_the_goal_and_reports_mean_g
     assert len(found) <= EpsilonGreedy.CONFIRMED
 
 
-def test_epsilon_greedy_without_operands_or_budget_yields_nothing() -> None:
+def test_epsilon_greedy_without_constants_or_without_a_budget_yields_nothing() -> None:
     search = greedy({"A": 10.0, "B": 4.0}, 60, budget=0)
     search.actions = []
     assert [*search.candidates()] == []

@@ -104,7 +104,7 @@ def test_a_constant_has_an_effect_if_any_factor_changed_an_episode() -> None:
     one_way.enter((C, ALWAYS), 2.2, 0.0)
     assert one_way.moving([C, A]) == [C, A]  # moved in one direction only, or never tried
     one_way.enter((C, WET), 0.4, 0.0)
-    assert one_way.moving([C, A]) == [A]  # moved in both directions, under any guard
+    assert one_way.moving([C, A]) == [A]  # moved in both directions, under any condition
 
 
 def test_constants_that_lose_when_raised_and_when_lowered_are_found() -> None:
@@ -166,7 +166,7 @@ GRAVITY = constant(8, "GRAVITY", 9.81)
         (operand(9, "9.81", 9.81), Oddness.NATURE),
     ],
 )
-def test_each_kind_of_operand_has_its_rank_in_the_search_order(one: Operand, tried: Oddness) -> None:
+def test_each_kind_of_constant_has_its_rank_in_the_search_order(one: Operand, tried: Oddness) -> None:
     assert writing(one) is tried
 
 
@@ -425,7 +425,7 @@ def test_a_constant_clearly_loses_if_each_of_its_factors_lost_more_than_the_slac
 
 
 def many(moved: int) -> Gains:
-    """Return gains of eight units under WET, of which some changed an episode."""
+    """Return the gains of eight constants under WET; some of them changed an episode."""
     found = Gains(0.5)
     for line in range(8):
         found.enter((Unit((constant(10 + line, f"C{line}"),)), WET), 2.2, 0.0, line < moved)
@@ -435,7 +435,7 @@ def many(moved: int) -> Gains:
 def test_a_condition_counts_as_idle_if_hardly_any_change_under_it_has_an_effect() -> None:
     assert many(2).idle_guard(WET)
     assert not many(3).idle_guard(WET)
-    assert not gains().idle_guard(WET)  # too few units
+    assert not gains().idle_guard(WET)  # too few constants
     without = Gains(0.5)
     for line in range(8):
         without.enter((Unit((constant(10 + line, f"C{line}"),)), ALWAYS), 2.2, 0.0, False)

@@ -173,7 +173,7 @@ def test_proposals_change_at_most_three_constants_of_a_start_within_the_range() 
     assert np.quantile(near, 0.95) > 0.8  # small, medium and large changes
 
 
-def test_hidden_constants_are_moved_less_often() -> None:
+def test_constants_that_have_no_effect_alone_are_moved_less_often() -> None:
     found, _ = search({}, hidden=1)
     assert found._often.tolist() == [1.0, 1.0, jointly.SELDOM]
     moved = (found._proposals(np.zeros((1, 3))) != 0).mean(axis=0)

@@ -21,7 +21,7 @@ from tests.plugin.searching.test_forward_selection import operand
 GOAL = Goal(tuple(Pair(seed, 0.0) for seed in range(6)), near=9.0, enough=9.0, online=0.0)
 
 
-def test_main_effects_are_separated_although_several_operands_move_at_once() -> None:
+def test_main_effects_are_separated_although_several_constants_change_at_once() -> None:
     draws = np.random.default_rng(3)
     design = (draws.random((60, 20)) < 0.2).astype(float)
     effects = main_effects(design, design @ np.eye(20)[7] * 5.0)
@@ -29,7 +29,9 @@ def test_main_effects_are_separated_although_several_operands_move_at_once() -> 
 
 
 @pytest.mark.parametrize(("many", "most"), [(60, 140), (160, 300)])
-def test_screening_grows_more_slowly_than_the_number_of_operands(many: int, most: int) -> None:
+def test_the_number_of_runs_of_a_screening_grows_more_slowly_than_the_number_of_constants(
+    many: int, most: int
+) -> None:
     gains = [operand(line, "1.0", 1.0) for line in range(many)]
     right = gains[many * 3 // 4]
 

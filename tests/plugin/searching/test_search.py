@@ -174,7 +174,7 @@ def test_a_candidate_that_gains_more_than_a_failed_candidate_is_confirmed() -> N
     assert confirmed(high, trials, goal, 0)
 
 
-def test_operands_that_never_change_a_reward_are_moved_further_last() -> None:
+def test_constants_that_never_change_a_reward_are_the_last_to_be_moved_further() -> None:
     def helpless(candidate: Candidate, seed: int) -> Outcome:
         (mutation,) = candidate.mutations
         return Outcome(reward(None, seed) - 0.1 * (mutation.operand == GAIN), True)
@@ -185,7 +185,7 @@ def test_operands_that_never_change_a_reward_are_moved_further_last() -> None:
     assert [label for label in trials.labels if "40" in label] == trials.labels[0:1] + trials.labels[2:3]
 
 
-def test_an_operand_that_cannot_be_written_is_skipped() -> None:
+def test_a_constant_whose_change_cannot_be_written_is_skipped() -> None:
     def refusing(candidate: Candidate, seed: int) -> Outcome:
         if candidate.mutations[0].operand == LIMIT:
             raise RepairError("no way")

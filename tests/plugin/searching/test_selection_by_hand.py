@@ -111,7 +111,7 @@ def test_of_two_factors_that_fail_alike_the_one_with_longer_missions_is_added_fi
     assert wider.parts[1] == (B, first)
 
 
-def test_parts_are_balanced_one_by_one_and_if_a_larger_factor_loses_a_smaller_factor_is_tried() -> None:
+def test_the_parts_are_adjusted_one_by_one_and_a_smaller_factor_is_tried_if_a_larger_factor_loses() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 8.0 - abs(by["A"] - 3.3) - abs(by["B"] - 0.26)
 
@@ -203,7 +203,7 @@ def test_a_combination_whose_needed_part_was_found_before_is_not_yielded() -> No
     assert search.settled.held == {alone}
 
 
-def test_a_change_preferred_to_a_single_part_is_yielded_before_this_part() -> None:
+def test_a_change_that_is_preferred_to_a_single_part_is_yielded_before_this_part() -> None:
     other = joint((C, 0.4)).candidate(mutations)
     asked: list[Any] = []
 
@@ -335,7 +335,7 @@ def test_an_unchanged_factor_is_not_confirmed() -> None:
 # uses
 
 
-def test_the_search_learns_from_each_use_of_a_constant_that_holds() -> None:
+def test_the_search_learns_from_each_use_of_a_confirmed_constant() -> None:
     one, two = constant(3, "AHEAD"), replace(constant(8, "AHEAD"), definition=constant(3, "AHEAD").definition)
     seen: list[int] = []
 

@@ -90,7 +90,7 @@ def test_the_uses_of_a_named_constant_in_a_file_change_together() -> None:
     assert whole_constants(given) == (Unit((FIRST, elsewhere)), *given[1:2], *given[3:])
 
 
-def test_the_best_gain_of_each_operand_is_kept_by_site() -> None:
+def test_the_best_gain_of_each_constant_is_stored_by_site() -> None:
     one, two = (
         Unit((use("2.0", 2.0),)),
         Unit((use("3.0", 3.0, column=20), use("4.0", 4.0, column=30, site="t"))),

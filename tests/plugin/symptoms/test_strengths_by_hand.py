@@ -379,7 +379,7 @@ def test_a_value_that_touches_its_mean_does_not_cross_it() -> None:
     assert strength("swing", pair(at_rest(15), array(np.zeros(15), late))) == 0.0
 
 
-def test_values_that_alternate_or_rest_do_not_swing() -> None:
+def test_a_value_that_alternates_or_stays_constant_does_not_swing() -> None:
     assert strength("swing", pair(at_rest(40), array(np.zeros(40), square(1.0, *[1] * 40)))) == 0.0
     assert strength("swing", pair(at_rest(40), np.zeros(80))) == 0.0
     assert strength("swing", pair(np.zeros(80), array(np.zeros(40), square(1.0, *[10] * 4)))) == 0.0
