@@ -1,15 +1,15 @@
 """Acceptance test of a repair: one group-sequential test per candidate, on seeds that the search never used.
 
-In both the drifted and the designed world, the test must show that
+The test must show the following in the drifted world, and again in the designed world:
 
-- the repaired program's mean total reward is at most the margin δ below that of the unrepaired program in the designed
-  world, and
-- its failure rate is at most five percentage points higher than the recorded one.
+- The repaired program's mean total reward is at most δ (the margin) below the mean total reward of the unrepaired
+  program in the designed world.
+- The repaired program's failure rate is at most five percentage points higher than the recorded failure rate.
 
-The loss of one mission is capped at the reward of a designed mission, because failures are counted separately. Each
+The test caps the loss of one mission at the reward of a designed mission, because it counts failures separately. Each
 mission is paired with the unrepaired program's mission of the same seed in the designed world. The means are tested by
-betting (learning/betting.py). The size of the bets is chosen before the test, from episodes on separate
-seeds. The episodes that set the bets can refuse the candidate but not accept it.
+betting (learning/betting.py). The size of the bets is chosen before the test, from episodes on other seeds. These
+episodes can refuse the candidate, but they cannot accept it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ LOOKS = tuple(range(60, 201, 20))  # looks: numbers of episodes after which the 
 SEEDS = SCREEN + LOOKS[-1]
 # Reasons to refuse a candidate in the drifted world.
 TOO_LITTLE: tuple[Reason, ...] = ("gain too small", "fails too often", "not shown")
-# share of the risk α that the first test spends; each later test spends a third of the risk of the previous test
+# share of the risk α that the first test spends; each later test spends a third of what the test before it spent
 SHARE = 2 / 3
 
 
@@ -39,9 +39,9 @@ SHARE = 2 / 3
 class Outcome:
     """The outcome of an episode: total reward, whether the test passed, formula verdicts, steps, rewards by step.
 
-    `outputs` holds two sums over the messages that the nodes published and the largest message, by topic; it is empty
-    if they are unknown. `failure` says why the test failed, without the numbers of this mission; it is empty if that
-    is unknown.
+    `outputs` describes the messages that the nodes published: two sums and the largest message for each topic. It is
+    empty if the messages are unknown. `failure` says why the test failed, without the numbers of this mission. It is
+    empty if the reason is unknown.
     """
 
     total: float
@@ -55,9 +55,10 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """The recorded missions of the designed world, to which repairs are compared; `margin` is δ in reward per episode.
+    """The recorded missions of the designed world, with which repairs are compared.
 
-    `lowest` and `highest` are the declared bounds of a mission's total reward, in both worlds.
+    `margin` is δ in reward per episode. `lowest` and `highest` are the declared bounds of a mission's total reward in
+    both worlds.
     """
 
     totals: Sequence[float]
@@ -78,12 +79,13 @@ class Reference:
 
     @property
     def least(self) -> float:
-        """Return the lower bound at which differences between a mission and its designed counterpart are clipped.
+        """Return the lowest difference that may be counted between a mission and its designed counterpart.
 
-        The bound is the lowest difference that the declared limits and the recorded totals allow, but at least -20
-        margins. With a margin of 5 % of the designed reward, 20 margins are the whole reward of a designed mission.
-        Failures can be clipped because a separate test counts them. Without the clip, one costly failure would prevent
-        a test of 200 episodes from showing that the loss is small, and correct repairs would be refused.
+        Lower differences are clipped to it. It is the lowest difference that the declared limits and the recorded
+        totals allow, but at least -20 margins. With a margin of 5 % of the designed reward, 20 margins are the whole
+        reward of a designed mission. Failures can be clipped because a separate test counts them. Without the clip,
+        correct repairs would be refused: after one costly failure, a test of 200 episodes could no longer show that the
+        loss is small.
         """
         best = max(self.totals) if self.highest is None else self.highest
         return max(min(self.lowest, *self.totals) - best, -self.margin / PASS_RATE_LOSS)
@@ -95,7 +97,7 @@ def unforeseen(wanted: Sequence[object]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """A program in a world, run by seed; `foresee` receives the seeds that come next if the test continues."""
+    """A program in a world. Call it with seeds to run it; `foresee` receives the seeds that the test will need next."""
 
     run: Callable[[int], Outcome]
     foresee: Callable[[Sequence[int]], None] = unforeseen
@@ -103,7 +105,7 @@ class World:
 
 @dataclass
 class Designed:
-    """The unrepaired program in the designed world; each seed runs only once and serves both tests of a candidate."""
+    """The unrepaired program in the designed world. Each seed runs once, even if both tests of a candidate need it."""
 
     world: World
     known: dict[int, Outcome] = field(default_factory=dict)
@@ -120,9 +122,9 @@ class Designed:
 class Acceptance:
     """Result of a test.
 
-    - `drifted`, `nominal`: the episodes in the two worlds; `nominal` is empty if none were needed. For a refused
-      candidate they include the episodes on the first seeds.
-    - `tested`: False if the first seeds refused the candidate; no risk is spent in that case.
+    - `drifted`, `nominal`: the episodes in the drifted and in the designed world; `nominal` is empty if none were
+      needed. If the candidate is refused, both include the episodes that ran before the test.
+    - `tested`: False if the episodes before the test refused the candidate; then no risk is spent.
     - `episodes`: total number of episodes, including those of the unrepaired program.
     - `bets`: the sizes of the bets in the two worlds.
     - `seeds`: the seeds of the drifted episodes; `designed`: the unrepaired program's totals on them in the designed
@@ -143,7 +145,7 @@ class Acceptance:
 
 
 def risk_of(alpha: float, before: int) -> float:
-    """Return the risk that a test may spend after `before` earlier tests; the risks of all tests sum to at most α."""
+    """Return the risk that a test may spend after `before` earlier tests. The risks of all tests sum to at most α."""
     return alpha * SHARE * (1.0 - SHARE) ** before
 
 
@@ -155,10 +157,11 @@ def accept(
     reference: Reference,
     risk: float,
 ) -> Acceptance:
-    """Test one candidate; `nominal` is None if the repair changes nothing in the designed world.
+    """Test one candidate in the drifted world and in the designed world (`nominal`).
 
-    `seeds` are `SEEDS` fresh seeds. `risk` bounds the probability of accepting a candidate that loses more than the
-    margin or fails too often in one of the worlds.
+    `nominal` is None if the repair changes nothing in the designed world. `seeds` are `SEEDS` fresh seeds. A candidate
+    that loses more than the margin or fails too often in one of the worlds is accepted with a probability of at most
+    `risk`.
     """
     original = Designed(designed)
     worlds = [_World(drifted, original, reference, risk, "gain too small")]
@@ -178,7 +181,7 @@ def accept(
 def _ended(
     worlds: Sequence[_World], designed: Designed, reason: Reason, tested: bool, seeds: Sequence[int]
 ) -> Acceptance:
-    # A refused candidate reports all its missions; an accepted candidate reports only the missions of its test.
+    # For a refused candidate, report all missions; for an accepted one, report only the missions of the test itself.
     seen = [tuple([*world.first, *world.seen] if reason else world.seen) for world in worlds]
     begin = 0 if reason else SCREEN
     used = tuple(seeds[begin : begin + len(seen[0])])
@@ -209,7 +212,7 @@ class _World:
     bet: Bet | None = None
 
     def screened(self, seeds: Sequence[int]) -> Reason:
-        """Run the first seeds, which can only refuse the candidate, and choose the bet size from them."""
+        """Run the episodes before the test and choose the bet size. Return a reason to refuse the candidate, or ""."""
         self.first = self._run(seeds)
         differences = self._differences(self.first, seeds)
         self.bet = bet(self.reference.margin, self.reference.least, differences)
@@ -230,7 +233,7 @@ class _World:
         return self.worse if fmean(differences) < -self.reference.margin else "not shown"
 
     def _shown(self, differences: Sequence[float], number: int | None) -> bool:
-        """Return whether this look shows that enough missions pass and that they lose no more than the margin."""
+        """Return whether the missions so far show that enough of them pass and that they lose at most the margin."""
         if number is None or self.bet is None or self._failed(self.seen) > number:
             return False
         if fmean(differences) < -self.reference.margin:
@@ -238,7 +241,7 @@ class _World:
         return self.bet.wealth(differences) >= -log(self.risk)
 
     def _hopeless(self, outcomes: Sequence[Outcome], differences: Sequence[float], left: int) -> Reason:
-        """Return the reason why the test can no longer accept the candidate, or "" if it still can."""
+        """Return the reason why the test can no longer accept the candidate, or "" if acceptance is still possible."""
         if self._failed(outcomes) > self._numbers()[-1]:
             return self._often
         if self.bet is None or not self.bet.hopeless(differences, left, self.risk):

@@ -1,9 +1,10 @@
-"""Acceptance numbers: for each look, the largest number of failures that still shows a tolerable failure rate.
+"""Acceptance numbers: the largest number of failures with which each look of a test may accept a program.
 
-A look evaluates the test after a fixed number of missions. A single look gives the bound of Clopper and Pearson: 0
-failures in 59 missions show, with 95 % confidence, a failure rate below 5 %. Several looks share the risk of accepting
-wrongly. The risk of each look is exact: the distribution of the failure count is propagated from look to look, without
-the counts that were already accepted.
+A look evaluates the test after a fixed number of missions. With a single look, the acceptance numbers follow from the
+bound of Clopper and Pearson: if none of 59 missions fails, the failure rate is below 5 % with 95 % confidence. If there
+are several looks, they share the risk of accepting a bad program. The risk of each look is computed exactly: the
+distribution of the number of failures is carried from look to look, and the numbers with which the program was accepted
+are removed from it.
 """
 
 from __future__ import annotations
@@ -19,10 +20,10 @@ NEVER = -1  # with this number of missions, no candidate can be accepted, not ev
 
 @lru_cache(maxsize=64)
 def acceptance_numbers(looks: tuple[int, ...], tolerated: float, risk: float) -> tuple[int, ...]:
-    """Return the acceptance number of each look, or `NEVER` for a look that cannot accept.
+    """Return the acceptance number of each look, or `NEVER` for a look that cannot accept any program.
 
-    A program that fails with probability `tolerated` or more is accepted with probability at most `risk` over all
-    looks. After n of N missions, risk × √(n/N) may be spent, so early looks get more than a proportional share.
+    If a program fails with a probability of `tolerated` or more, all looks together accept it with a probability of at
+    most `risk`. After n of N missions, risk × √(n/N) may be spent, so early looks get more than a proportional share.
     """
     waiting = np.ones(1)  # entry k: P(k failures so far and not accepted yet) at the tolerated rate
     spent, seen = 0.0, 0

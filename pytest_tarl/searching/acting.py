@@ -1,7 +1,8 @@
-"""Find out whether a change alters what the nodes publish, although missions earn the same and fail as early.
+"""Find out whether a change alters what the nodes publish, if missions still earn the same and fail as early.
 
-A gantry whose pulley was replaced waters the wrong place. With any wrong number of teeth, the mission fails after the
-same time with the same reward, so that neither shows that the number matters. The commands to the motors do.
+For example, the pulley of a watering gantry was replaced, and the gantry waters the wrong place. With any wrong number
+of teeth, the mission fails after the same time and with the same reward. So neither time nor reward shows that the
+number of teeth matters, but the commands to the motors show it.
 """
 
 from __future__ import annotations
@@ -9,8 +10,8 @@ from __future__ import annotations
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 from pytest_tarl.searching.units import Unit
 
-SEEDS = 4  # number of seeds on which published messages are compared with those of the unchanged program
-CHANGES = 8  # number of changes of a unit whose published messages are compared
+SEEDS = 4  # number of seeds on which the messages of the changed and the unchanged program are compared
+CHANGES = 8  # number of changes of a unit for which the messages are compared
 
 
 class Acting:

@@ -1,4 +1,4 @@
-"""Adjust the best constant of a sweep: try factors between its best one and the neighbours, round after round."""
+"""Adjust the best constant of a sweep: in each round, try factors between its best factor and the neighbouring ones."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
-ROUNDS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
+ROUNDS = 3  # maximum number of consecutive refinements of one operand if its gain is at least `PROMISING`
 # the exact value of a unit is searched only if the unit gains at least this share of the wanted gain
 LEAST = 0.5
 REFINED = 8  # maximum number of runs that refine one operand
 # maximum number of consecutive refinements without progress, for an operand that gains less than `PROMISING`
 IDLE = 2
-# a named constant with a sharp peak is refined if the ratio of the factors on both sides of the peak is at least this
+# a named constant whose gain has a sharp peak is refined if the two factors beside the peak have at least this ratio
 WIDE = 1.4
-AMID = 6  # maximum number of constants that are tried at once between two steps
-# when units are compared, the gain of a unit is multiplied by this factor for each refinement without progress
+AMID = 6  # maximum number of constants that are tried in one go with a value between two steps
+# when gains are compared, a unit's gain is multiplied by this factor once for each refinement without progress
 GIVES_WAY = 0.75
 MORE = 0.05  # minimum increase of the gain that counts as progress, as a share of the wanted gain
 
@@ -45,20 +45,20 @@ class Search(Protocol):
 
     @property
     def pair(self) -> int:
-        """Return the index of the pair on whose seed the changes of the present turn run."""
+        """Return the index of the mission pair whose seed is used in the present turn."""
 
     def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """Try a factor; yield the candidates that are confirmed."""
+        """Try one factor on a unit under a guard; yield the candidates that further seeds confirm."""
 
     def expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
         """Announce the tries that come next unless a result changes the order."""
 
     def joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
-        """Return a selection that combines units."""
+        """Return a forward selection, which combines changes of several units."""
 
 
 class Adjusting:
-    """Refine the units of one search; `refined` counts the runs that refined a unit under a guard."""
+    """Refine the units of one search; `refined` counts the refining runs of each unit and guard."""
 
     def __init__(self, search: Search) -> None:
         self.search = search
@@ -70,8 +70,8 @@ class Adjusting:
     def refine(self, pair: int) -> Iterator[Candidate]:
         """Refine the best operand while its gain approaches the wanted gain.
 
-        Tiny gains are not refined, because a mission that fails slightly later does not indicate the right value. A
-        gain that stays the same between two values does not either: something else is wrong.
+        Tiny gains are not refined, because a mission that fails slightly later does not indicate the right value. If
+        two values have the same gain, the values between them are not tried either: the cause is elsewhere.
         """
         search, wanted = self.search, self.search.goal.wanted
         for _ in range(ROUNDS):
@@ -90,11 +90,11 @@ class Adjusting:
                 return
 
     def _hopeful(self, key: tuple[Unit, Guard]) -> float:
-        """Return the gain of a unit, less for each refinement without progress: others may be closer to their best."""
+        """Return the gain of a unit, reduced for each refinement without progress, so that other units get a turn."""
         return self.search.gains.most(key) * GIVES_WAY ** self._idle[key]
 
     def _open(self) -> list[tuple[Unit, Guard]]:
-        """Return the units and guards that may be refined further, of uses that act alike only the first."""
+        """Return the units and guards that may be refined further. If several uses act alike, return only the first."""
         search = self.search
         tried = [key for key, _ in search.gains.items()]
         distinct = set(search.gains.distinct(list(dict.fromkeys(unit for unit, _ in tried))))
@@ -109,14 +109,14 @@ class Adjusting:
         ]
 
     def _in_a_wide_bracket(self, key: tuple[Unit, Guard]) -> bool:
-        """Return whether a named constant has a sharp peak between factors far enough apart to try one between them."""
+        """Return whether a named constant's gain has a sharp peak and there is room to try factors beside the peak."""
         named = kind(key[0]) is Oddness.NAMED and not self.search.proposed
         return named and bracket(self.search.gains.of(*key)) >= WIDE
 
     def amid(self, guard: Guard) -> Iterator[Candidate]:
-        """Try the value between two steps of a constant, of which the smaller is too little and the larger too much.
+        """For each constant, try the value between a step that is too little and a larger step that is too much.
 
-        A step is too little if it earns about as much as the old value, and too much if it clearly loses.
+        A step is too little if it earns about as much as the old value. It is too much if it clearly loses reward.
         """
         search = self.search
         found = [
@@ -128,10 +128,10 @@ class Adjusting:
             yield from search.attempt(unit, guard, step, search.pair)
 
     def exactly(self, guard: Guard) -> Iterator[Candidate]:
-        """Move the best unit under a guard once to where its missions follow the designed ones most closely.
+        """Once, move the best unit under a guard to the value whose missions follow the designed ones most closely.
 
-        Before a unit that gains much is combined with others, its value may only have to be more exact. If that is not
-        enough, it is refined once more.
+        If a unit gains much, a more exact value may be all that is missing, so this is tried before the unit is
+        combined with others. If it does not suffice, the unit is refined once more.
         """
         search = self.search
         leaders = () if search.proposed else search.gains.leaders(guard)[:1]
@@ -145,9 +145,9 @@ class Adjusting:
             yield from self.refine(0)
 
     def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
-        """Try factors between the operand's best factor and the neighbouring factors, on a log scale."""
+        """On a log scale, try factors between the operand's best factor and the factors next to it."""
         search = self.search
-        # A negative factor corrects the sign and needs no refinement, except for proposed values.
+        # A negative factor corrects the sign. It is refined only if the operand is a proposed value.
         gains = {one: gain for one, gain in search.gains.of(*best).items() if one > 0 or search.proposed}
         steps = between(gains, search.goal.wanted)
         search.expect([(*best, one) for one in steps], pair)
@@ -156,7 +156,7 @@ class Adjusting:
             yield from search.attempt(*best, one, pair)
 
     def _vary(self, unit: Unit, guard: Guard) -> Iterator[Candidate]:
-        """Vary the fixed parameters of a proposal, such as a sensor's usual value, if the proposal gains much."""
+        """If a proposed change gains much, vary its fixed parameters, such as a sensor's usual value."""
         search = self.search
         gains = search.gains.of(unit, guard)
         factor = max(gains, key=gains.__getitem__)
@@ -170,5 +170,5 @@ class Adjusting:
 
 
 def _most(unit: Unit) -> int:
-    """Return the number of refining runs allowed for a unit; half of `REFINED` for an offset of a literal zero."""
+    """Return how many refining runs a unit may have: `REFINED`, or half of that for an offset of a literal zero."""
     return REFINED // 2 if writing(unit.operands[0]) is Oddness.OFFSET else REFINED

@@ -1,4 +1,4 @@
-"""Adapter for any optimiser: ask it for factors, then tell it their gain (ask/tell interface)."""
+"""Adapter for any optimiser with an ask/tell interface: ask it for factors, then tell it the gain of these factors."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ MOST_AT_ONCE = 1000
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A use of a constant, as passed to the optimiser; `value` is None if it is known only at run time."""
+    """A use of a constant, as passed to the optimiser; `value` is None if the constant is known only at run time."""
 
     path: str
     line: int
@@ -56,14 +56,14 @@ class Optimiser(Protocol):
         """
 
     def tell(self, factors: Sequence[float], gain: float) -> None:
-        """Receive the gain of these factors: their reward minus that of the unmutated run of the same seed."""
+        """Receive the gain of these factors: the reward with them minus that of the unmutated run of the same seed."""
 
 
 Factory = Callable[[Sequence[Constant], int], Optimiser]
 
 
 def factory(name: str, folders: Sequence[Path]) -> Factory:
-    """Import `module:factory`, searching the folders for the module first. Raise SettingsError."""
+    """Import `module:factory` and return the factory; look for the module in `folders` first. Raise SettingsError."""
     module, _, attribute = name.partition(":")
     where = f"--tarl-search={name}"
     try:
@@ -85,7 +85,7 @@ def factory(name: str, folders: Sequence[Path]) -> Factory:
 
 
 class Asking:
-    """A search by plug-in optimisers, one per guard, which take turns. An error of the plug-in raises SearchError."""
+    """A search by plug-in optimisers, which take turns. Each guard has its own optimiser."""
 
     def __init__(
         self,
@@ -124,7 +124,7 @@ class Asking:
             turn += 1
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, for each site, the best gain of each operand among the confirmed candidates."""
+        """For each site, return the best gain that each of its operands has among the confirmed candidates."""
         best: dict[tuple[str, str], OperandEffect] = {}
         for candidate in self._found:
             gain = self.trials.gain(candidate, self.goal.pairs)
@@ -138,7 +138,7 @@ class Asking:
         return found
 
     def _asked(self, optimiser: Optimiser) -> list[list[float]]:
-        """Ask for a batch; it is shorter if the optimiser has no more proposals. Raise SearchError."""
+        """Ask for a batch of proposals. The batch is shorter if the optimiser has no more. Raise SearchError."""
         asked: list[list[float]] = []
         with self._heeding("ask()"):
             for _ in range(getattr(optimiser, "batch", 1)):
@@ -172,7 +172,7 @@ class Asking:
                 yield kept
 
     def _candidate(self, factors: Sequence[float], guard: Guard) -> Candidate:
-        """Return the mutations for these factors; only a negative factor flips a boolean."""
+        """Return the candidate that applies these factors. A boolean is flipped only by a negative factor."""
         moved = (
             self.mutate(operand, factor)
             for operand, factor in zip(self.operands, factors, strict=True)
@@ -183,7 +183,7 @@ class Asking:
     def _gained(self, candidate: Candidate, pair: Pair) -> tuple[float, bool]:
         """Run a candidate; return its gain and whether it reached the goal.
 
-        A candidate that cannot be written into the source gets the total reward of the worst episode.
+        If the candidate cannot be written into the source, it counts with the total reward of the worst episode.
         """
         if not candidate.mutations:
             return 0.0, False

@@ -1,6 +1,6 @@
-"""Try single changes in the drifted world, each confirmed on further seeds, and keep what they gained.
+"""Try single changes in the drifted world, store their gains, and confirm the good ones on further seeds.
 
-Before a confirmed change is yielded, the changes that a maintainer would prefer to it are tried.
+Before a confirmed change is yielded, try the changes that a maintainer would prefer to it.
 """
 
 from __future__ import annotations
@@ -36,15 +36,16 @@ if TYPE_CHECKING:
     import numpy as np
 
 FLIP = -1.0  # factor that flips the sign
-# maximum number of units to try with the opposite sign; only units that gained with a smaller value are tried
+# maximum number of units that are tried with the opposite sign, among the units that gained with a smaller value
 FLIPPED = 3
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
-EASY = 3  # maximum number of easy pairs; changes run on the seeds of these pairs until a change gains
-# a gain below this share of the wanted gain is hollow if it comes from missions that fail sooner
+# maximum number of easy mission pairs; until a change gains, changes run on the seeds of these pairs
+EASY = 3
+# a gain below this share of the wanted gain is hollow (no progress) if the missions only fail sooner
 PARTLY = 0.3
-# a constant is adjusted in small steps only if the ratio of the tried values on both sides is at most this
+# a constant is adjusted in small steps only if the two tried values beside its best value have at most this ratio
 NARROW = 1.6
-# the same limit if both values earn nearly as much, because the constant then gets no larger steps
+# this limit holds instead if both values earn nearly as much, because the constant then gets no larger steps
 CLOSE = 1.21
 LOST = 0.5  # a mission pair can be easy only if its loss is at least this share of the wanted gain
 
@@ -52,8 +53,8 @@ LOST = 0.5  # a mission pair can be easy only if its loss is at least this share
 class Attempts:
     """The changes that one search has tried, and the gains of its units; see `Sweep` for the arguments.
 
-    `parts` maps a constant to its uses. Each turn runs the changes of a step on the seed of another pair. While nothing
-    gains, these are easy pairs: missions that lost least have the widest range of good values.
+    `parts` maps a constant to its uses. In each turn, the changes of a step run on the seed of another pair. While
+    nothing gains, these are easy pairs, whose missions lost least: there the range of good values is widest.
     """
 
     def __init__(
@@ -98,7 +99,7 @@ class Attempts:
         self.corrections = corrections
         self.slack = SLACK * goal.wanted
         self.turn = 0
-        # units that the search confirmed and yielded, but that the caller refused
+        # units whose change was confirmed and yielded, but refused by the caller
         self.refused: set[tuple[Unit, Guard]] = set()
         self._acting = Acting(trials, goal)
         self.gains = Gains(self.slack, proposed, None if proposed else self._acting)
@@ -111,17 +112,18 @@ class Attempts:
         self._easy = easy(goal)
         self._ran_on: dict[tuple[Unit, Guard, float], int] = {}  # change → mission pair of its first run
         self._tried: set[Candidate] = set()
-        self._divided: set[Unit] = set()  # units of which no single value suits all missions
-        # units that were adjusted because they nearly earned enough
+        self._divided: set[Unit] = set()  # units that need different values in different missions
+        # units that were adjusted because their change earned nearly enough
         self._adjusted: set[tuple[Unit, Guard]] = set()
-        # how often the value of a unit was moved on, because it lost the missions of rejected candidates
+        # how often the value of a unit was moved further because it lost the same missions as rejected candidates
         self._moved: Counter[tuple[Unit, Guard]] = Counter()
         self._settled = Settled()
 
     def interlude(self, gain: float) -> Iterator[Candidate]:
-        """Yield structural changes, but first the constants that gained; `gain` is the largest gain so far.
+        """Yield structural changes, but first changes of the constants that gained; `gain` is the largest gain so far.
 
-        If anything gained, named constants get farther steps before the first structural changes, unless they had them.
+        If anything gained, try farther steps on named constants before the first structural changes. Farther steps are
+        tried only once.
         """
         if self._due(gain) and self.gains.anything():
             yield from self.farther()
@@ -136,10 +138,10 @@ class Attempts:
 
     @property
     def pair(self) -> int:
-        """Return the index of the pair on whose seed the changes of the present turn run.
+        """Return the index of the mission pair whose seed is used in the present turn.
 
-        While nothing gains, constants run on the seeds that lost least. Structural changes run on all seeds: on easy
-        seeds, values that are only nearly right earn enough, so the search would refine the wrong one.
+        While nothing gains, changes of constants run on the seeds that lost least. Structural changes run on all seeds.
+        On easy seeds, a value that is only nearly right earns enough, so the search might refine the wrong change.
         """
         every = range(len(self.goal.pairs))
         among = every if self.proposed or self.gains.anything() else self._easy
@@ -165,7 +167,7 @@ class Attempts:
             yield from self.attempt(unit, guard, factor, pair)
 
     def _as_twins(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Try a factor on all twins of the constants that just gained with it, best gain first."""
+        """Take the constants that just gained with a factor, best first, and try the factor on all their twins."""
         gained = {unit: self.gains.of(unit, guard).get(factor, 0.0) for unit in among}
         for unit in sorted(gained, key=lambda one: -gained[one]):
             twin = twin_of(unit, self.twins) if gained[unit] > self.slack else None
@@ -178,7 +180,7 @@ class Attempts:
         return self.gains.leading(before, guard, self.units, least)
 
     def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """Try a factor; if the candidate is confirmed, yield the changes preferred to it, then the candidate."""
+        """Try a factor. If the candidate is confirmed, yield the changes preferred to it, then the candidate itself."""
         mutations = unit.mutations(self.mutate, factor)
         candidate = Candidate(mutations, guard)
         if not mutations or candidate in self._tried:
@@ -208,9 +210,9 @@ class Attempts:
             self.refused.add((unit, guard))
 
     def _later(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """Change a value where it is used if its change where it is defined was refused.
+        """If the change of a value at its definition was refused, change the value where it is used.
 
-        A module runs its tables before any sensor has a value, so that no condition can be written there.
+        A table at module level is built before any sensor has a value, so no condition can be written there.
         """
         if self.proposed or not runs_once(unit):
             return
@@ -222,7 +224,7 @@ class Attempts:
                     return
 
     def _moved_on(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
-        """Move a value on that loses the missions of rejected candidates (see `lost_missions`), up to `MOVES` times."""
+        """If a value loses the same missions as rejected candidates, move it further (see `lost_missions`)."""
         key = (unit, candidate.guard)
         if self.proposed or self._moved[key] >= MOVES or not self.trials.loses(candidate):
             return
@@ -233,11 +235,12 @@ class Attempts:
             yield from self.attempt(unit, candidate.guard, better, pair)
 
     def _nearly(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
-        """Adjust the value of a change that passes its missions and earns nearly enough, before others are tried.
+        """If a change passes its missions and earns nearly enough, adjust its value before other changes are tried.
 
-        Such a change is of the right kind, and only its value is not exact. A constant is adjusted in such small steps
-        in two cases: both neighbouring values are close and earn much less, or the neighbours are so close that
-        `adjusting` tries no value between them. Otherwise the larger steps of `adjusting` reach farther.
+        Such a change is of the right kind, only its value is inexact. A constant is adjusted in such small steps in two
+        cases. In the first case, both neighbouring values are close and earn much less. In the second case, they are so
+        close that `adjusting` tries no value between them. In all other cases the larger steps of `adjusting` are
+        better.
         """
         goal, key = self.goal, (unit, candidate.guard)
         ran, totals = self.trials.ran(candidate, goal.pairs), self.trials.totals_of(candidate, goal.pairs)
@@ -262,7 +265,7 @@ class Attempts:
             yield from self.attempt(unit, candidate.guard, better, pair)
 
     def _following(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
-        """Let a constant that needs different values in different missions follow what differs between them, once."""
+        """If a constant needs different values in different missions, once let it follow a quantity that varies."""
         guard, gains = candidate.guard, self.gains.of(unit, candidate.guard)
         if self.proposed or unit in self._divided or factor <= 0.0:
             return
@@ -284,7 +287,7 @@ class Attempts:
         self._acting.ran(unit, candidate)
 
     def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a factor; return the candidate if it is new and confirmed, else None."""
+        """Try a factor on a unit; return the candidate if it is new and confirmed, else None."""
         candidate = Candidate(unit.mutations(self.mutate, factor), guard)
         if not candidate.mutations or candidate in self._tried:
             return None
@@ -299,7 +302,7 @@ class Attempts:
         return candidate if holds else None
 
     def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int, confirmable: bool = True) -> bool:
-        """Return whether a new factor reaches the goal on a pair's seed; `confirmable` ones may be confirmed later."""
+        """Return whether a factor that is new reaches the goal on a pair's seed."""
         candidate = Candidate(unit.mutations(self.mutate, factor), guard)
         if not candidate.mutations or candidate in self._tried:
             return False
@@ -311,7 +314,7 @@ class Attempts:
         return bool(near)
 
     def ran_on(self, unit: Unit, guard: Guard, factor: float) -> int:
-        """Return the index of the pair on whose seed a change ran first; if it did not, that of the present turn."""
+        """Return the index of the pair on whose seed a change ran first; without a run, that of the present turn."""
         return self._ran_on.get((unit, guard, factor), self.pair)
 
     def expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
@@ -321,7 +324,7 @@ class Attempts:
         self.trials.expect((one, seed) for one in candidates if one.mutations and one not in self._tried)
 
     def _near(self, candidate: Candidate, pair: int) -> bool | None:
-        """Run a candidate once; return whether it reached the goal, or None if it cannot be written into the source."""
+        """Run a candidate once. Return whether it reached the goal, or None if it cannot be written into the source."""
         try:
             seed = self.goal.pairs[pair].seed
             return self.trials.reaches(candidate, seed, self.goal)
@@ -329,7 +332,7 @@ class Attempts:
             return None
 
     def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
-        """Try factors between the unit's best factor and its neighbours."""
+        """Try factors between the best factor of a unit and the factors next to it."""
         yield from self.adjusting.between(best, pair)
 
     def joining(
@@ -348,16 +351,17 @@ class Attempts:
         )
 
     def _alone(self, candidate: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
-        """Yield the changes preferred to a single change that was found as part of a combination."""
+        """For a single change that was found as part of a combination, yield the changes that are preferred to it."""
         self._tried.add(candidate)
         self._learn(unit, candidate, factor)
         yield from self.preferences.before(candidate, unit, factor, 0, True, True)
 
 
 def easy(goal: Goal) -> Sequence[int]:
-    """Return the indices of the pairs that lost least, but at least `LOST`; of all pairs if the drift's size varies.
+    """Return the indices of the easy pairs: those that lost least. If the drift's size varies, return all indices.
 
-    A pair that lost less cannot show a gain that differs from noise. Pairs of a range span its sizes in their order.
+    An easy pair lost at least `LOST`, because a gain on a pair that lost less cannot be told from noise. If the drift's
+    size varies, the pairs are ordered so that they span the range of sizes.
     """
     every = range(len(goal.pairs))
     if goal.ranged:

@@ -1,8 +1,8 @@
-"""Bisect between a value that is too little and one that restores the reward, if they are far apart.
+"""If a value that is too small and a value that restores the reward are far apart, bisect between them.
 
-For example, a robot keeps free the 0.3 m from its lidar to its bumper; with a ladder, it needs 1.1 m. A step of 2.2 is
-too little, and with the next one, 6.7 m, the robot stops for anything in the corridor. Values in between earn more, and
-they are less likely to do harm in a world that the test does not contain.
+For example, a robot keeps free the 0.3 m from its lidar to its bumper; when it carries a ladder, it needs 1.1 m.
+Multiplying by 2.2 is too little. With the next larger step, 6.7 m, the robot stops for anything in the corridor. Values
+in between earn more, and they are less likely to do harm in worlds that were not tested.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.smaller import inside
 from pytest_tarl.searching.units import Unit
 
-JUMP = 2.7  # values between two tried values are tried only if the ratio of the two is at least this
-STEPS = 4  # maximum number of values that are tried, each in one episode
+JUMP = 2.7  # minimum ratio of two tried values between which further values are tried
+STEPS = 4  # maximum number of values that are tried between two values, each in one episode
 
 
 class Search(Protocol):
@@ -27,18 +27,19 @@ class Search(Protocol):
     gains: Gains
 
     def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a factor; return the candidate if it is new and confirmed."""
+        """Try a factor on a unit; return the candidate if it is new and confirmed."""
 
     def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
-        """Return whether a new factor reaches the goal on the seed of a pair."""
+        """Return whether a factor that is new reaches the goal on the seed of a mission pair."""
 
 
 def bisected(
     search: Search, unit: Unit, factor: float, guard: Guard, pair: int
 ) -> tuple[Unit, float, Candidate] | None:
-    """Return a confirmed value nearer to the old one, with its unit and factor, or None.
+    """Return a confirmed value that is nearer to the old one, as unit, factor and candidate, or None.
 
-    `factor` is a confirmed step of the unit. Values are compared by their ratio, also if the step is one on a chart.
+    `factor` is a confirmed step of the unit. Values are compared by their ratio, even if the step belongs to another
+    scale (a chart).
     """
     plain, by = on_values(unit, factor)
     if by is None:
@@ -61,7 +62,7 @@ def bisected(
 
 
 def on_values(unit: Unit, factor: float) -> tuple[Unit, float | None]:
-    """Return the unit without its chart and the factor on its value, or None for a boolean, a zero or a sign."""
+    """Return the unit without its chart, and the factor on its value (None for a boolean, a zero or a sign change)."""
     value = unit.operands[0].value
     if isinstance(value, bool) or value == 0:
         return unit, None
@@ -72,6 +73,6 @@ def on_values(unit: Unit, factor: float) -> tuple[Unit, float | None]:
 
 
 def nearest(factor: float, gains: Mapping[float, float]) -> float:
-    """Return the tried factor that is nearest to a factor on the side of the old value, which counts as tried."""
+    """Among the tried factors between the old value (factor 1) and `factor`, return the one nearest to `factor`."""
     inner = [one for one in gains if min(1.0, factor) < one < max(1.0, factor)]
     return (max if factor > 1.0 else min)(inner, default=1.0)

@@ -1,7 +1,7 @@
 """Replace a change of a function's return value by changes at the calls that need it.
 
 A getter such as `def p(self, name): return self.get_parameter(name).value` returns many constants. A factor on the
-return value changes all of them, but a maintainer would change only the wrong ones.
+return value changes all these constants, but a maintainer would change only the wrong ones.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tarl_lint.model import Operand
 def calls_of(unit: Unit, among: Sequence[Unit]) -> list[Unit]:
     """Return the units that are calls of the function whose return value `unit` changes.
 
-    Units on a chart are left out: they use another scale, on which the factor of the return value has no meaning.
+    Units on a chart are left out. They use another scale, on which the return value's factor has no meaning.
     """
     operand = unit.operands[0]
     function = operand.site.qualname.rpartition(".")[2]

@@ -1,7 +1,7 @@
 """Candidate guards, the conditions under which a repair applies.
 
-Guards are proposed from the region of change, from novel cells and from single sensors. Simulation selects
-among them.
+The module proposes guards from the region of change, from cells that only the drifted world visits, and from single
+sensors. Simulations then select among these guards.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from pytest_tarl.sensors import Cell, Sensor
 
 ALWAYS = Guard()
 COVERED = 0.95  # a guard that holds in this share of the drifted steps counts as holding everywhere
-# a guard that holds in this share of the drifted steps makes no difference in the drifted world
+# in the drifted world, a guard that holds in this share of the steps has the same effect as no guard
 ENTIRELY = 0.999
-# bonus in the merit of a guard that never holds in the designed world, as a share of the change
+# bonus for the merit of a guard that never holds in the designed world, as a share of the change
 HARMLESS = 0.25
-CONDITION = 0.1  # cost of a second condition in the merit of a guard, as a share of the change
+CONDITION = 0.1  # a second condition reduces the merit of a guard by this share of the change
 EVERYWHERE = 0.3  # if no guard has at least this merit, the drift counts as present everywhere
-WIDER = 2  # bins added to each side of an interval for the last proposals
+WIDER = 2  # number of bins by which the last proposals widen an interval on each side
 
 Bins = tuple[int, int]  # first and last bin, both included
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Data from which guards are derived: both worlds, the region, and the change per cell."""
+    """Data from which guards are derived: samples of both worlds, the region of change, and the change in each cell."""
 
     sensors: Sequence[Sensor]
     offline: Sample
@@ -41,10 +41,10 @@ class Evidence:
     changes: Mapping[Cell, float]
 
     def shares(self) -> dict[Cell, float]:
-        """Return, for each cell, its share of the change minus its share of the designed steps.
+        """For each cell, return its share of the change minus its share of the designed steps.
 
-        A novel cell was never visited in the designed world, so its share of the change is its share of the drifted
-        steps. The known cells divide the rest in proportion to their change.
+        A novel cell was never visited in the designed world, so its share of the change is set to its share of the
+        drifted steps. The other cells divide the rest of the change in proportion to their own change.
         """
         visited, designed = _occupancy(self.online), _occupancy(self.offline)
         novel = {cell: visited.get(cell, 0.0) for cell in self.region.novel}
@@ -56,7 +56,7 @@ class Evidence:
 
 
 def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
-    """Return the guards worth simulating, sorted by number of conditions, then by share of designed steps covered."""
+    """Return the guards worth simulating. Guards with few conditions that cover few designed steps come first."""
     region = evidence.region
     proposals = [
         ALWAYS,
@@ -79,13 +79,13 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
 
 
 def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Guard, ...]:
-    """Return the guards to search under: `ALWAYS`, and those that hold where much changed and rarely elsewhere.
+    """Return the guards to search under: `ALWAYS`, and at most `most` guards that hold mainly where much changed.
 
     A guard's merit is the share of the change where it holds minus the share of designed steps where it holds (Youden's
-    J). A guard that never holds in the designed world gets a bonus, and a second condition has a cost.
-    `ALWAYS` usually comes second. `ALWAYS` comes first if no guard has much merit, because the drift then
-    seems to be everywhere, and also if the best guard holds wherever the drifted robot went. Such a guard
-    says nothing about places that only a repaired robot reaches.
+    J). A guard that never holds in the designed world gets a bonus, and a second condition has a cost. `ALWAYS` usually
+    comes second. It comes first in two cases. In the first case, no guard has much merit, so the drift seems to be
+    everywhere. In the second case, the best guard holds wherever the drifted robot went, so it says nothing about
+    places that only a repaired robot reaches.
     """
     shares, designed = evidence.shares(), evidence.offline
 
@@ -100,16 +100,15 @@ def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Gua
         return (ALWAYS, *best)
     covered = share(best[0], evidence.online, evidence.sensors)
     if covered >= ENTIRELY:
-        return (
-            ALWAYS,
-        )  # drifted episodes cannot distinguish the guard from `ALWAYS`; the acceptance test tries the guard, too
+        # drifted episodes cannot distinguish the guard from `ALWAYS`, so the acceptance test tries the guard, too
+        return (ALWAYS,)
     if covered >= COVERED:
         return (ALWAYS, best[0])  # the test in the designed world decides whether the guard is needed
     return (best[0], ALWAYS, *best[1:])
 
 
 def share(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> float:
-    """Return the share of steps in known cells at which the guard holds."""
+    """Among a world's steps in known cells, return the share of steps at which the guard holds."""
     steps = np.bincount(world.chain.cell, weights=world.chain.count, minlength=len(world.cells))
     return float(steps[_holding(guard, world, sensors)].sum() / max(steps.sum(), 1.0))
 
@@ -128,7 +127,7 @@ def firing_episodes(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> t
 
 
 def holds(guard: Guard, cell: Cell, sensors: Sequence[Sensor]) -> bool:
-    """Return whether the guard holds in a cell; guard bounds coincide with bin bounds."""
+    """Return whether the guard holds in a cell. The bounds of guards are always bounds of bins."""
     bins = dict(zip((sensor.name for sensor in sensors), cell, strict=True))
     return all(_within(conjunct, bins[conjunct.sensor.name]) for conjunct in guard.conjuncts)
 
@@ -140,13 +139,13 @@ def _holding(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> NDArray[
 def _within(conjunct: Conjunct, index: int) -> bool:
     low, high = conjunct.sensor.interval(index, index)
     slack = 1e-9 * max(1.0, abs(low), abs(high)) if np.isfinite(high - low) else 0.0
-    if conjunct.low > conjunct.high:  # an interval of angles that crosses the end of the range
+    if conjunct.low > conjunct.high:  # this interval of angles wraps around the end of the range
         return conjunct.low <= low + slack or high - slack <= conjunct.high
     return conjunct.low <= low + slack and high - slack <= conjunct.high
 
 
 def _hull(cells: Sequence[Cell], i: int, sensor: Sensor) -> Bins | None:
-    """Return the bins that the cells span on a sensor; for an angle, the shortest arc, which may wrap around."""
+    """Return the bins that the cells span on a sensor. For an angle, return the shortest arc, which may wrap."""
     chosen = sorted({cell[i] for cell in cells})
     if not chosen:
         return None
@@ -158,7 +157,7 @@ def _hull(cells: Sequence[Cell], i: int, sensor: Sensor) -> Bins | None:
 
 
 def _steepest(evidence: Evidence, i: int) -> Bins | None:
-    """Return the interval of bins with the largest sum of `shares` (Kadane's maximum subarray, circular for angles)."""
+    """Return the interval of bins with the largest sum of `shares`, by Kadane's algorithm; it may wrap for angles."""
     by_bin: dict[int, float] = {}
     for cell, value in evidence.shares().items():
         by_bin[cell[i]] = by_bin.get(cell[i], 0.0) + value
@@ -188,7 +187,7 @@ def _values(evidence: Evidence) -> Iterator[Guard]:
 
 
 def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[Guard]:
-    """Yield conditions on one sensor and on two sensors, if they can be false and a node can check them."""
+    """Yield conditions on one and on two sensors, but only those that can be false and that a node can check."""
     conjuncts = []
     for i, (sensor, bins) in enumerate(zip(evidence.sensors, intervals, strict=True)):
         seen = {cell[i] for world in (evidence.offline, evidence.online) for cell in world.cells}
@@ -206,7 +205,7 @@ def _spans(bins: Bins, seen: set[int], sensor: Sensor) -> bool:
 
 
 def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
-    """Return the interval of the bins; an end is unbounded if no bin beyond it was ever visited."""
+    """Return the interval of the bins. An end of the interval is unbounded if no bin beyond it was ever visited."""
     low, high = sensor.interval(*bins)
     if sensor.numeric and not sensor.angle:
         low = -np.inf if bins[0] <= min(seen) else low
@@ -215,7 +214,7 @@ def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
 
 
 def _asking(guard: Guard) -> Guard:
-    """Drop conditions that always hold, so that equal guards compare equal."""
+    """Drop conditions that always hold, so that guards with the same meaning compare equal."""
     return Guard(tuple(one for one in guard.conjuncts if np.isfinite(one.low) or np.isfinite(one.high)))
 
 
@@ -233,7 +232,8 @@ def _wider(conjunct: Conjunct) -> Conjunct:
     step = WIDER * sensor.resolution
     low, high = conjunct.low - step, conjunct.high + step
     within = 1e-9 * step
-    # Values below (above) the sensor's range share one bin, which lies wholly inside or outside the guard.
+    # All values below the sensor's range share one bin, and so do all values above it. The guard holds in a whole bin
+    # or not at all.
     return Conjunct(
         sensor,
         low if low >= sensor.low - within else -np.inf,

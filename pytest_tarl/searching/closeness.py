@@ -1,8 +1,8 @@
-"""Decide which of several repairs fixes the cause: the one whose missions follow the designed ones from start to end.
+"""Choose the repair that fixes the cause: its missions follow the designed missions from start to end.
 
-For example, the heating elements of a kiln have become weak. A larger constant for the heat loss through the walls
-keeps a hot kiln at its temperature. Only the right constant for the heating power also makes the kiln heat up as
-designed. Both repairs earn the same total, but at different times.
+For example, the heating elements of a kiln have become weak. If the program's constant for the heat loss through the
+walls is made larger, a hot kiln keeps its temperature. Only the right constant for the heating power also makes the
+kiln heat up as designed. Both repairs earn the same total reward, but at different times.
 """
 
 from __future__ import annotations
@@ -14,23 +14,25 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
-EXACT = 0.002  # a candidate is not compared with rivals if its deviation (see `course`) is at most this
-CLOSER = 0.6  # a rival is preferred if its deviation is at most this share of the candidate's deviation
-COMPARED = 3  # number of missions on which two candidates that pass are compared
-# exponents that are applied to the factor found, because the first factor that passes is often larger than needed
+# a candidate is compared with other constants (rivals) only if its deviation (see `course`) is larger than this
+EXACT = 0.002
+# a rival constant is preferred if its deviation is at most this share of the candidate's deviation
+CLOSER = 0.6
+COMPARED = 3  # number of missions on which two passing candidates are compared
+# exponents for the factor that was found, because the first factor that passes is often larger than needed
 POWERS = (1.0, 0.7)
-GAINED = 0.03  # minimum gain of a constant of another function, as a share of the gain of the constant found
-ASIDE = 2  # maximum number of constants of other functions
-RIVALS = 8  # maximum number of episodes for rival constants
+GAINED = 0.03  # a constant of another function must gain at least this share of what the found constant gains
+ASIDE = 2  # maximum number of constants of other functions that are tried
+RIVALS = 8  # maximum number of episodes for trying rival constants
 
 
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
-    """Yield the other named constants of the function that contains `found`, each with 1/factor and with factor.
+    """Yield the other named constants of the function that contains `found`, each with `1 / factor` and `factor`.
 
-    Weaker factors follow for those that gained. The reciprocal suits constants that are divisors. Constants that never
-    changed a mission are left out. So are constants on another scale than `found`, for which the factor has no meaning.
-    Constants of other functions in the file come first if they gained reward, in the direction that gained, since they
-    may be the cause as well.
+    The reciprocal suits constants that are divisors. Constants that gained are then yielded again, with weaker factors.
+    Constants that never changed a mission are left out, and so are constants on another scale than `found`, for which
+    the factor has no meaning. Constants of other functions in the file may be the cause, too. If they gained reward,
+    they come first, with a factor in the direction that gained.
     """
     at = found.operands[0].site
     tried = gains.under(guard)
@@ -69,5 +71,5 @@ def _towards(gains: Mapping[float, float], factor: float) -> bool:
 
 
 def _is_local(unit: Unit) -> bool:
-    """Return whether a unit has the name of a local variable, which is made from other constants."""
+    """Return whether a unit has the name of a local variable. Its value is then computed from other constants."""
     return unit.operands[0].code.islower() and unit.operands[0].code.isidentifier()

@@ -1,6 +1,6 @@
 """Combine the constants that gained in a sweep, or adjust the best of them before it is combined.
 
-Each method yields confirmed candidates and decides itself whether there is anything to combine.
+Each method decides whether there is anything to combine, and yields confirmed candidates.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
 if TYPE_CHECKING:
     import numpy as np
 
-STARTS = 3  # maximum number of best points at which the joint search starts
+STARTS = 3  # number of best points (combinations of factors) at which the joint search starts, at most
 
 
 class Search(Protocol):
@@ -42,7 +42,7 @@ class Search(Protocol):
     def joining(
         self, gains: Mapping[Unit, Mapping[float, float]], among: Sequence[Unit] | None = None
     ) -> ForwardSelection:
-        """Return a selection that combines units."""
+        """Return a forward selection, which combines changes of several units."""
 
 
 class Combining:
@@ -54,7 +54,7 @@ class Combining:
         self._held: set[tuple[Unit, Guard]] = set()
 
     def best_with_others(self) -> Iterator[Candidate]:
-        """Combine the best operand with others; combine a proposed operand only with parameters of the same change."""
+        """Combine the best operand with others, but a proposed operand only with operands of the same proposal."""
         search = self.search
         every = [
             (gain, *key, factor)
@@ -73,7 +73,8 @@ class Combining:
     def jointly(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
         """Jointly search the constants that change missions most, starting at the best points so far.
 
-        If what gains much cannot be moved jointly, such as a number of a table, the others gain nothing without it.
+        If the constant that gains most cannot be part of the joint search (such as a number of a table), the search is
+        skipped, because the other constants gain nothing without it.
         """
         search = self.search
         if search.generator is None or search.proposed:
@@ -91,23 +92,24 @@ class Combining:
         yield from jointly.candidates([Joint((part,), guard) for part in leaders[:STARTS]], guard)
 
     def leaders(self, guard: Guard) -> Iterator[Candidate]:
-        """Combine the best operands of different sites, each with its best factor, assuming additive main effects.
+        """Combine the best operands of different sites, each with its best factor; their gains are assumed to add up.
 
-        Combinations are tried before refused operands are refined further, so they come before near-duplicates.
+        This comes before refused operands are refined further, because the refined values would be nearly the same
+        changes again.
         """
         search = self.search
         search.refused -= {tried for tried in search.refused if tried[1] == guard}
         leaders = search.gains.leaders(guard)
         if search.proposed or not leaders or leaders[0][0] >= ALMOST * search.goal.wanted:
-            return  # the best change nearly suffices, so it needs another value, not another constant
+            return  # the best change nearly suffices, so it needs a better value and no second constant
         if leaders[0][0] > search.slack:
             hidden = [unit for unit in search.units if not search.gains.moves(unit)]
             yield from search.joining({}).unions([part for _, part in leaders], guard, hidden)
 
     def held(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Hold the best unit under each guard once, and try the other named constants under it.
+        """For each guard, once apply the best unit's change and try the other named constants together with it.
 
-        Constants that changed missions alone come first.
+        Constants that changed missions when they were tried alone come first.
         """
         search = self.search
         for guard in () if search.proposed else guards:
@@ -125,22 +127,23 @@ class Combining:
                         yield from self._instead(joint, rest)
 
     def _instead(self, refused: Joint, rest: Sequence[Unit]) -> Iterator[Candidate]:
-        """Keep the constant that made a change sufficient, and try others in place of the change that it was added to.
+        """Keep the last constant of a refused combination, and try other constants together with it.
 
-        The combination restores the drifted world but was refused, for example because the designed world gets worse.
+        The combination restores the reward in the drifted world, but it was refused, for example because it does harm
+        in the designed world.
         """
         unit, factor = refused.parts[-1]
         others = [one for one in rest if not set(one.operands) & set(unit.operands)]
         yield from unmasked(Joint(((unit, factor),), refused.guard), others, self.search.joining({}))
 
     def sharpened(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Adjust the best unit under each guard in small steps, before it is combined with others."""
+        """Under each guard, adjust the best unit in small steps before it is combined with others."""
         for guard in () if self.search.proposed else guards:
             for _, (unit, factor) in self.search.gains.leaders(guard)[:1]:
                 yield from self.search.joining({}).sharpened(unit, factor, guard)
 
     def unmasked(self, guard: Guard) -> Iterator[Candidate]:
-        """Retry the units without an effect together with the best unit, if its missions last longer."""
+        """If missions last longer with the best unit's change, retry the units without an effect together with it."""
         search = self.search
         leaders = search.gains.leaders(guard)
         if search.proposed or not leaders or leaders[0][0] < GAINED * search.goal.wanted:

@@ -1,8 +1,8 @@
-"""The rule that confirms a candidate: it must pass on further seeds and earn about as much as designed.
+"""Confirm a candidate: it must pass on further seeds and earn about as much as designed missions.
 
-A mission that lost much reward is often a hard mission, such as one with a longer way, which earns less in the designed
-world, too. A candidate that passes on the seeds of such missions but earns less than the mean designed mission is
-therefore compared with the designed missions of the same seeds.
+A mission that lost much reward is often a hard one, such as a mission with a longer way, and earns less in the designed
+world, too. A candidate may pass on the seeds of such missions and still earn less than the mean designed mission. It is
+then compared with the designed missions of the same seeds.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from statistics import fmean
 from pytest_tarl.errors import RepairError
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 
-CONFIRMATIONS = 5  # number of further seeds on which a promising candidate must also earn enough
+CONFIRMATIONS = 5  # number of further seeds on which a promising candidate must earn enough
 HARD = 2  # maximum number of confirmation seeds that are chosen because other candidates failed on them
 SHORT = 3  # a candidate is rejected after this number of missions if each mission clearly earned too little
 
@@ -20,13 +20,13 @@ SHORT = 3  # a candidate is rejected after this number of missions if each missi
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
     """Return whether a candidate passes on further seeds, starting after `goal.pairs[first]`.
 
-    The seeds on which other candidates fell short run first. A candidate is rejected early
+    The seeds on which other candidates earned too little run first. A candidate is rejected early
 
-    - if it loses missions that the tests of rejected candidates ran,
+    - if it loses missions that ran in the tests of rejected candidates,
     - at its first failed mission, if missions succeed in the designed world and the drift's size does not vary,
     - at its second seed with too little reward,
     - if its mean total is estimated to be too low (`falls_short`),
-    - if each of its first `SHORT` missions clearly earns too little, also compared with the designed missions of the
+    - if each of its first `SHORT` missions clearly earns too little, and also less than the designed missions of the
       same seeds.
     """
     if trials.loses(candidate):
@@ -60,9 +60,9 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
 
 
 def suffices(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
-    """Return whether a candidate reaches the goal on the first seed and is confirmed; False if it cannot be written.
+    """Return whether a candidate reaches the goal on the first seed and is confirmed on further seeds.
 
-    Raise BudgetSpentError.
+    Return False if the candidate cannot be written into the source. Raise BudgetSpentError.
     """
     try:
         return trials.reaches(candidate, goal.pairs[0].seed, goal) and confirmed(candidate, trials, goal, 0)
@@ -71,9 +71,9 @@ def suffices(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
 
 
 def _earns_as_designed(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
-    """Return whether a candidate loses at most the margin against the designed missions of the seeds that it ran.
+    """Return whether a candidate loses at most the margin, compared with designed missions of the same seeds.
 
-    If only few missions lose reward, the goal already knows what each of their seeds earns as designed.
+    If only few missions lose reward, the goal already contains the designed reward of each of their seeds.
     """
     if goal.margin is None or goal.harder:
         return False
@@ -82,7 +82,7 @@ def _earns_as_designed(candidate: Candidate, trials: Trials, goal: Goal) -> bool
 
 
 def _always_short(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
-    """Return whether each of at least `SHORT` missions earned clearly too little: nearer to `near` than to `enough`."""
+    """Return whether at least `SHORT` missions ran and each earned less than halfway from `near` to `enough`."""
     totals, least = trials.totals_of(candidate, goal.pairs), (goal.enough - goal.near) / 2
     return len(totals) >= SHORT and all(
         total < goal.enough_on([seed]) - least for seed, total in totals.items()
@@ -90,7 +90,7 @@ def _always_short(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
 
 
 def _hardest_first(trials: Trials, goal: Goal, first: int) -> list[int]:
-    """Return the confirmation seeds: up to `HARD` on which most candidates fell short, then those after `first`."""
+    """Return the confirmation seeds: up to `HARD` seeds that most candidates failed, then the seeds after `first`."""
     others = [goal.pairs[(first + i) % len(goal.pairs)].seed for i in range(1, len(goal.pairs))]
     missed = [seed for seed in others if trials.misses[seed]]
     hard = sorted(missed, key=lambda seed: -trials.misses[seed])[:HARD]

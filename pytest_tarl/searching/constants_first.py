@@ -1,8 +1,8 @@
-"""Before a structural change is yielded, try constants in its place: a maintainer prefers to change a constant.
+"""Before a structural change is yielded, try to change a constant instead, which a maintainer would prefer.
 
-A template that uses a sensor can fit the few values that the sensor has in both worlds by chance. The constant that is
-wrong often gained a little at one factor, while the factors on both sides of it gained nothing. If a change scales a
-whole command, the same factor on a constant of the command may do the same.
+A structural change that uses a sensor can fit by chance, because the sensor has only few values in both worlds. The
+constant that is really wrong often gained a little with one factor and nothing with the factors beside it. If a change
+scales a whole command, the same factor on one constant of the command may have the same effect.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
 CONSTANTS = 2  # maximum number of constants that are refined before the first structural change
-EPISODES = 8  # maximum number of episodes for each of them, without confirmations
-MADE_OF = 8  # maximum number of constants that are tried in place of a factor on a command
+EPISODES = 8  # maximum number of episodes for each of these constants, without confirmations
+MADE_OF = 8  # maximum number of constants that are tried instead of a factor on a command
 
 Lines = tuple[str, int, int]  # path, first and last line of a statement
 
 
 @dataclass(frozen=True)
 class Scaled:
-    """A factor on a command, and the statements that compute the command, nearest to it first."""
+    """A factor on a command, and the statements that compute the command. Statements near the command come first."""
 
     factor: float
     statements: tuple[Lines, ...]
 
     def place(self, unit: Unit) -> int | None:
-        """Return the index of the statement that uses all of a unit's constants, or None."""
+        """Return the index of the statement that contains all constants of a unit, or None if no statement does."""
         spans = [operand.span for operand in unit.operands]
         return next(
             (
@@ -67,10 +67,10 @@ def constants_first(
     goal: Goal,
     scaled: Callable[[Candidate], Scaled | None] = lambda _: None,
 ) -> Iterator[Candidate]:
-    """Yield structural changes; before the first one, yield refined constants that are confirmed.
+    """Yield structural changes. Before the first one, yield confirmed changes of constants.
 
-    If a change scales a command (`scaled`), constants of the command that are confirmed with the same factor come
-    before the change. Raise BudgetSpentError.
+    If a structural change scales a command (see `scaled`), try the same factor on constants of the command. Those that
+    are confirmed come before the structural change. Raise BudgetSpentError.
     """
     for number, structure in enumerate(structures):
         if not number:
@@ -84,7 +84,7 @@ def constants_first(
 def _of_the_command(
     command: Scaled, guard: Guard, search: Search, trials: Trials, goal: Goal
 ) -> Iterator[Candidate]:
-    """Yield the constants of a command that are confirmed with its factor, nearest to the command first."""
+    """Yield confirmed candidates that apply the command's factor to one constant, nearest to the command first."""
     placed = [(at, unit) for unit in search.units if (at := command.place(unit)) is not None]
     for _, unit in sorted(placed, key=lambda one: one[0])[:MADE_OF]:
         value = unit.operands[0].value
@@ -96,7 +96,7 @@ def _of_the_command(
 
 
 def _refined(search: Search, trials: Trials, goal: Goal) -> Iterator[Candidate]:
-    """Refine the named constants that gained most, each on the seed on which it gained."""
+    """Refine the named constants that gained most. Each runs on the seed on which it gained."""
     leaders = [
         key
         for key, _ in search.gains.items()
@@ -113,7 +113,7 @@ def _refined(search: Search, trials: Trials, goal: Goal) -> Iterator[Candidate]:
 def _on_one_seed(
     search: Search, key: tuple[Unit, Guard], at: int, trials: Trials, goal: Goal
 ) -> Iterator[Candidate]:
-    """Halve the distance to the neighbours of the best factor, comparing all factors on the seed of one pair."""
+    """Try factors halfway between the best factor and its neighbours; compare all factors on the seed of one pair."""
     (unit, guard), pair, begun = key, goal.pairs[at], trials.spent
     gains = {1.0: 0.0}
     steps = [factor for factor in _around(search.gains.of(unit, guard)) if factor != 1.0]
@@ -132,7 +132,7 @@ def _on_one_seed(
 
 
 def _around(gains: Mapping[float, float]) -> list[float]:
-    """Return the best factor and its neighbours."""
+    """Return the best factor and the factors next to it."""
     ordered = sorted(one for one in gains if one > 0.0)
     best = max(gains, key=gains.__getitem__)
     if best not in ordered:

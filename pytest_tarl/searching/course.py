@@ -1,4 +1,4 @@
-"""Compare the courses of two missions, which are their cumulative rewards over time."""
+"""Compare the courses of two missions. The course of a mission is its cumulative reward over time."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from itertools import accumulate
 
 
 def deviation(rewards: Sequence[float], designed: Sequence[float]) -> float:
-    """Return the mean distance between two cumulative rewards, divided by the designed one's largest absolute value.
+    """Return the mean distance of two courses, divided by the largest absolute value of the designed course.
 
-    The arguments are the rewards of each step. The shorter mission keeps its total after its end.
+    `rewards` and `designed` are the rewards of each step. After the shorter mission ends, its total stays constant.
     """
     steps = max(len(rewards), len(designed))
     mine, its = _cumulative(rewards, steps), _cumulative(designed, steps)

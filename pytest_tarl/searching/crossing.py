@@ -1,4 +1,4 @@
-"""Cross a plateau: try the steps of `plateau` while missions that fail earn the same, or a far change gains most."""
+"""Cross a plateau, where all failing missions earn the same: try the steps of `plateau` in turn."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytest_tarl.searching.attempts import Attempts
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import Unit
 
-# the finer steps on a few constants end as soon as a change gains this share of the wanted gain
+# the finer steps on a few constants stop when a change gains this share of the wanted gain
 CLEARLY = 0.3
 
 
@@ -32,7 +32,8 @@ class Crossing:
     def of_few(self, guard: Guard, few: Sequence[Unit]) -> Iterator[Candidate]:
         """Try the steps up to `plateau.FINE_UNTIL` on a few units, for at most half of the episodes that are left.
 
-        They end when a unit gains `CLEARLY`: a wrong constant may gain a little on one seed.
+        Stop when the gain of a unit is at least `CLEARLY`. Smaller gains do not count, because a wrong constant may
+        gain a little on one seed.
         """
         tries, gains = self.attempts, self.attempts.gains
         until = tries.trials.spent + (tries.trials.budget - tries.trials.spent) // 2
@@ -42,7 +43,7 @@ class Crossing:
             yield from tries.sweep(factor, guard, plateau.among(before, few, gains, guard))
 
     def inward(self, guard: Guard) -> Iterator[Candidate]:
-        """Try inward steps (see `plateau`) once under a guard while a large change gains most."""
+        """Try the inward steps (see `plateau`) under a guard, once, if a large change gains most."""
         tries, gains = self.attempts, self.attempts.gains
         if tries.proposed or guard in self._inside or not plateau.best_is_far(gains, guard):
             return

@@ -1,7 +1,7 @@
 """Recognise a constant that needs different values in different missions.
 
-One value reaches the goal in some missions and fails in others, in which another value reaches it. Then no single value
-restores the reward, and refining either value costs episodes for nothing.
+One value reaches the goal only in some missions, and another value reaches it in the missions where the first value
+fails. Then no single value restores the reward, and refining either value wastes episodes.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
-# factors by which the exponent is multiplied with which a constant follows a sensor or a variable
+# if a constant follows a power of a sensor or a variable, the exponent is multiplied by these factors
 POWERS = (1.0, 1.3, 0.77)
 
 
@@ -27,11 +27,11 @@ def divided(
     trials: Trials,
     goal: Goal,
 ) -> float | None:
-    """Return a factor between two that each reach the goal where the other one fails, or None.
+    """Return a factor between two factors that each reach the goal where the other factor fails, or None.
 
-    `tried` has the factors that ran so far. Both factors must change the constant in the same direction. If another
-    factor reached the goal, too, and one of the two failed, each runs where the other one reached it. Raise
-    BudgetSpentError and RepairError.
+    One of the two factors is `factor`; the other is a factor in `tried`, which holds the factors that ran so far. Both
+    must change the constant in the same direction. If both reached the goal somewhere and one of them failed elsewhere,
+    each runs on the seeds on which the other reached the goal. Raise BudgetSpentError and RepairError.
     """
     mine = Candidate(unit.mutations(mutate, factor), guard)
     here = _reached(mine, trials, goal)
@@ -51,7 +51,7 @@ def divided(
 
 
 def stronger_and_weaker(candidate: Candidate) -> Iterator[Candidate]:
-    """Yield a candidate that follows something with the power proposed, a larger one and a smaller one."""
+    """Yield a candidate whose constant follows a power of a quantity, then variants with other exponents."""
     for power in POWERS:
         yield replace(candidate, mutations=tuple(replace(one, value=power) for one in candidate.mutations))
 

@@ -30,13 +30,13 @@ class EpsilonGreedy:
     EPSILON = 0.2
     ALPHA = 0.3
     GAMMA = 0.5
-    SITES = 3  # number of sites to search: those that the slices rank first
+    SITES = 3  # number of sites to search: the first ones in the ranking by program slices
     CONFIRMED = 3  # number of best mutations to confirm at the end
     EPISODES = 200
 
     @classmethod
     def episodes(cls, budget: int) -> int:
-        """Return the number of episodes for learning; a third of the budget is kept for confirmation and guards."""
+        """Return the number of episodes for learning. A third of the budget is left for confirmation and guards."""
         return max(1, min(cls.EPISODES, 2 * budget // 3))
 
     def __init__(
@@ -61,7 +61,7 @@ class EpsilonGreedy:
         self.refused = set[int]()  # actions that cannot be written into the source
 
     def candidates(self) -> Iterator[Candidate]:
-        """Learn on all seeds, then yield the best mutations that are confirmed."""
+        """Learn on all seeds, then yield those of the best mutations that further episodes confirm."""
         if not self.actions:
             return
         self._learn()
@@ -76,7 +76,7 @@ class EpsilonGreedy:
                 yield candidate
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, for each site, each operand's best mean gain over the mean reward of the drifted world."""
+        """For each site, return the best mean gain of each operand over the mean reward of the drifted world."""
         best: dict[tuple[str, str], OperandEffect] = {}
         for action, totals in self.seen.items():
             if action in self.refused:
@@ -111,7 +111,7 @@ class EpsilonGreedy:
             last, action = action, following
 
     def _choose(self, state: int) -> int:
-        """Explore with probability ε (1/2 while some mutations are untried), else return the best known mutation."""
+        """Return a random mutation with probability ε (1/2 while mutations are untried), else the best known one."""
         untried = [a for a in range(len(self.actions)) if a not in self.seen]
         if untried and self.generator.random() < 0.5:
             return untried[int(self.generator.integers(len(untried)))]

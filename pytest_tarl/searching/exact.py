@@ -14,9 +14,9 @@ from pytest_tarl.searching.units import Unit
 def exactest(
     unit: Unit, factor: float, guard: Guard, seed: int, mutate: Mutate, trials: Trials
 ) -> tuple[float, float]:
-    """Return the factor with the least deviation (see `course`) on a seed, and this deviation.
+    """Return the factor whose mission deviates least (see `course`) from the designed mission, and the deviation.
 
-    Booleans and changes of sign keep their factor. Raise BudgetSpentError.
+    The missions run on `seed`. Booleans and changes of sign keep their factor. Raise BudgetSpentError.
     """
 
     def deviation(step: float) -> float:

@@ -1,8 +1,8 @@
-"""Try values between the designed one and one with which missions fail for another reason.
+"""Try values between the old value of a constant and a value with which missions fail for another reason.
 
-For example, a tug brakes too late and runs into the loader; with much less braking per metre, it comes too late. Both
-missions fail and may even earn the same. That they fail for opposite reasons shows that the constant matters and that a
-value in between may be right.
+For example, a tug brakes too late and runs into the loader. With a much smaller value, the tug drives so slowly that it
+arrives too late. Both missions fail and may even earn the same. But they fail for opposite reasons, so the constant
+matters and a value in between may be right.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
-MOST = 6  # maximum number of constants that are tried under a guard, the nearest values first
-STEPS = 3  # maximum number of values that are tried between the two, each in one episode
+MOST = 6  # maximum number of constants that are tried under a guard
+STEPS = 3  # maximum number of values that are tried between the two values, each in one episode
 
 
 class Search(Protocol):
@@ -39,7 +39,7 @@ class Search(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Bracket:
-    """A factor with which the mission of a pair fails for another reason than without a change."""
+    """A factor with which a pair's mission fails, but for another reason than without the factor."""
 
     unit: Unit
     factor: float
@@ -49,7 +49,7 @@ class Bracket:
 
 
 def in_between(search: Search, guard: Guard, units: Sequence[Unit]) -> Generator[Candidate, None, bool]:
-    """Halve the interval between factors that fail for different reasons, on a logarithmic scale, until one succeeds.
+    """If two factors fail for different reasons, bisect between them on a log scale until a factor succeeds.
 
     Return whether any constant was tried.
     """
@@ -60,7 +60,7 @@ def in_between(search: Search, guard: Guard, units: Sequence[Unit]) -> Generator
 
 
 def _brackets(search: Search, guard: Guard, unit: Unit) -> Iterator[Bracket]:
-    """Yield the nearest larger and the nearest smaller factor that fail for another reason."""
+    """Yield the factors nearest to 1, one larger and one smaller, with which missions fail for another reason."""
     tried = [factor for factor in search.gains.of(unit, guard) if factor > 0.0 and not isclose(factor, 1.0)]
     larger = sorted(factor for factor in tried if factor > 1.0)
     smaller = sorted((factor for factor in tried if factor < 1.0), reverse=True)
@@ -96,5 +96,5 @@ def _outcome(search: Search, guard: Guard, unit: Unit, factor: float, pair: int)
 
 
 def _reason(search: Search, outcome: Outcome | None) -> str:
-    """Return the reason why a mission failed; "" if it did not, or if the reason is unknown."""
+    """Return the reason why a mission failed, or "" if the mission did not fail or the reason is unknown."""
     return outcome.failure if outcome is not None and search.goal.lost(outcome) else ""

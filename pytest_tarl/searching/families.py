@@ -1,8 +1,9 @@
 """Group constants that stand for the same quantity of several axes, sides or joints.
 
-A drone has one stiffness for each axis; if the wind blows in all directions, changing one of them alone does not help.
-Constants form a family if their values are similar, and if they are entries of one table (`STIFFNESS["x"]`, `GAINS[1]`)
-or their names differ only in a word such as `left` or `x`.
+For example, a drone has one stiffness for each axis. If the wind blows in all directions, it does not help to change
+the stiffness of one axis only. Constants form a family if their values are similar and if one of two things is true:
+they are entries of one table (`STIFFNESS["x"]`, `GAINS[1]`), or their names differ only in a word such as `left` or
+`x`.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from pytest_tarl.searching.plainness import Oddness, kind
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
-SIMILAR = 4.0  # maximum ratio between two values in a family
+SIMILAR = 4.0  # maximum ratio of two values in a family
 FEWEST, MOST = 2, 8  # minimum and maximum number of constants in a family
 PLACES = frozenset(
     (
@@ -28,7 +29,7 @@ _ENTRY = re.compile(r"""\[\s*(?:-?\d+|"[^"\]]*"|'[^'\]]*')\s*\]$""")
 
 
 def families(apart: Sequence[Unit]) -> tuple[Unit, ...]:
-    """Return a unit for each family among the named constants, in the order of its first constant."""
+    """Return one unit for each family of named constants. Families are ordered by their first constant."""
     groups: dict[tuple[str, str], list[Operand]] = {}
     for unit in apart:
         if unit.chart is None and kind(unit) is Oddness.NAMED:
@@ -38,7 +39,7 @@ def families(apart: Sequence[Unit]) -> tuple[Unit, ...]:
 
 
 def shared_name(code: str) -> str:
-    """Return what the names of a family have in common, with `*` where they differ, or "" if nothing.
+    """Replace the word that differs within a family by `*`; return "" if a name has no such word.
 
     >>> shared_name('STIFFNESS["x"]'), shared_name("self.kp_left"), shared_name("LEFT_KP"), shared_name("self.kp")
     ('STIFFNESS[*]', 'self.kp_*', '*_kp', '')

@@ -1,7 +1,7 @@
 """Farther steps on named constants, tried once before combinations and structural changes.
 
-A constant that needs five times its value may gain nothing, or even lose a little, with its first steps: half of the
-right correction can be as wrong as none. A few named constants cost less than many expressions.
+If a constant needs five times its value, the first steps may gain nothing or even lose a little: half of the right
+correction can be as wrong as no correction. Trying a few named constants costs less than trying many expressions.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pytest_tarl.searching.search import Candidate, Goal
 from pytest_tarl.searching.units import Unit
 
 MOST = 6  # maximum number of constants for each step
-# maximum loss of a constant with the smaller step in the same direction, as a share of the wanted gain
+# maximum loss with the smaller step in the same direction, as a share of the wanted gain
 BEARABLE = 0.25
 
 
@@ -37,16 +37,16 @@ class Search(Protocol):
 
     @property
     def pair(self) -> int:
-        """Return the index of the pair on whose seed the changes of the present turn run."""
+        """Return the index of the mission pair whose seed is used in the present turn."""
 
     def each(self, factor: float, guard: Guard, among: Sequence[Unit], pair: int) -> Iterator[Candidate]:
         """Try one factor on several operands, on the seed of a pair."""
 
 
 def farther(search: Search) -> Iterator[Candidate]:
-    """Yield confirmed candidates of the larger steps on named constants, each step followed by a refinement.
+    """Try larger steps on named constants and refine after each step. Yield the confirmed candidates.
 
-    They have no condition if possible: the acceptance test finds out whether the repair needs one.
+    If possible, the candidates have no condition. The acceptance test finds out whether the repair needs a condition.
     """
     guard = ALWAYS if ALWAYS in search.guards else search.guards[0]
     for factor, before in FURTHER:
@@ -59,10 +59,11 @@ def farther(search: Search) -> Iterator[Candidate]:
 
 
 def _open(search: Search, guard: Guard, before: float) -> list[Unit]:
-    """Return the constants that hardly gained with the smaller step and lost at most `BEARABLE`, best first.
+    """Return the constants that neither gained clearly nor lost more than `BEARABLE` so far, best first.
 
-    Those that gained are refined, which reaches as far. A constant without any effect with the smaller step is left
-    out, such as a limit that is not reached. So are single uses of a constant that has several.
+    What counts is the gain with `before`, the smaller step. Constants that gained clearly are left out because refining
+    moves them as far. Constants on which the smaller step had no effect are also left out: an example is a limit that
+    is not reached. If a constant has several uses, its single uses are left out, too.
     """
     gains = search.gains
     whole = [unit for unit in named(search.units) if not any(_part_of(unit, one) for one in search.units)]

@@ -1,4 +1,4 @@
-"""The first steps of a sweep under a guard: large enough to show whether a constant matters."""
+"""The first steps of a sweep under a guard: they are large enough to show whether a constant matters."""
 
 from __future__ import annotations
 
@@ -26,26 +26,29 @@ from tarl_lint.model import Operand
 
 Hint = tuple[tuple[Operand, float], ...]  # constants that change together, each with its factor
 
-# number of units, the best first, that are tried with larger steps before the next guard is tried
+# number of best units that are tried with larger steps before the next guard is tried
 LEADING = 3
-# the `LEADING` units, and units that get a smaller step, must gain at least this share of the wanted gain
+# the `LEADING` units must gain at least this share of the wanted gain, and so must units that get a smaller step
 HINT = 0.005
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
-# steps for constants that clearly lose with each of the steps before: their good values are close to the old one
+# steps for constants that clearly lost with all earlier steps: their good values are close to the old value
 SENSITIVE = ((1.1, 0.91), (1.05, 0.95), (1.025, 0.975))
-# maximum number of constants without a name that get `SENSITIVE` steps, and of named ones that get `FINER` steps first
+# maximum number of unnamed constants that get `SENSITIVE` steps, and of named constants that get `FINER` steps early
 FEW = 3
 # if a change gains at least this share of the wanted gain, other constants get no `FINER` steps
 HALF = 0.5
-LONGEST = 2  # limits are relaxed under at most this number of changes that made missions last longer
+LONGEST = 2  # limits are relaxed together with at most this number of changes that made missions last longer
 
 
 _DECIDING = re.compile(rf"[<>]|[!=]=|\b(?:{'|'.join(('if', 'while', 'int', 'round', *sorted(BOUNDING)))})\b")
 
 
 def deciding(text: str) -> bool:
-    """Return whether a statement may compare, limit, round or store a value: it may then matter in one direction."""
+    """Return whether a statement may compare, limit, round or store a value.
+
+    A constant in such a statement may have an effect in one direction only.
+    """
     return _DECIDING.search(text) is not None or bool(assigned_alone(text))
 
 
@@ -53,10 +56,11 @@ class FirstSteps:
     """Try the first steps of one search.
 
     `responding` contains ids of statements whose constants raised the reward. `measured` returns changes that recorded
-    missions suggest; it is called once, when the first steps on named constants gained less than `HALF`. `reached`
-    returns the limits that only the drifted missions of a change reach (see `limits_in_turn`). `entered` returns the
-    constants of statements that missions run only with the change (see `further_on`). `proportional` returns candidates
-    in which a constant is proportional to a sensor or a variable (see `laws`).
+    missions suggest. It is called once, if the first steps on named constants gained less than `HALF`. `reached` takes
+    a change and returns the limits that missions with this change reach only in the drifted world (see
+    `limits_in_turn`). `entered` takes a change and returns the constants of statements that run only with this change
+    (see `further_on`). `proportional` returns candidates in which a constant is proportional to a sensor or a variable
+    (see `laws`).
     """
 
     def __init__(
@@ -78,7 +82,7 @@ class FirstSteps:
         self._reached: Reached | None = reached
 
     def everywhere(self, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Increase, then decrease the named constants without a condition, before they are tried under the best one.
+        """Increase, then decrease the named constants without a condition. Conditions are tried later.
 
         Most drifts last for whole missions. The acceptance test then finds out whether the repair needs a condition.
         """
@@ -93,9 +97,9 @@ class FirstSteps:
         yield from self._limits(ALWAYS)
 
     def near(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
-        """Increase and decrease each unit, then try smaller steps if both lose, and combine the best units.
+        """Increase and decrease each unit. If both steps lose, try smaller ones. Finally, combine the best units.
 
-        Until a gain exceeds the slack, the `LEADING` best units get larger steps at once.
+        Until a gain exceeds the noise level (`slack`), the `LEADING` best units get larger steps at once.
         """
         tries, gains = self.attempts, self.attempts.gains
         moving = gains.moving(block)
@@ -107,7 +111,7 @@ class FirstSteps:
         else:
             yield from self._named_first(guard, named(moving))
         if gains.idle_guard(guard) and ALWAYS in tries.guards:
-            return  # without the condition, changes may have effects
+            return  # nothing has an effect under this condition; changes may have effects without it
         for factor in NEAR:
             yield from tries.sweep(
                 factor, guard, [one for one in moving if not self._inert(one, guard, factor)]
@@ -129,7 +133,7 @@ class FirstSteps:
         yield from self._uses_apart(guard, block)
 
     def _between_failures(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Try values between two that fail for different reasons, unless a change under the guard gained enough."""
+        """If no change under the guard gained enough, try values between two values that fail for different reasons."""
         tries = self.attempts
         best = max((max(each.values()) for each in tries.gains.under(guard).values()), default=0.0)
         if not tries.proposed and best < HALF * tries.goal.wanted:
@@ -138,14 +142,14 @@ class FirstSteps:
                 yield from tries.adjusting.refine(tries.pair)
 
     def _inert(self, unit: Unit, guard: Guard, factor: float) -> bool:
-        """Return whether a literal that decides nothing had no effect with the first factor; then no other is tried."""
+        """Return whether a literal needs no further factor: the first had no effect and the literal decides nothing."""
         tried = self.attempts.gains.of(unit, guard)
         literal = unit.operands[0].literal and not self.attempts.proposed
         dull = factor == NEAR[1] and NEAR[0] in tried and not self.attempts.gains.moves(unit)
         return literal and dull and not deciding(unit.operands[0].site.text)
 
     def _named_first(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Increase named constants; if none gains, try moderate steps on them before other constants are tried."""
+        """Increase the named constants. If none gains, try moderate steps on them before other constants are tried."""
         tries = self.attempts
         yield from tries.each(NEAR[0], guard, among, tries.pair)
         idle = tries.gains.idle_guard(guard) and ALWAYS in tries.guards
@@ -162,7 +166,7 @@ class FirstSteps:
             yield from self._limits(self._unconditional(guard))
 
     def _at_once(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Try smaller steps on the named constants that lose in both directions: their good values are close."""
+        """Try smaller steps on the named constants that lose in both directions: their good values are near."""
         tries, pair = self.attempts, self.attempts.pair
         lost = tries.gains.lost_both_ways(guard, among, NEAR)
         for factor in BETWEEN if lost else ():
@@ -170,9 +174,9 @@ class FirstSteps:
             yield from tries.adjusting.refine(pair)
 
     def _closely(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """If nothing gained clearly, try a smaller step on the few named constants of which the smallest is the best.
+        """If nothing gained clearly, try an even smaller step on named constants whose smallest step was the best.
 
-        This costs less than the first steps on all literals.
+        There are few such constants, so this costs less than the first steps on all literals.
         """
         tries = self.attempts
         for factor, before in zip(FINER, BETWEEN, strict=True):
@@ -187,7 +191,7 @@ class FirstSteps:
         return most > HINT * self.attempts.goal.wanted and gains.get(factor) == most
 
     def _laws(self, guard: Guard) -> Iterator[Candidate]:
-        """If nothing gained, let the named constants that clearly lost in both directions follow what varies, once."""
+        """If nothing gained, once let named constants that lost in both directions follow a quantity that varies."""
         tries, gains = self.attempts, self.attempts.gains
         lost = gains.clearly_lost(guard, named(tries.units), NEAR)
         if self._proportional is not None and lost and not gains.anything():
@@ -195,7 +199,7 @@ class FirstSteps:
             yield from laws(lost, proportional, tries.joining({}))
 
     def _limits(self, guard: Guard) -> Iterator[Candidate]:
-        """Relax the limits that missions reach, once; start also from the changes after which they last longest.
+        """Once, relax the limits that missions reach, alone and together with changes that made missions longest.
 
         Corrections of wrong readings are tried first.
         """
@@ -224,14 +228,14 @@ class FirstSteps:
 
     @property
     def _whole(self) -> dict[Operand, Unit]:
-        """Return the unit of each constant."""
+        """Map each constant to the unit that contains all its uses."""
         units = reversed(self.attempts.units)
         return {operand: unit for unit in units if unit.chart is None for operand in unit.operands}
 
     def _as_measured(self, guard: Guard) -> Iterator[Candidate]:
         """Try the changes that recorded missions suggest, once, then refine the best constant.
 
-        They were measured over whole missions, so they have no condition if possible.
+        The suggestions come from whole missions, so the changes have no condition if possible.
         """
         tries, measured = self.attempts, self._measured
         self._measured = None
@@ -247,9 +251,10 @@ class FirstSteps:
             yield from tries.adjusting.refine(tries.pair)
 
     def _uses_apart(self, guard: Guard, block: Sequence[Unit]) -> Iterator[Candidate]:
-        """Change a constant at one of its uses only, because its effects at several uses may cancel each other.
+        """Change a constant at only one of its uses: if it changes everywhere, the effects may cancel each other.
 
-        Each use runs on the seed on which the constant ran as a whole, which shows whether both have the same effect.
+        Each use runs on the seed on which the constant was changed everywhere. This shows whether both changes have the
+        same effect.
         """
         tries, gains = self.attempts, self.attempts.gains
         wholes = [whole for whole in gains.moving(block) if tries.uses.of(whole)]
@@ -263,7 +268,10 @@ class FirstSteps:
             yield from tries.adjusting.refine(tries.pair)
 
     def _strengthened(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Strengthen proposals too weak to have an effect; use the largest factors only at statements that respond."""
+        """If a proposed change is too weak to have an effect, strengthen it.
+
+        Use the largest factors only at statements that respond, that is, whose constants raised the reward.
+        """
         tries = self.attempts
         for factor in (*NEAR, *(factor for factor, _ in FURTHER)):
             idle = [unit for unit in among if tries.gains.idle(unit)]
@@ -272,23 +280,23 @@ class FirstSteps:
             yield from tries.sweep(factor, guard, idle) if idle else ()
 
     def _carried_over(self, guard: Guard) -> Iterator[Candidate]:
-        """Try the best units of other guards under this guard, because those guards may be too narrow."""
+        """Try the units that were best under other guards, because the other guards may be too narrow."""
         tries = self.attempts
         pair = tries.pair
         for unit, factor in tries.gains.best_under([one for one in tries.guards if one != guard])[:LEADING]:
             yield from tries.attempt(unit, guard, factor, pair)
 
     def _without_condition(self, guard: Guard) -> Iterator[Candidate]:
-        """Try the change that gains most without its condition before more is done under it: it may be too narrow."""
+        """Try the change that gains most without its condition, because the condition may be too narrow."""
         tries, gains = self.attempts, self.attempts.gains
         for unit, factor in gains.best_under([guard])[:1]:
             if guard.conjuncts and ALWAYS in tries.guards and gains.most((unit, guard)) > tries.slack:
                 yield from tries.attempt(unit, ALWAYS, factor, tries.pair)
 
     def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Try smaller steps on operands for which both near factors lost: their best values must be close.
+        """Try smaller steps on operands that lost when increased and when decreased: their best values must be near.
 
-        If the smaller steps lose as well and nothing else is promising, try the `FINER`, then the `SENSITIVE` steps.
+        If the smaller steps lose, too, and nothing else is promising, try the `FINER` and then the `SENSITIVE` steps.
         """
         tries, gains = self.attempts, self.attempts.gains
         lost = gains.lost_both_ways(guard, among, NEAR)
@@ -308,7 +316,7 @@ class FirstSteps:
             before = steps
 
     def _few(self, guard: Guard, among: Sequence[Unit]) -> list[Unit]:
-        """Return the named constants that clearly lose with all steps so far, or else the few others that do."""
+        """Return the constants that clearly lose with all steps so far: the named ones, or else the others if few."""
         lost = self.attempts.gains.clearly_lost(guard, among, FINER)
         lost = [unit for unit in lost if unit.chart is None and kind(unit) < Oddness.OFFSET]
         return named(lost) or (lost if len(lost) <= FEW else [])

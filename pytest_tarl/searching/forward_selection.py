@@ -1,8 +1,8 @@
 """Combined repairs by greedy forward selection: start with the best unit and add units until the goal is reached.
 
-A part is a unit with its factor. Units are chosen by their gains alone, as in matching pursuit. After each step the
-factors of the parts are adjusted to each other (balanced). Unnecessary parts are dropped before the candidate is
-yielded.
+A part of a combination is a unit with its factor. Units are chosen by the gain that each has alone, as in matching
+pursuit. After each step, the factors of all parts are balanced: each one is adjusted to the others. Parts that are not
+needed are dropped before the candidate is yielded.
 """
 
 from __future__ import annotations
@@ -20,18 +20,19 @@ from pytest_tarl.searching.units import NEAR, Unit
 
 MOST = 3  # maximum number of parts in a combined repair
 PROMISING = 0.5  # a combination is balanced only if its gain is at least this share of the wanted gain
-# number of further units to combine with the first unit, because a useful unit may gain little alone
+# number of units that are combined with the first unit; it is large because a useful unit may gain little alone
 LEADERS = 5
 STEPS = (1.5, 0.65)  # factors that are tried on one part of a combination to balance the combination
-CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is multiplied repeatedly
-CLIMB = 4  # maximum number of times that one fixed parameter is multiplied by a factor of CLIMBS
+# factors by which a fixed parameter of a structural change is multiplied, once or several times
+CLIMBS = (0.9, 1.1)
+CLIMB = 4  # how often one fixed parameter may be multiplied by a factor of CLIMBS
 AMPLE = 1.02  # a refused combination is adjusted only if its gain is at most this share of the wanted gain
 STRONG = 5.0  # factor for units that have no effect alone
 
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """Units with their factors, under one guard."""
+    """A combination: several units with their factors, under one guard."""
 
     parts: tuple[tuple[Unit, float], ...]
     guard: Guard
@@ -57,14 +58,14 @@ Preferred = Callable[[Candidate, Unit, float], Iterator[Candidate]]
 
 @dataclass(frozen=True)
 class Settled:
-    """The candidates that were tried on further seeds, and the candidates that were confirmed and yielded."""
+    """Two sets of candidates: those that were tried on further seeds, and those that were confirmed and yielded."""
 
     tried: set[Candidate] = field(default_factory=set)
     held: set[Candidate] = field(default_factory=set)
     polished: set[frozenset[Unit]] = field(default_factory=set)  # combinations whose factors were adjusted
 
     def holds(self, candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
-        """Return whether further seeds confirm a candidate; False if it was tried before."""
+        """Return whether further seeds confirm a candidate. Return False if the candidate was tried before."""
         if candidate in self.tried:
             return False
         self.tried.add(candidate)
@@ -77,9 +78,10 @@ class Settled:
 class ForwardSelection:
     """Combine changes of several units.
 
-    `gains` maps each unit to its gains when it alone is changed, by factor. Gains below `slack` do not matter.
+    `gains` maps each unit to the gain of each factor when only this unit is changed. Gains below `slack` do not matter.
 
-    If a confirmed combination has only one part that is needed, `preferred` yields the changes that come before it.
+    If a confirmed combination needs only one of its parts, `preferred` yields the changes that a maintainer would
+    prefer to this part. They come first.
     """
 
     def __init__(
@@ -105,12 +107,12 @@ class ForwardSelection:
     def candidates(self, base: Joint) -> Iterator[Candidate]:
         """Yield confirmed combinations, starting with `base`.
 
-        If no unit changes anything with its better factor, the other factor is not tried: the base keeps the program
-        from doing anything that others could improve.
+        Each unit is first tried with its better factor. If no unit has an effect, the other factors are not tried: with
+        `base`, the program then does nothing that other units could improve.
         """
         gain = yield from self.gain(base)
         if base.candidate(self.mutate) in self.settled.held:
-            # the combination to start from reaches the goal on this seed, so no further part can show a gain
+            # the first combination reaches the goal on this seed, so no further part can show a gain
             return
         while gain is not None and len(base.parts) < MOST:
             better, most = base, gain
@@ -128,7 +130,7 @@ class ForwardSelection:
             base, gain = yield from self._balanced(better, most)
 
     def _inert(self, wider: Joint, base: Joint) -> bool:
-        """Return whether a combination has the same outcome as its base on the first seed."""
+        """Return whether `wider` has the same outcome as `base` on the first seed."""
         ran = [self.trials.ran(one.candidate(self.mutate), self.goal.pairs[:1]) for one in (wider, base)]
         return bool(ran[0]) and [(one.total, one.steps) for one in ran[0]] == [
             (one.total, one.steps) for one in ran[1]
@@ -137,7 +139,7 @@ class ForwardSelection:
     def unions(
         self, parts: Sequence[tuple[Unit, float]], guard: Guard, hidden: Sequence[Unit] = ()
     ) -> Iterator[Candidate]:
-        """Combine the first part with each of the next ones, add a third to the best pair, and balance the best result.
+        """Combine the first part with each other part, add a third part to the best pair, and balance the best result.
 
         `hidden` are the units that never changed a reward alone.
         """
@@ -156,7 +158,7 @@ class ForwardSelection:
                 if gained is not None and (best is None or gained > best[1]):
                     best, base = (joint, gained), joint
             if best is not None and self._suffices(best[1]):
-                # the pair suffices on this seed but not on others: adjust its values instead of adding parts
+                # these two parts suffice on this seed but not on others: adjust their values instead of adding parts
                 break
         if best is not None and best[1] > PROMISING * needed:
             joint, gain = yield from self._balanced(*best)
@@ -165,7 +167,7 @@ class ForwardSelection:
                 yield from self._with_what_was_hidden(pair, hidden)
 
     def _with_what_was_hidden(self, pair: Joint, hidden: Sequence[Unit]) -> Iterator[Candidate]:
-        """Add units without an effect of their own to a good pair: with it, missions may last until they matter."""
+        """Add units that had no effect alone to a good pair: missions may now last until these units matter."""
         best, most = pair, (yield from self.gain(pair)) or 0.0
         before = most
         for unit in hidden if most > PROMISING * self.goal.wanted else ():
@@ -187,13 +189,13 @@ class ForwardSelection:
         self.trials.expect((joint.candidate(self.mutate), seed) for joint in joints)
 
     def candidates_of(self, joint: Joint) -> Iterator[Candidate]:
-        """Run a combination and yield it, without unneeded parts, if it is confirmed; balance it if it gains much."""
+        """Run a combination. If it is confirmed, yield it without unneeded parts. If it gains much, balance it."""
         gain = yield from self.gain(joint)
         if gain is not None and PROMISING * self.goal.wanted < gain and not self._suffices(gain):
             yield from self._balanced(joint, gain)
 
     def gain(self, joint: Joint) -> Generator[Candidate, None, float | None]:
-        """Run a combination once and return its gain, or None if it cannot run; yield it if it is confirmed."""
+        """Run a combination once and yield it if it is confirmed. Return its gain, or None if it cannot run."""
         candidate = joint.candidate(self.mutate)
         try:
             near = self._reached(candidate)
@@ -217,7 +219,7 @@ class ForwardSelection:
                 return
 
     def fewest(self, joint: Joint) -> Iterator[Candidate]:
-        """Drop unneeded parts; yield the result if it has at most `MOST` parts and is confirmed."""
+        """Drop unneeded parts. Yield the result if it is confirmed and has at most `MOST` parts."""
         try:
             fewer = self._least(joint) if self._reached(joint.candidate(self.mutate)) else joint
             candidate = fewer.candidate(self.mutate)
@@ -229,7 +231,8 @@ class ForwardSelection:
     def _settling(self, joint: Joint, candidate: Candidate) -> Iterator[Candidate]:
         """Drop unneeded parts and yield the result if it is confirmed and new.
 
-        If it is not confirmed, or if the caller refuses it because it barely earns enough, adjust its factors.
+        Adjust the factors in two cases: the result is not confirmed, or the caller refuses it because it barely earns
+        enough.
         """
         least = self._least(joint)
         fewer = least.candidate(self.mutate)
@@ -286,17 +289,17 @@ class ForwardSelection:
                 return
 
     def sharpened(self, unit: Unit, factor: float, guard: Guard) -> Iterator[Candidate]:
-        """Yield a single unit that gains much with an adjusted factor, if it is then confirmed."""
+        """For a single unit that gains much, adjust the factor and yield the candidate if it is confirmed."""
         better = self.sharper(unit, factor, guard)
         candidate = Joint(((unit, better),), guard).candidate(self.mutate)
         if better != factor and self.settled.holds(candidate, self.trials, self.goal, 0):
             yield candidate
 
     def sharper(self, unit: Unit, factor: float, guard: Guard, steps: Sequence[float] = SHARP_STEPS) -> float:
-        """Adjust the factor of a single unit that gains much on average, on the seeds where it earns least.
+        """Return an adjusted factor for a single unit that gains much; adjust it on the seeds where it earns least.
 
-        Unlike in a combination, a failed mission counts with its reward, because some missions fail near a
-        narrow range of good values.
+        A failed mission counts with its reward here, although it does not in a combination: near a narrow range of good
+        values, some missions fail.
         """
         base = Joint(((unit, factor),), guard)
         begin, pairs = base.candidate(self.mutate), self.goal.pairs
@@ -316,7 +319,7 @@ class ForwardSelection:
         return better
 
     def _with_another(self, base: Joint, turn: int) -> Iterator[Joint]:
-        """Yield combinations with one more part; the first turn has the better of its two near factors."""
+        """Yield combinations with one more part. In the first turn, the part has the better of its two near factors."""
         taken = {unit for unit, _ in base.parts}
         for unit in self.units:
             ranked = sorted(NEAR, key=lambda factor: self._progress(unit, factor, base.guard), reverse=True)
@@ -324,9 +327,10 @@ class ForwardSelection:
                 yield base.with_part(unit, ranked[turn])
 
     def _progress(self, unit: Unit, factor: float, guard: Guard) -> tuple[float, float, float]:
-        """Return a key by which two factors of a unit are compared; a larger one is better.
+        """Return a key for comparing the factors of a unit; the factor with the larger key is better.
 
-        Among failed missions that earn about the same, a longer one is better, although its steps may cost reward.
+        If failed missions earn about the same, the longer mission is better, although its additional steps may cost
+        reward.
         """
         gain = self.gains.get(unit, {}).get(factor, 0.0)
         if not self.goal.passing or abs(gain) > self.slack:
@@ -337,7 +341,7 @@ class ForwardSelection:
         return 0.0, fmean(ratios) if ratios else 1.0, gain
 
     def _balanced(self, base: Joint, gain: float) -> Generator[Candidate, None, tuple[Joint, float]]:
-        """Move the factors of the parts one by one while the gain increases; return the result and its gain."""
+        """Move the factors one after the other while the gain increases; return the new combination and its gain."""
         for unit, factor in base.parts:
             for step in STEPS:
                 moved = base.with_part(unit, round(factor * step, 3))
@@ -348,7 +352,7 @@ class ForwardSelection:
         return base, gain
 
     def _least(self, joint: Joint) -> Joint:
-        """Drop the parts that the first seed does not need."""
+        """Drop the parts without which the combination still reaches the goal on the first seed."""
         for unit, _ in joint.parts:
             fewer = joint.without(unit)
             if fewer.parts and self._reached(fewer.candidate(self.mutate)):

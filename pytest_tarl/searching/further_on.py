@@ -1,8 +1,9 @@
-"""Try other constants together with a change that lets missions get further, although it gains nothing.
+"""Try other constants together with a change that lets missions get further but gains no reward.
 
-If two constants stop a mission one after the other, the right value of the first one only moves the failure to a later
-stage. All failures earn about the same, so the reward does not lead to the pair, but the statements that run do: if the
-mission runs statements that designed missions run and the unrepaired one does not, the change is probably right.
+Two wrong constants may stop a mission at different stages. If the first constant is corrected, the mission only fails
+later. All failures earn about the same, so the reward does not show that the first change is right. The statements that
+run show it: the changed mission runs statements that designed missions run and that the unrepaired mission does not
+reach.
 """
 
 from __future__ import annotations
@@ -15,18 +16,18 @@ from pytest_tarl.searching.units import Unit
 from pytest_tarl.searching.unmasking import unmasked
 from tarl_lint.model import Operand
 
-# the constants of the statements that only designed missions and those of a candidate run; may run an episode
+# returns the constants of statements that only designed missions and a candidate's missions run; may run an episode
 Entered = Callable[[Candidate], Sequence[Operand]]
 
-MOST = 10  # maximum number of constants that are tried under a change
+MOST = 10  # maximum number of constants that are tried together with a change
 
 
 def further_on(
     bases: Sequence[Joint], rest: Sequence[Unit], entered: Entered, selection: ForwardSelection
 ) -> Iterator[Candidate]:
-    """Yield confirmed combinations of one other unit with the first of `bases` that lets missions get further.
+    """Add one other unit to the first of `bases` that lets missions get further; yield what is confirmed.
 
-    The constants of the statements that missions enter only with this change come first. Raise BudgetSpentError.
+    The constants of statements that run only with this base come first. Raise BudgetSpentError.
     """
     for base in bases:
         new = set(entered(base.candidate(selection.mutate)))

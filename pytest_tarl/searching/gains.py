@@ -1,4 +1,4 @@
-"""Table of the gains of single units by guard and factor, and the rankings that the sweep reads from it."""
+"""A table of the gains of single units by guard and factor, and the rankings that the sweep derives from it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tarl_lint.model import SiteId
 
 SEEN = 6  # a guard can be called idle only after this number of units were tried under the guard
 IDLE = 0.25  # a guard is idle if at most this share of the units tried under it changed an episode
-# two units act alike if at least this number of factors clearly changed the reward by the same amount
+# two units act alike if at least this number of factors clearly changed the reward, each by the same amount for both
 ALIKE = 3
 
 Key = tuple[Unit, Guard]
@@ -22,7 +22,7 @@ class Gains:
     """Gains in total reward over the unmutated runs of the same seeds.
 
     Gains of at most `slack` are treated as noise. If `proposed` is true, a factor of 1 counts as a change. `acting`
-    returns whether a unit changed what the nodes publish; calling it may cost an episode.
+    returns whether a unit changed what the nodes publish, and may run an episode to find out.
     """
 
     def __init__(
@@ -39,7 +39,7 @@ class Gains:
     def enter(
         self, key: Key, factor: float, gain: float, moved: bool | None = None, hollow: bool = False
     ) -> None:
-        """Store the gain of a factor, and whether it changed an episode (by default: whether the gain is not 0).
+        """Store the gain of a factor and whether the factor changed an episode (by default: whether the gain is not 0).
 
         A `hollow` gain comes from missions that only fail sooner. Such a gain may be refined, but does not count as
         progress.
@@ -55,11 +55,11 @@ class Gains:
         return self._by_key.get((unit, guard), {})
 
     def most(self, key: Key) -> float:
-        """Return the gain of the best factor."""
+        """Return the largest gain of any factor of this unit and guard."""
         return max(self._by_key.get(key, {1.0: 0.0}).values())
 
     def items(self) -> Iterator[tuple[Key, Mapping[float, float]]]:
-        """Yield the gains of each unit and guard, in the order of the first tries."""
+        """Yield each unit and guard with its gains, in the order in which they were first tried."""
         yield from self._by_key.items()
 
     def under(self, guard: Guard) -> dict[Unit, Mapping[float, float]]:
@@ -86,7 +86,7 @@ class Gains:
         return all(gain < -self.slack for gain in self._by_key.get(key, {1.0: 0.0}).values())
 
     def idle(self, unit: Unit) -> bool:
-        """Return whether a proposed change had no effect at factor 1, its proposed value."""
+        """Return whether a proposed change had no effect with its proposed value (factor 1)."""
         tried = any(1.0 in gains for (one, _), gains in self._by_key.items() if one == unit)
         return self.proposed and tried and (unit, 1.0) not in self._moved
 
@@ -99,7 +99,7 @@ class Gains:
         return (unit, factor) in self._moved
 
     def idle_guard(self, guard: Guard) -> bool:
-        """Return whether changes under a guard hardly have effects: it holds where the robot does little."""
+        """Return whether changes under a guard hardly have effects, because the robot does little where it holds."""
         tried = self.under(guard)
         moved = sum((unit, guard) in self._moved_under for unit in tried)
         return bool(guard.conjuncts) and len(tried) >= SEEN and moved <= IDLE * len(tried)
@@ -114,8 +114,8 @@ class Gains:
     def moving(self, among: Sequence[Unit]) -> list[Unit]:
         """Return the units, except those for which neither an increase nor a decrease had any effect.
 
-        While no unit gains, a changed command counts as an effect, because all missions that fail may earn the same.
-        Tries under an idle guard do not count.
+        While no unit gains, a changed command counts as an effect, because all failing missions may earn the same.
+        Tries under an idle guard (see `idle_guard`) do not count.
         """
         tries: dict[Unit, int] = {}
         idle = {guard for guard in {guard for _, guard in self._by_key} if self.idle_guard(guard)}
@@ -131,10 +131,11 @@ class Gains:
         ]
 
     def distinct(self, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units, except those that use the same constant as an earlier unit and have the same effect.
+        """Return the units without duplicates: units that use the same constant as an earlier unit to the same effect.
 
         For example, a constant that is passed to a function is used both in the call and in the function. Two units
-        count as equal if they share a definition and if at least two factors were tried on both, all with equal gains.
+        count as equal if they share a definition, at least two factors were tried on both, and the gains of all these
+        factors are equal.
         """
         kept: list[Unit] = []
         for unit in among:
@@ -158,7 +159,7 @@ class Gains:
         return len(pairs) >= len(NEAR) and all(gain == its for its, gain in pairs)
 
     def acting_alike(self, unit: Unit, guard: Guard, among: Sequence[Unit]) -> list[Unit]:
-        """Return the other units that had the same effects under a guard with at least `ALIKE` factors."""
+        """Return the other units for which at least `ALIKE` factors had the same effects under a guard."""
         mine = self.of(unit, guard)
         found = []
         for other in among if self.moves(unit) else ():
@@ -174,8 +175,8 @@ class Gains:
     def lost_both_ways(self, guard: Guard, among: Sequence[Unit], factors: Sequence[float]) -> list[Unit]:
         """Return the units that lost more than `slack` with each of these factors.
 
-        A mission that already earns the least possible reward cannot lose more. Therefore an episode that changed but
-        earned the same also counts as a loss. For a named constant, it suffices that what the nodes publish changed.
+        A mission that already earns the least possible reward cannot lose more. Therefore, an episode that changed but
+        earned the same also counts as a loss. For a named constant, a change of the published messages counts as well.
         """
         tried = {unit: self.of(unit, guard) for unit in among}
 
@@ -210,7 +211,7 @@ class Gains:
         return [unit for _, unit in sorted(kept, key=lambda one: -one[0])]
 
     def best_under(self, guards: Sequence[Guard]) -> list[Part]:
-        """Return the units that gained under any of the guards, each with its best factor, best first."""
+        """Return the units that gained under one of the guards, each with its best factor, best gain first."""
         best: dict[Unit, tuple[float, float]] = {}
         for (unit, held), gains in self._by_key.items():
             factor = max(gains, key=gains.__getitem__)
@@ -219,7 +220,7 @@ class Gains:
         return [(unit, best[unit][1]) for unit in sorted(best, key=lambda unit: -best[unit][0])]
 
     def leaders(self, guard: Guard) -> list[tuple[float, Part]]:
-        """Return the best unit of each site under a guard with its gain and factor, best first."""
+        """For each site, return the best unit under a guard with its gain and factor, best gain first."""
         found: dict[SiteId, tuple[float, Part]] = {}
         for unit, gains in self.under(guard).items():
             gain, factor = max((gain, factor) for factor, gain in gains.items())

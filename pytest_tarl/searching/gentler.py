@@ -1,7 +1,7 @@
-"""Decide whether a repair that passes calls for milder alternatives, and which constants these may change.
+"""Decide whether a passing repair should be compared with milder alternatives, and which constants to try for them.
 
-For example, a rope camera with wet brake pads overshoots its mark. A very low speed avoids that, and so does a wrong
-value for gravity. A maintainer would instead correct the friction of the pads, so that the mission goes as designed.
+For example, a rope camera with wet brake pads overshoots its mark. A very low speed avoids this, and so does a wrong
+value for gravity. A maintainer would correct the friction of the pads instead. Then the mission goes as designed.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tarl_lint.model import SiteId
 
 COARSE = (1.5, 0.65)
 FINE = (*COARSE, 1.22, 0.82, 1.35, 0.73)
-# if the repaired and the designed mission differ in length by more than this factor, an alternative is sought
+# alternatives are tried if the lengths of the repaired and the designed mission differ by more than this factor
 LONGER = 1.3
 
 
@@ -36,7 +36,7 @@ def another_way(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
 def gentler(
     found: Unit, units: Sequence[Unit], gains: Gains, guard: Guard, promising: float
 ) -> list[tuple[Unit, Sequence[float]]]:
-    """Return the named constants to try in place of `found`, each with its factors, best statement first.
+    """Return the named constants to try instead of `found`, each with its factors, best statement first.
 
     The factors are closer to 1 if any constant of the same statement gained at least `promising`. Constants that were
     increased and decreased without any effect are left out.

@@ -1,8 +1,9 @@
 """Sequential halving: run every arm (an operand with a factor), and drop half of the arms after each round.
 
-Each round uses common seeds. The search also drops arms that gain nothing or that fall significantly behind
-in a paired race, and it refines the best arms. References: Karnin, Koren & Somekh 2013; for the race, Maron &
-Moore 1994. The first round runs every arm once, so the search needs at least (operands × factors) episodes.
+In each round, all arms run on the same seeds. The search also drops arms that gain nothing, and arms that are
+significantly worse than the best one on common seeds. It refines the best arms. References: Karnin, Koren & Somekh
+2013; for the race, Maron & Moore 1994. The first round runs every arm once, so the search needs at least (operands ×
+factors) episodes.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ SLACK = 0.1  # minimum gain that counts, as a share of the loss
 
 
 class Halving:
-    """Sequential halving with local refinement and a paired race, run for each guard in turn."""
+    """Sequential halving with a race on common seeds and with refinement of the best arms. Each guard has its turn."""
 
     def __init__(
         self,
@@ -51,7 +52,7 @@ class Halving:
             yield from self._together(guard)
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, for each site, the gain of each operand's best arm over the unmutated runs of the same seeds."""
+        """For each site, return the gain of each operand's best arm, relative to unmutated runs of the same seeds."""
         return arm_effects(self.race)
 
     def _holding(self, arms: Sequence[Arm]) -> Iterator[Candidate]:
@@ -68,13 +69,13 @@ class Halving:
                     yield candidate
 
     def _kept(self, arms: Sequence[Arm]) -> list[Arm]:
-        """Return the better half of the arms that gain and are not behind, plus new arms around the best ones."""
+        """Return the better half of the arms that gain and are not behind, and new arms beside the best ones."""
         gaining = [arm for arm in self.race.abreast(arms) if self.race.gain(arm) > self.slack]
         kept = gaining[: (len(gaining) + 1) // 2]
         return list(dict.fromkeys([*kept, *(one for arm in kept[:REFINED] for one in self.race.around(arm))]))
 
     def _together(self, guard: Guard) -> Iterator[Candidate]:
-        """Combine the best operand with others, for losses that no single operand removes."""
+        """If no single operand removes the loss, combine the best operand with others."""
         race = self.race
         ranked = race.ranked(arm for arm in race.gains if arm.guard == guard)
         if ranked and race.gain(ranked[0]) > self.slack:
@@ -84,7 +85,7 @@ class Halving:
 
 
 def arm_effects(race: Race) -> dict[str, list[OperandEffect]]:
-    """Return for each site the best gain of each operand; on ties, the value tried first wins."""
+    """For each site, return the best gain of each operand. On ties, return the value that was tried first."""
     best: dict[Operand, OperandEffect] = {}
     for arm in race.gains:
         for mutation in arm.unit.mutations(race.mutate, arm.factor):

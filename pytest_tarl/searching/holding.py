@@ -1,8 +1,9 @@
-"""Hold the change that gains a good part of the loss, and try the other constants under it.
+"""Keep a change that removes a good part of the loss, and try the other constants together with it.
 
-A change may restore the easy missions and fail the hard ones, because a second constant is wrong as well. On an easy
-mission nothing more can be gained, so the other constants run on the mission that the change restores least. They
-include those that lose alone: a damping that is right for a larger gain is too strong for the old one.
+A change may restore the easy missions but not the hard ones, because a second constant is wrong as well. On an easy
+mission nothing more can be gained, so the other constants run on the mission that the change restores least. Constants
+that lose reward alone are also tried. For example, a damping that is right for a larger controller gain is too strong
+for the old gain.
 """
 
 from __future__ import annotations
@@ -16,18 +17,18 @@ from pytest_tarl.searching.search import Pair
 from pytest_tarl.searching.units import NEAR, Unit
 from tarl_lint.model import Operand
 
-GAINED = 0.3  # minimum gain of the change that is held, as a share of the wanted gain
+GAINED = 0.3  # minimum gain of the change that is kept, as a share of the wanted gain
 SEEDS = 2  # the change must have run on at least this number of seeds, because a gain on one seed may be luck
 EPISODES = 20  # maximum number of tries of other constants
-MOVED = 2  # maximum number of combinations that are moved further
+MOVED = 2  # maximum number of combinations whose added constant is moved further
 
 
 def held(base: Joint, rest: Sequence[Unit], selection: ForwardSelection) -> Iterator[tuple[Joint, Outcome]]:
-    """Run the constants of `rest` under a change on the mission that it restores least; yield what earns more.
+    """Add one constant of `rest` to a change, on the mission that it restores least; yield what earns more.
 
-    Each constant is increased, then decreased. The best constants are then moved further, also if several earn about
-    the same, because the constant that is best after a large step need not be the best with a suitable value. Nothing
-    runs if the change gains too little on average, or if it restores all missions that it ran. Raise BudgetSpentError.
+    Each constant is increased, then decreased. Then the best constants are moved further. This is done for several
+    constants, because the constant that is best after a large step need not be best with a suitable value. Nothing runs
+    if the change gains too little on average or already restores all its missions. Raise BudgetSpentError.
     """
     pair = _hardest(base, selection)
     if pair is None:
@@ -52,7 +53,7 @@ def held(base: Joint, rest: Sequence[Unit], selection: ForwardSelection) -> Iter
 
 
 def _apart(found: Sequence[tuple[Outcome, Joint]]) -> list[tuple[Outcome, Joint]]:
-    """Return the combinations of which none adds a constant that an earlier one adds."""
+    """Return the combinations without those that add the same constant as an earlier combination."""
     kept: list[tuple[Outcome, Joint]] = []
     taken: set[Operand] = set()
     for outcome, joint in found:
@@ -64,7 +65,7 @@ def _apart(found: Sequence[tuple[Outcome, Joint]]) -> list[tuple[Outcome, Joint]
 
 
 def _moved(joint: Joint, outcome: Outcome, pair: Pair, selection: ForwardSelection) -> tuple[Joint, Outcome]:
-    """Move the last constant of a combination a little; return the better combination with its outcome."""
+    """Move the last constant of a combination a little; return the best combination and its outcome."""
     unit, factor = joint.parts[-1]
     for step in STEPS:
         moved = joint.with_part(unit, round(factor * step, 3))
@@ -75,7 +76,7 @@ def _moved(joint: Joint, outcome: Outcome, pair: Pair, selection: ForwardSelecti
 
 
 def _hardest(base: Joint, selection: ForwardSelection) -> Pair | None:
-    """Return the pair whose mission a change restores least, or None if it is not worth holding."""
+    """Return the pair whose mission a change restores least, or None if the change is not worth keeping."""
     trials, goal, candidate = selection.trials, selection.goal, base.candidate(selection.mutate)
     try:
         for pair in goal.pairs:

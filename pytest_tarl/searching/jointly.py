@@ -31,24 +31,26 @@ DIMENSIONS = 8  # maximum number of constants that are moved together
 LEAST = 2  # minimum number of constants that are moved together
 EPISODES = 50  # maximum number of trials of the joint search
 PATIENCE = 25  # maximum number of consecutive trials without an improvement
-# maximum number of consecutive trials with one and the same reward above the unrepaired program's: such trials only
-# avoid the part of the mission that costs reward
+# maximum number of consecutive trials that earn the same reward, if it is larger than the unrepaired program's: such
+# trials only avoid the part of the mission that costs reward
 FLAT = 12
-FARTHEST = 3.0  # maximum |log(step)|; a step of e³ is a factor of 20
+FARTHEST = 3.0  # maximum |log(step)|; e³ is a factor of 20
 CHANGED = 3  # maximum number of constants in which a trial differs from the point where it starts
 SPREADS = (0.1, 0.3, 0.8)  # standard deviations of the random changes of a log step
 PROPOSALS = 400  # random proposals per trial; the one with the largest expected improvement runs
 STARTS = 4  # number of best points to start from
-ASUNDER = 0.2  # minimum difference, in at least one log step, between two points to start from
-# maximum number of hidden constants, which are moved although alone they hardly changed the reward
+ASUNDER = 0.2  # two points to start from must differ by at least this amount in at least one log step
+# maximum number of hidden constants: they are moved, too, although alone they hardly changed the reward
 HIDDEN = 2
 SELDOM = 0.25  # frequency with which hidden constants are moved, relative to the others
-LENGTHS = (0.4, 1.0, 2.5, 8.0)  # possible length scales of a constant, in units of its log step
+# length scales of a constant that the fit may choose, in units of its log step
+LENGTHS = (0.4, 1.0, 2.5, 8.0)
 REFITTED = 4  # number of trials between two fits of the length scales
-NOISES = (0.05, 0.2)  # possible noise levels of a trial, as a share of the standard deviation of all trials
+# noise levels of a trial that the fit may choose, as a share of the standard deviation of all trials
+NOISES = (0.05, 0.2)
 WORST = 2.0  # maximum deviation from the designed mission; larger deviations are clipped
-REFUSED = 0.5  # penalty on the value of a point that is good on this seed but was refused on others
-SMALL = 0.02  # a constant is left unchanged if |log| of its factor is smaller
+REFUSED = 0.5  # penalty for a point that is good on this seed but was refused because of other seeds
+SMALL = 0.02  # a constant whose factor has a smaller |log| than this is left unchanged
 
 
 @dataclass
@@ -122,7 +124,7 @@ def expected_improvement(mean: Floats, deviation: Floats, best: float) -> Floats
 class Jointly:
     """Joint search of units, starting at given points; `selection` runs and confirms the combinations.
 
-    The last `hidden` units hardly changed the reward alone and move less often.
+    The last `hidden` units hardly changed the reward alone, so they are moved less often.
     """
 
     def __init__(
@@ -177,10 +179,10 @@ class Jointly:
         return Joint(tuple((unit, float(f"{step:.3g}")) for unit, step in joint.parts), joint.guard)
 
     def _value(self, joint: Joint, best: float) -> Generator[Candidate, None, float | None]:
-        """Run a combination; return its share of the wanted gain minus the deviation of its missions.
+        """Run a combination; return its gain (as a share of the wanted gain) minus the deviation of its missions.
 
-        A combination that would be the best so far also runs on a second seed, because its result on one seed may be
-        luck. The gain of such a combination is the mean of both seeds.
+        A result on one seed may be luck. A combination that would be the best so far therefore also runs on a second
+        seed, and its gain is the mean of both seeds.
         """
         gain = yield from self.selection.gain(joint)
         if gain is None:
@@ -210,7 +212,7 @@ class Jointly:
         return tuple(float(one) for one in proposals[int(np.argmax(gains))])
 
     def _proposals(self, starts: Floats) -> Floats:
-        """Return the starts with one to `CHANGED` coordinates moved, shape (m, k); steps below `SMALL` are set to 0."""
+        """Move one to `CHANGED` coordinates of the starts; return shape (m, k). Steps below `SMALL` are set to 0."""
         draw, size = self.generator, (PROPOSALS, starts.shape[1])
         many = draw.integers(1, CHANGED + 1, PROPOSALS)
         ranks = (draw.random(size) ** (1.0 / self._often)).argsort(axis=1)[:, ::-1].argsort(axis=1)
@@ -222,7 +224,7 @@ class Jointly:
 
 
 def _best_apart(points: Floats, values: Floats) -> Floats:
-    """Return the best points, no two of them close to each other, shape (m, k)."""
+    """Return the best points, shape (m, k), so that no two of them are close to each other."""
     found: list[Floats] = []
     for at in np.argsort(-values, kind="stable"):
         if len(found) < STARTS and all(np.abs(points[at] - one).max() >= ASUNDER for one in found):
@@ -231,7 +233,7 @@ def _best_apart(points: Floats, values: Floats) -> Floats:
 
 
 def sensitive(among: Sequence[Unit], gains: Gains, guard: Guard) -> tuple[list[Unit], int]:
-    """Return the units to move jointly, and the number of hidden ones (see HIDDEN), which come last.
+    """Return the units to move jointly. The last ones are hidden (see HIDDEN); return also their number.
 
     Each constant moves on the scale on which it gained most. Named constants come first. Among constants of the same
     kind, those that changed the reward more come first. Booleans, zeros and constants of nature are left out.

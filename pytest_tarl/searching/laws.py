@@ -1,7 +1,8 @@
-"""Let constants follow a quantity that varies more than designed, if no single value is better than the old one.
+"""If no single value of a constant is better than the old one, let it follow a quantity that varies too much.
 
-A stage light is right for actors at its mark. If they walk over the whole stage, any other value of the lamp is worse
-on average, since half of the places want more and half want less. A power of the distance suits them all.
+For example, a stage light has the right brightness for actors at its mark. If the actors walk over the whole stage, any
+other fixed brightness is worse on average: half of the places need more light and half need less. A brightness that is
+a power of the distance suits all places.
 """
 
 from __future__ import annotations
@@ -16,25 +17,25 @@ from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
-# returns candidates in which a constant is proportional to a sensor or a variable
+# takes constants and returns candidates in which one of them is proportional to a sensor or a variable
 Proportional = Callable[[Sequence[Operand]], Iterator[Candidate]]
 
 CONSTANTS = 4  # maximum number of constants that are tried
-ADJUSTED = 2  # maximum number of laws whose power is adjusted
-SIGNS = (1.0, -1.0)  # powers that are tried first
-STEPS = (1.5, 1.2, 1.08)  # ratios by which a power that gains is moved
-# a power that other missions do not confirm is divided by these numbers, one after the other
+ADJUSTED = 2  # maximum number of laws whose exponent is adjusted
+SIGNS = (1.0, -1.0)  # exponents that are tried first
+STEPS = (1.5, 1.2, 1.08)  # ratios by which an exponent that gains is moved
+# if other missions do not confirm an exponent, it is divided by each of these numbers in turn
 BACK = (1.0, 1.13, 1.28, 1.44)
-SEEDS = 2  # number of seeds on which powers are compared
+SEEDS = 2  # number of seeds on which exponents are compared
 
 
 def laws(
     constants: Sequence[Unit], proportional: Proportional, selection: ForwardSelection
 ) -> Iterator[Candidate]:
-    """Yield confirmed candidates in which one of the constants follows something. Raise BudgetSpentError.
+    """Yield confirmed candidates in which one of the constants follows a quantity. Raise BudgetSpentError.
 
-    The laws that gain most are adjusted first. A constant that is listed several times, as a whole and at one of its
-    uses, is tried once.
+    The laws that gain most are adjusted first. A constant may be listed several times, as a whole and at single uses,
+    but is tried once.
     """
     distinct: dict[object, Unit] = {}
     for unit in constants:
@@ -64,7 +65,7 @@ def _gain(law: Candidate, power: float, selection: ForwardSelection) -> float | 
 
 
 def _adjusted(law: Candidate, power: float, selection: ForwardSelection) -> Iterator[Candidate]:
-    """Move the power while the mean reward grows; yield the law if it, or a slightly smaller power, is confirmed."""
+    """Move the exponent while the mean reward grows; yield the law with the first exponent that is confirmed."""
     trials, goal = selection.trials, selection.goal
     seeds = [pair.seed for pair in goal.pairs[:SEEDS]]
 

@@ -1,9 +1,9 @@
-"""Relax limits one after another: each hides the next, so that none of them gains anything alone.
+"""Relax limits one after another, if each limit hides the next and none gains anything alone.
 
-If two limits stop a mission, relaxing the first one only makes it stop at the second. The reward stays what it was, and
-no search that adds the changes that gained finds the pair. But the mission differs: it reaches a limit that neither
-the designed mission nor the unrepaired one reached. This limit, and no other constant, is the next to relax. Each step
-takes one episode with the change and one that is recorded.
+If two limits stop a mission and only the first one is relaxed, the mission stops at the second one. The reward does not
+change, so a search that only combines changes which gained reward cannot find the pair. But the mission is different:
+it reaches a limit that neither the designed mission nor the unrepaired one reached. This limit is relaxed next, and no
+other constant is tried. Each step takes two episodes with the change, one of which is recorded.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from tarl_lint.model import Operand
 Limit = tuple[Operand, float]  # a constant, and the factor that relaxes the limit
 Reached = Callable[
     [Candidate], Sequence[Limit]
-]  # the limits that only the drifted missions of a candidate reach
+]  # takes a candidate and returns the limits that only its drifted missions reach
 
 FIRST = 3  # maximum number of limits to start from
-NEXT = 2  # maximum number of limits that are relaxed one after the other
+NEXT = 2  # maximum number of further limits that are tried together with each combination of relaxed limits
 EPISODES = 16  # number of episodes after which no further limit is relaxed
 FARTHEST = log(20.0)  # maximum |log| of a limit's factor
 
 
 class LimitsInTurn:
-    """Relax the limits that missions reach, under one guard.
+    """Relax, under one guard, the limits that missions reach.
 
     `whole` maps the constants to the units that are searched. `reached` may run an episode.
     """
@@ -54,10 +54,10 @@ class LimitsInTurn:
             yield from self._from(start, bare, 0.0)
 
     def _from(self, base: Joint, parent: Joint, before: float) -> Iterator[Candidate]:
-        """Run a combination; while missions change but earn too little, relax the limits that they reach next.
+        """Run a combination. While missions change but earn too little, also relax the limits that are reached next.
 
-        A combination that clearly earns less than its parent (`before`), or that reaches the goal on this seed, is not
-        extended: either the limit was not an obstacle, or this seed shows no further limit.
+        A combination is not extended in two cases. If it clearly earns less than `parent` (which earned `before`), the
+        limit was not an obstacle. If it reaches the goal on this seed, the seed shows no further limit.
         """
         selection = self.selection
         if selection.trials.spent - self._begun >= EPISODES:
@@ -75,7 +75,7 @@ class LimitsInTurn:
                 yield from self._from(wider, base, gain)
 
     def _wider(self, base: Joint, limits: Sequence[Limit]) -> list[Joint]:
-        """Return the combination with each of the limits relaxed as well, or further if it is relaxed already."""
+        """Return one combination for each limit, in which that limit is relaxed as well, or relaxed further."""
         found: list[Joint] = []
         for operand, factor in limits:
             unit = self.whole.get(operand)
@@ -88,7 +88,7 @@ class LimitsInTurn:
         return found
 
     def _differs(self, one: Joint, other: Joint) -> bool:
-        """Return whether a combination changed a mission: its reward or its length."""
+        """Return whether two combinations led to missions with different rewards or lengths."""
         trials, mutate = self.selection.trials, self.selection.mutate
         candidate = one.candidate(mutate)
         if not other.parts:

@@ -1,7 +1,8 @@
-"""Move a value on that passes easy missions but loses the missions in which rejected changes lost reward.
+"""If a value passes easy missions but fails where rejected changes lost reward, move the value further.
 
-On easy missions, many values earn enough, so these missions do not show in which direction the value should change.
-The lost missions do: the next value is the one with which the first of them earns more.
+On easy missions, many values earn enough, so these missions do not show in which direction the value should change. The
+missions in which rejected changes lost reward (lost missions) do show the direction: the next value is one with which
+the first of these missions earns more.
 """
 
 from __future__ import annotations
@@ -14,14 +15,14 @@ from pytest_tarl.searching.refining import OUTWARD
 from pytest_tarl.searching.search import Candidate, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
-MOVES = 3  # maximum number of times that the value of a constant is moved on
-CLOSE = 1.1  # no factor is tried if a neighbour is closer than this ratio
+MOVES = 3  # maximum number of times that the value of a constant is moved further
+CLOSE = 1.1  # no factor is tried between a factor and a neighbour if their ratio is below this
 
 
 def better_factor(
     unit: Unit, candidate: Candidate, factor: float, tried: Iterable[float], mutate: Mutate, trials: Trials
 ) -> float | None:
-    """Return a factor between `factor` and a neighbour that earns more in a lost mission; None if neither does.
+    """Return a factor between `factor` and one of its neighbours if it earns more in a lost mission, else None.
 
     `candidate` is the unit with `factor`, and `tried` are the factors that were tried. Raise BudgetSpentError.
     """
@@ -41,7 +42,7 @@ def better_factor(
 
 
 def _neighbours(factor: float, tried: Iterable[float]) -> list[float]:
-    """Return the nearest tried factors on both sides, the one farther from 1 first, unless they are close."""
+    """Return the nearest tried factors on both sides. The one farther from 1 comes first; close ones are left out."""
     others = [one for one in tried if one > 0.0]
     above = min((one for one in others if one > factor), default=factor * OUTWARD)
     below = max((one for one in others if one < factor), default=factor / OUTWARD)

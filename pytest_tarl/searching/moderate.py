@@ -1,7 +1,7 @@
-"""Decide when a change is extreme, and which moderate changes of other constants to try before it.
+"""Decide whether a change is extreme, and choose moderate changes of other constants to try before it.
 
-For example, a loaded robot overshoots its stops by a few centimetres. Eleven times the speed hides this by chance;
-the right repair increases the ticks per metre by 4 %.
+For example, a loaded robot overshoots its stops by a few centimetres. A speed eleven times as high hides this by
+chance. The right repair increases the ticks per metre by 4 %.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit, change_size
 
-LARGE = 8.0  # minimum factor of a change that counts as unusually large
+LARGE = 8.0  # a change by at least this factor counts as unusually large
 STEPS = (1.1, 0.91, 1.05, 0.95)  # factors of the moderate changes
 MODERATE = 12  # number of episodes after which no further moderate change is tried
 
 
 def extreme(unit: Unit, factor: float) -> bool:
-    """Return whether a change multiplies or divides a constant by at least `LARGE`; changes of zeros have no size."""
+    """Return whether a change multiplies or divides a constant by at least `LARGE`; False for a constant of 0."""
     value = unit.operands[0].value
     return (
         bool(value)
@@ -31,7 +31,7 @@ def extreme(unit: Unit, factor: float) -> bool:
 
 
 def moderate(found: Unit, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Part]:
-    """Return small steps of the other named constants that matter and were not tried, the most sensitive ones first.
+    """Return untried small steps of the other named constants that matter, the most sensitive constants first.
 
     A constant is sensitive if its smallest step so far cost much reward: its good values are close to the old one.
     """

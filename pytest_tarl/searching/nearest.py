@@ -1,8 +1,8 @@
 """Find the factor of a constant with which missions follow the designed ones most closely.
 
-At the true value of the constant that the changed world made wrong, missions earn the same at the same times as in the
-designed world. On both sides of it, their deviation (see `course`) grows about linearly, so a few missions show where
-the minimum lies.
+A changed world makes the value of a constant wrong. With the value that is right for this world, missions earn the same
+reward at the same times as in the designed world. On both sides of the right value, the deviation of missions (see
+`course`) grows about linearly, so a few missions show where the minimum lies.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ def nearest(factor: float, deviation: Callable[[float], float]) -> tuple[float, 
     elif at(STRONGER) < at(1.0):
         _approach(1.0, STRONGER, at)
     else:
-        # both sides are worse: try a value towards the better side, since distant values may fail on one side first
+        # both sides are worse: try a value towards the better side, since distant values may fail on only one side
         at(_between(1.0, min(WEAKER, STRONGER, key=at), at))
     power = min(tried, key=lambda one: (tried[one], abs(one - 1.0)))
     return (factor if power == 1.0 else _raised(factor, power)), tried[power]
 
 
 def _approach(start: float, better: float, at: Callable[[float], float]) -> None:
-    """Try the place of the minimum if it is between two exponents, then its place beyond the better exponent."""
+    """Try the likely place of the minimum between two exponents, then the likely place beyond the better exponent."""
     if at(_between(start, better, at)) < at(better):
         return
     slope = (at(start) - at(better)) / (start - better)
@@ -47,7 +47,7 @@ def _approach(start: float, better: float, at: Callable[[float], float]) -> None
 
 
 def _between(one: float, other: float, at: Callable[[float], float]) -> float:
-    """Return where the minimum lies if the deviation falls to 0 between two exponents, equally fast on both sides."""
+    """Return the place of the minimum between two exponents if the deviation falls to 0 equally fast on both sides."""
     whole = at(one) + at(other)
     share = at(one) / whole if 0.0 < whole < inf else 0.5
     found = one + (other - one) * share

@@ -14,21 +14,21 @@ from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 from tarl_lint.name_words import words
 
-INSTEAD = 3  # maximum number of other constants that may take over an offset
+INSTEAD = 3  # maximum number of other constants to which an offset is moved
 UNTRIED = 2  # maximum number of untried named constants to try in place of a changed literal
 # values of the acceleration of gravity in programs, in m/s²
 GRAVITY = (9.8, 9.81, 9.82, 9.807, 9.8066, 9.80665)
-# words in names of constants that are 1 or -1
+# words that occur in the names of constants that are 1 or -1
 SIGNS = ("sign", "polarity", "direction", "invert", "inverted")
 ROUNDED = 6e-4  # relative error of 3.14 as a value of π, rounded up
 
 
 class Oddness(IntEnum):
-    """How unusual a change looks to a maintainer, from the least to the most unusual.
+    """How unusual a change looks to a maintainer; the least unusual kind comes first.
 
-    `NAMED` scales a named constant, `INNER` a literal. `VARIABLE` scales a name that stands for several constants, so
-    the repair writes a new factor next to it. `OFFSET` adds a number, flips a sign, or scales a constant that is a
-    sign. `NATURE` changes a constant of nature.
+    `NAMED` scales a named constant and `INNER` a literal. `VARIABLE` scales a name that stands for several constants,
+    so the repair writes a new factor next to the name. `OFFSET` adds a number, flips a sign, or scales a constant that
+    is only a sign. `NATURE` changes a constant of nature.
     """
 
     NAMED = 0
@@ -50,12 +50,12 @@ def plainer(
     promising: float,
     beside: Unit | None = None,
 ) -> list[Unit]:
-    """Return the units whose change would be less unusual than the candidate's, best gain first.
+    """Return the units whose change would be less unusual than a change of oddness `odd`, best gain first.
 
     Units that gain at least `promising` come first. Untried units follow, the least unusual first. Among equally
     unusual constants, those in the statement of `beside` come first: in a product, a named constant has the same effect
-    as the literal next to it. Those in the next lines follow: a lower threshold has the same effect as a larger value
-    that is compared with it. If the candidate changes a literal, only `UNTRIED` untried units follow.
+    as the literal next to it. Constants in the next lines follow: a lower threshold has the same effect as a larger
+    value that is compared with it. If `odd` is less than `VARIABLE`, at most `UNTRIED` untried units are returned.
     """
     read = [unit for unit in units if kind(unit) < odd]
     gaining = [unit for unit in read if unit in gains and max(gains[unit].values()) >= promising]
@@ -67,10 +67,10 @@ def plainer(
 
 
 def instead_of_offset(found: Candidate, units: Sequence[Unit]) -> list[tuple[Unit, float]]:
-    """Return other constants of the statement in which a candidate adds an offset, moved by as much, either way.
+    """If a candidate adds an offset, return other constants of the same statement, moved by that offset instead.
 
-    `x + 0.2 > LIMIT` means the same as `x > LIMIT - 0.2`, and an offset belongs into a named zero if there is one.
-    Named zeros come first, then other named constants.
+    Each is moved up and down: `x + 0.2 > LIMIT` means the same as `x > LIMIT - 0.2`. Named zeros come first, because an
+    offset belongs there if there is such a constant. Other named constants follow.
     """
     if len(found.mutations) != 1:
         return []
@@ -92,13 +92,13 @@ def instead_of_offset(found: Candidate, units: Sequence[Unit]) -> list[tuple[Uni
 
 
 def _may_take(other: Operand, operand: Operand) -> bool:
-    """Return whether a constant may take over the offset of another one: a number that is no other literal zero."""
+    """Return whether the offset of `operand` may be added to `other` instead."""
     numeric = other.value is not None and not isinstance(other.value, bool)
     return other != operand and numeric and not (other.literal and other.value == 0)
 
 
 def _moved_by(unit: Unit, offset: float) -> float | None:
-    """Return the step that adds an offset to the constant of a unit, or None if that changes its sign."""
+    """Return the step that adds an offset to the constant of a unit, or None if the constant's sign would change."""
     value = float(unit.operands[0].value or 0.0)
     if value == 0.0:
         return step_to(offset if unit.chart is None else offset / unit.chart.size)
@@ -112,7 +112,7 @@ def named(units: Iterable[Unit]) -> list[Unit]:
 
 
 def writing(operand: Operand) -> Oddness:
-    """Return the oddness of changing an operand; the least odd operands are tried first.
+    """Return how unusual it is to write a change of an operand. The least odd operands are tried first.
 
     In a product, scaling a named constant and scaling a literal have the same effect; a maintainer changes the named
     one. A literal zero is more often a bound or a start value than a tuned number.
@@ -126,7 +126,7 @@ def writing(operand: Operand) -> Oddness:
 
 
 def edges(guard: Guard) -> tuple[str, ...]:
-    """Return the sensors with a threshold in this guard; the repair switches on abruptly at a threshold."""
+    """Return the sensors that have a threshold in this guard. At a threshold, the repair switches on abruptly."""
     return tuple(
         one.sensor.name
         for one in guard.conjuncts
@@ -150,7 +150,7 @@ def is_sign(operand: Operand) -> bool:
 
 
 def kind(unit: Unit) -> Oddness:
-    """Return the oddness of scaling the constant of a unit."""
+    """Return how unusual it is to scale the constant of a unit."""
     operand = unit.operands[0]
     if operand.value == 0 and not isinstance(operand.value, bool):
         return Oddness.OFFSET
@@ -158,7 +158,7 @@ def kind(unit: Unit) -> Oddness:
 
 
 def _lines_after(unit: Unit, beside: Unit | None) -> float:
-    """Return the number of lines from `beside` down to the unit: -1 in the same statement, infinite above it."""
+    """Count the lines from `beside` down to the unit: -1 if both share a statement, infinite if the unit is above."""
     if beside is None:
         return inf
     one, other = unit.operands[0], beside.operands[0]
@@ -169,7 +169,7 @@ def _lines_after(unit: Unit, beside: Unit | None) -> float:
 
 
 def _scaled(operand: Operand) -> Oddness:
-    """Return the oddness of scaling an operand that is not 0."""
+    """Return how unusual it is to scale an operand that is not 0."""
     if of_nature(operand):
         return Oddness.NATURE
     if is_sign(operand):

@@ -1,8 +1,8 @@
 """Adjust the factors of a change that earns nearly enough on several seeds.
 
-A joint search uses large steps and usually one seed, so it finds only the good regions. The best point of a region
-often passes all missions but earns a few percent too little. The neighbours of this point are then better
-than any point elsewhere. The same is true for a single constant whose range of good values is narrow.
+A joint search uses large steps and usually only one seed, so it finds only the good regions. The best point
+(combination of factors) of a region often passes all missions but earns a few percent too little. A better point is
+then more likely nearby than elsewhere. The same is true for a single constant whose range of good values is narrow.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ from collections.abc import Callable, Sequence
 from math import inf
 from statistics import fmean
 
-ALMOST = 0.9  # minimum gain of a combination to adjust, as a share of the wanted gain
-KNOWN = 3  # minimum number of seeds on which a combination to adjust has run
+ALMOST = 0.9  # a combination is adjusted only if it gains at least this share of the wanted gain
+KNOWN = 3  # a combination is adjusted only if it has run on at least this number of seeds
 SEEDS = 3  # number of seeds on which factors are compared
-# ratios by which a factor is moved up or down; the second ratio is used when the first no longer helps
+# ratios by which a factor is moved up or down; the second ratio is used after the first one no longer helps
 STEPS = (1.2, 1.08)
 FINE_STEPS = (1.08, 1.03, 1.01)  # ratios for a single change that passes its missions and earns nearly enough
 SHARP_STEPS = (1.08, 1.03)  # ratios for a single constant that earns much on most seeds
 MUCH = 0.7  # SHARP_STEPS applies to constants that gain at least this share of the wanted gain
 EPISODES = 36  # number of episodes after which no further factor is tried
-# a factor that falls short by more than this share of the wanted gain on the first seeds is dropped
+# a factor is dropped if, on the first seeds, it earns less than the best one by this share of the wanted gain
 BEHIND = 0.05
 
 Factors = tuple[float, ...]
@@ -35,7 +35,7 @@ def polished(
     steps: Sequence[float] = STEPS,
     enough: float = inf,
 ) -> Factors:
-    """Return the factors with the highest mean total found by coordinate ascent, or `begin` if none is better.
+    """Return the factors with the highest mean total reward that coordinate ascent from `begin` finds.
 
     `earned` takes factors and a seed and returns the total reward of the episode, or None to reject the factors.
     `wanted` is the gain that a repair must bring. The ascent ends at a mean total of `enough`.
@@ -64,7 +64,7 @@ class _Ascent:
         self._means: dict[Factors, float | None] = {}
 
     def along(self, best: Factors, most: float, at: int, step: float) -> tuple[Factors, float]:
-        """Move one factor up, or else down, while that increases the mean; return the best factors and their mean."""
+        """Move one factor up, or else down, while the mean total grows; return the new factors and their mean total."""
         for ratio in (step, 1.0 / step):
             begun = most
             while self.spent < EPISODES and most < self.enough:
@@ -78,7 +78,7 @@ class _Ascent:
         return best, most
 
     def mean(self, factors: Factors, most: float) -> float | None:
-        """Return the mean total, or None if the factors are rejected or earn clearly less than `most` at first."""
+        """Return the mean total. Return None if the factors are rejected or at first earn clearly less than `most`."""
         if factors not in self._means:
             self._means[factors] = self._run(factors, most)
         return self._means[factors]

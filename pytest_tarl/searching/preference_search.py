@@ -1,4 +1,4 @@
-"""The parts of a search that the search for preferred changes uses."""
+"""The interface of a search, as far as the search for preferred changes uses it."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ class Search(Protocol):
     refused: set[tuple[Unit, Guard]]
 
     def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """Try a factor; yield the candidates that are confirmed."""
+        """Try one factor on a unit under a guard; yield the candidates that further seeds confirm."""
 
     def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
-        """Try factors between the unit's best factor and its neighbours."""
+        """Try factors between the best factor of a unit and the factors next to it."""
 
     def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a factor; return the candidate if it is new and confirmed."""
+        """Try a factor on a unit; return the candidate if it is new and confirmed."""
 
     def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
-        """Return whether a new factor reaches the goal on the seed of a pair."""
+        """Return whether a factor that is new reaches the goal on the seed of a mission pair."""
 
     def corrections(self) -> Iterator[Candidate]:
-        """Yield the confirmed corrections of sensor readings that are wrong from the start, if not done before."""
+        """Yield confirmed corrections of sensor readings that are wrong from the start. Later calls yield nothing."""
 
     def joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
-        """Return a selection that combines units."""
+        """Return a forward selection, which combines changes of several units."""

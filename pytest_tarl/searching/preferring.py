@@ -1,7 +1,7 @@
 """Before a confirmed change is yielded, look for changes that a maintainer would prefer to it.
 
-Preferred changes are less unusual, milder or smaller, or let missions proceed as designed. Each search for one kind of
-them takes only a few episodes.
+A maintainer prefers changes that are less unusual, milder or smaller, or with which missions proceed as designed.
+Searching for one of these kinds takes only a few episodes.
 """
 
 from __future__ import annotations
@@ -42,10 +42,10 @@ from pytest_tarl.searching.smaller import (
 )
 from pytest_tarl.searching.units import NEAR, Unit, change_size
 
-PLAINER_ROUNDS = 2  # number of refinements of each constant whose change a maintainer would prefer
-FUNCTIONS = 2  # maximum number of functions whose constants are compared by the course of their missions
-UNUSUAL = 6  # number of episodes for trying other constants in place of unusual commands
-PLAINER = 12  # maximum number of episodes for trying constants whose change a maintainer would prefer
+PLAINER_ROUNDS = 2  # how often each constant whose change a maintainer would prefer is refined
+FUNCTIONS = 2  # maximum number of functions whose constants are compared by how their missions proceed
+UNUSUAL = 6  # number of episodes for trying other constants if a change leads to unusual commands
+PLAINER = 12  # maximum number of episodes for constants whose change a maintainer would prefer
 
 
 class Preferences:
@@ -55,17 +55,17 @@ class Preferences:
         self.search = search
         self._compared: set[tuple[str, str]] = set()  # functions whose constants were compared
         self._moderated = False  # whether moderate changes were already tried before an extreme one
-        self._exceeded = False  # whether other constants were already tried before unusual commands
+        # whether other constants were already tried before a change that leads to unusual commands
+        self._exceeded = False
         self._reduced = False  # whether smaller changes of other constants were already tried
-        self._replaced: set[Unit] = set()  # units that were already compared with milder changes
-        # confirmed changes that are set aside because another candidate is preferred; they follow if that candidate
-        # is refused
+        self._replaced: set[Unit] = set()  # units whose change was already compared with milder changes
+        # confirmed changes that wait because another candidate is preferred; they follow if that candidate is refused
         self._aside: list[tuple[Unit, Candidate]] = []
 
     def before(
         self, found: Candidate, unit: Unit, factor: float, pair: int, holds: bool, near: bool
     ) -> Iterator[Candidate]:
-        """Yield the changes preferred to a candidate; `near` says whether it reached the goal on its first seed."""
+        """Yield the changes preferred to `found`; `near` says whether `found` reached the goal on its first seed."""
         nearer = self._bisected(unit, factor, found.guard, pair) if holds else None
         if nearer is not None:
             unit, factor, found = nearer
@@ -96,7 +96,7 @@ class Preferences:
         return bisected(self.search, unit, factor, guard, self._hardest(pair))
 
     def _moderate(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """If a change is extreme, first try corrections of readings and small steps of other constants, once."""
+        """If a change is extreme, once try corrections of sensor readings and small steps of other constants first."""
         if self.search.proposed or self._moderated or not extreme(unit, factor):
             return
         self._moderated = True
@@ -108,9 +108,9 @@ class Preferences:
             yield from self.search.attempt(other, found.guard, step, pair)
 
     def _usual(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """If a large change exceeds the usual commands, first try the same step on other constants, once.
+        """If a large change leads to unusually large commands, once try the same step on other constants first.
 
-        A simulator may obey a command that no motor or heater can follow.
+        A simulator may obey commands that no real motor or heater can follow.
         """
         search = self.search
         large = change_size(unit, factor) > log(NEARBY)
@@ -135,16 +135,16 @@ class Preferences:
         return any(gain < -slack for one, gain in tried.items() if low < one < high)
 
     def _exceeds(self, candidate: Candidate, pair: int) -> bool:
-        """Return whether a candidate that ran publishes larger commands than a designed mission; False if unknown."""
+        """Return whether a candidate publishes larger commands than a designed mission; False if this is unknown."""
         try:
             return self.search.trials.exceeds(candidate, self.search.goal.pairs[pair].seed)
         except RepairError:
             return False
 
     def _hardest(self, pair: int) -> int:
-        """Return the index of the pair on whose seed most candidates fell short, by default `pair`.
+        """Return the index of the pair on whose seed most candidates earned too little, by default `pair`.
 
-        A rival that fails is dropped after its first mission there.
+        A rival constant that fails is then dropped after its first mission.
         """
         misses = self.search.trials.misses
         seeds = [one.seed for one in self.search.goal.pairs]
@@ -152,7 +152,7 @@ class Preferences:
         return worst if misses[seeds[worst]] else pair
 
     def after(self) -> Iterator[Candidate]:
-        """Yield the confirmed changes that were set aside, those with the largest mean reward first."""
+        """Yield the confirmed changes that were set aside. The changes with the largest mean reward come first."""
         pairs = self.search.goal.pairs
         while self._aside:
             unit, candidate = max(
@@ -166,7 +166,7 @@ class Preferences:
         """Spend a few episodes on changes that a maintainer would prefer to the candidate found.
 
         If the candidate changes a literal, named constants also get larger steps, because small steps may have no
-        effect. An offset first moves the other constants of its statement by as much.
+        effect. If the candidate is an offset, the other constants of its statement are first moved by the same amount.
         """
         odd, guard, begun = oddness(found.mutations), found.guard, self.search.trials.spent
         for other, factor in instead_of_offset(found, self.search.units) if odd is Oddness.OFFSET else ():
@@ -196,14 +196,14 @@ class Preferences:
                     yield from self._closer(other, guard, before, pair)
 
     def _called(self, found: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
-        """If a candidate changes a function's return value, instead change as few calls of the function as suffice."""
+        """If a candidate changes a function's return value, try to change only those calls that need the change."""
         calls = calls_of(unit, self.search.units)
         if len(calls) > 1:
             joint = Joint(tuple((call, factor) for call in calls), found.guard)
             yield from self.search.joining({}).fewest(joint)
 
     def _instead(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
-        """If missions do not proceed as designed with the candidate, first try small steps of named constants."""
+        """If missions with the candidate do not proceed as designed, first try small steps of named constants."""
         if unit in self._replaced or not another_way(found, self.search.trials, self.search.goal):
             return
         self._replaced.add(unit)
@@ -214,10 +214,10 @@ class Preferences:
                     yield from self.search.attempt(other, found.guard, step, pair)
 
     def _truer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """Yield a rival constant first if its missions are much closer to the designed ones.
+        """If missions with a change of another (rival) constant are much closer to the design, yield that change first.
 
-        Such a constant is more likely to be the cause. The parameter of a structural change has no rivals; a value
-        whose missions are much closer is examined first.
+        The rival constant is then more likely to be the cause. The parameter of a structural change has no rivals, but
+        if another value of it leads to much closer missions, that value is examined first.
         """
         seeds, site = self._compared_on(pair), unit.operands[0].site
         function = (site.module, site.qualname)
@@ -250,17 +250,17 @@ class Preferences:
             self._aside.append((other, candidate))
 
     def _promises(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
-        """Return whether a new factor reaches the goal on the seed of a pair, or gains so much that another one may."""
+        """Return whether a factor reaches the goal on a pair's seed, or gains so much that another factor may do so."""
         if self.search.reaches(unit, factor, guard, pair):
             return True
         gain = self.search.gains.of(unit, guard).get(factor, 0.0)
         return gain >= PROMISING * self.search.goal.wanted
 
     def _closer_rival(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Candidate | None:
-        """Return a confirmed change of a rival constant that reached the goal, or None.
+        """Return a change of a rival constant if it is confirmed to reach the goal, else None.
 
-        Its factor is the one whose mission on the first seed is closest to the designed one. Unless this mission is
-        much closer than that of `found`, the rival is dropped without further episodes.
+        The factor is chosen so that the mission on the first seed is closest to the designed mission. If this mission
+        is not much closer than the mission of `found`, the rival is dropped without further episodes.
         """
         search, seed = self.search, self._compared_on(pair)[0]
         step, least = exactest(unit, factor, found.guard, seed, search.mutate, search.trials)
@@ -270,7 +270,7 @@ class Preferences:
         return next((one for one in tried if one is not None), None)
 
     def _smaller(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """Yield a much smaller change of another constant first, unless missions then deviate more from the design."""
+        """Yield a much smaller change of another constant first if missions deviate no more from the designed ones."""
         if (
             self._reduced
             or self.search.proposed
@@ -294,9 +294,10 @@ class Preferences:
             self._aside.append((other, candidate))
 
     def _milder(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Candidate | None:
-        """Return the value halfway to the old one if it earns as much and nothing between them was tried, else None.
+        """Return a candidate with the value halfway to the old one if it earns as much, else None.
 
-        A value a little nearer to the old one must hold, too, so that the value lies inside the good range.
+        No value in between may have been tried. A value a little nearer to the old one must pass, too, so that the
+        value halfway lies inside the good range.
         """
         gains = self.search.gains.of(unit, found.guard)
         halfway = milder(unit, factor, gains)
@@ -326,9 +327,9 @@ class Preferences:
     def _small_steps(
         self, parts: Sequence[Part], found: Candidate, unit: Unit, factor: float, begun: int
     ) -> Iterator[Part]:
-        """Yield the parts as long as episodes are left for them, then larger steps of those that gained something.
+        """Yield the parts while episodes are left, then larger steps of the parts that gained something.
 
-        Small steps that were tried before count as well.
+        Parts are small steps of constants. Small steps that were tried earlier count as well.
         """
         tried = known_steps(unit, self.search.units, self.search.gains, found.guard)
         for part in parts:
@@ -344,7 +345,7 @@ class Preferences:
     def _smaller_holding(
         self, unit: Unit, step: float, guard: Guard, pair: int
     ) -> tuple[float, Candidate | None]:
-        """Try a small step and, if it earns nearly enough, the steps beside it; return the first confirmed one."""
+        """Try a small step. If it earns nearly enough, try the steps beside it. Return the first confirmed one."""
         if (unit, guard) in self.search.refused:
             return step, None
         candidate = self.search.holding(unit, step, guard, pair)
@@ -358,7 +359,7 @@ class Preferences:
     def _off_the_edge(
         self, candidate: Candidate, unit: Unit, step: float, pair: int
     ) -> tuple[float, Candidate]:
-        """Return a slightly larger change instead if a slightly smaller one does not reach the goal."""
+        """Return a slightly larger change if one that is slightly smaller than the candidate misses the goal."""
         if self.search.reaches(unit, inside(step), candidate.guard, pair):
             return step, candidate
         larger = outside(step)
@@ -369,7 +370,7 @@ class Preferences:
         return larger, beyond
 
     def _compared_on(self, pair: int) -> list[int]:
-        """Return the seeds on which to compare the course of missions."""
+        """Return the seeds on which to compare how missions proceed."""
         return [
             self.search.goal.pairs[(pair + i) % len(self.search.goal.pairs)].seed for i in range(COMPARED)
         ]

@@ -13,9 +13,9 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.search import Candidate, Mutate, Pair, Trials
 from pytest_tarl.searching.units import Unit
 
-# confidence of the approximate interval that decides which arms run next, not which repair is accepted
+# confidence of the approximate interval that decides which arms run next; it does not decide what is accepted
 CONFIDENCE = 0.95
-# an arm can be significantly worse than another only if both ran on at least this number of common seeds
+# an arm can count as significantly worse than another one only if both ran on this number of common seeds
 LEAST = 3
 FINEST = 1.1  # no factor is tried between two factors whose ratio is below this
 
@@ -24,7 +24,7 @@ Gains = Mapping[int, float]  # seed → gain over the unmutated run of that seed
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    """A unit (operands mutated together), its factor, and the guard (condition) under which it applies."""
+    """A change to race: a unit (operands mutated together), its factor, and its guard (condition)."""
 
     unit: Unit
     factor: float
@@ -46,7 +46,7 @@ class Race:
         self.gains: dict[Arm, dict[int, float]] = {}
 
     def run(self, arms: Sequence[Arm], seeds: int) -> None:
-        """Run all arms on the first `seeds` seeds, skipping those already run. Raise BudgetSpentError."""
+        """Run all arms on the first `seeds` seeds; skip episodes that have already run. Raise BudgetSpentError."""
         pairs = self.pairs[:seeds]
         wanted = [(arm, one) for arm in arms if (one := arm.candidate(self.mutate)) is not None]
         for pair in pairs:
@@ -71,7 +71,7 @@ class Race:
         )
 
     def abreast(self, arms: Iterable[Arm]) -> list[Arm]:
-        """Return the arms, best gain first, without those that gain significantly less than the first."""
+        """Return the arms, best gain first, without the arms that gain significantly less than the best one."""
         ranked = self.ranked(arms)
         return [arm for arm in ranked if not behind(self.gains[arm], self.gains[ranked[0]])]
 

@@ -1,7 +1,7 @@
-"""The full ranking: the possible gain at every site (statement with constants), and the certainty of the order.
+"""The full ranking of sites (statements with constants) by possible gain, and how certain the order is.
 
-Every operand runs once with every factor. Then the best factors of each site are refined, and the sites race on common
-seeds.
+Every operand is run once with every factor. Then the best factors of each site are refined, and the sites race: they
+run on common seeds, and their gains are compared.
 """
 
 from __future__ import annotations
@@ -26,9 +26,10 @@ SEEDS = 8  # number of common seeds of the final race
 class Certainty:
     """How certain it is that the first site is ahead of all others.
 
-    `by` is an approximate confidence interval for the lead in gain over the second site, on `seeds` common seeds; `by`
-    is None if there are too few of them. `level` is the number of other sites that cannot be distinguished from the
-    first, `ahead` the number of sites that gain significantly more. `gaining` is the number of sites that gain at all.
+    `by` is an approximate confidence interval for how much more the first site gains than the second one. It is
+    measured on `seeds` common seeds, and None if these are too few. `level` is the number of other sites that cannot be
+    distinguished from the first. `ahead` is the number of sites that gain significantly more. `gaining` is the number
+    of sites that gain at all.
     """
 
     gaining: int
@@ -61,7 +62,7 @@ class Ranking:
             pass
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, for each site, each operand's best gain."""
+        """For each site, return the best gain of each operand."""
         return arm_effects(self.race)
 
     def certainty(self, first: str) -> Certainty | None:
@@ -90,7 +91,7 @@ class Ranking:
         )
 
     def _sweep(self) -> None:
-        """Run all factors of all operands on the first seed, but only the near ones if they never change the reward."""
+        """Run all factors of all operands on the first seed. Skip far factors if the near ones change nothing."""
         for at, factor in enumerate((*FACTORS, FLIP)):
             moving = self.units if at < len(NEAR) else [unit for unit in self.units if self._moves(unit)]
             self.race.run([Arm(unit, factor, self.guard) for unit in moving], 1)
@@ -105,7 +106,7 @@ class Ranking:
         )
 
     def _race(self) -> None:
-        """Race the best arms of each site on a few seeds, then the gaining ones on all seeds."""
+        """Race the best arms of each site on a few seeds, then race the arms that gain on all seeds."""
         for seeds in (LEAST, SEEDS):
             field = [
                 arm
@@ -116,7 +117,7 @@ class Ranking:
             self.race.run(field, seeds)
 
     def _best(self) -> Mapping[SiteId, Arm]:
-        """Return the best arm of every site; arms that ran on more seeds win, because a single seed may be luck."""
+        """Return the best arm of every site. Arms that ran on more seeds win, because one seed may be luck."""
         best: dict[SiteId, Arm] = {}
         for arm in self.race.gains:
             site = arm.unit.operands[0].site

@@ -1,4 +1,4 @@
-"""Choose the next factors of one constant: halfway between its best factor and the neighbours, on a log scale."""
+"""Choose the next factors of one constant: on a log scale, halfway between its best factor and its neighbours."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ from collections.abc import Mapping
 from itertools import pairwise
 from math import sqrt
 
-FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (larger step, smaller step that must not have reduced the reward)
-# ratio of the next factor to the outermost one (or the reverse), if the outermost factor is the best
+FURTHER = ((5.0, 2.2), (0.15, 0.4))  # pairs (larger step, smaller step that must not have reduced the reward)
+# if the outermost factor is the best, the next factor is this many times larger (or smaller)
 OUTWARD = 2.3
-APART = 2.0  # a factor between two factors is tried although neither gains if their ratio is at least this
+APART = 2.0  # if two factors have at least this ratio, a factor between them is tried even if neither gains
 FINEST = 1.1  # no factor is tried between two factors whose ratio is below this
-# minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
+# a factor is refined down to the ratio `NARROWEST` only if it gains at least this share of the wanted gain
 ALMOST = 0.9
-FLAT = 2.0  # no factor is tried between two factors with equal gains if their ratio is at most this
+FLAT = 2.0  # if two factors have equal gains and at most this ratio, no factor is tried between them
 NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
-# minimum gain of a promising factor, as a share of the wanted gain; a sharp peak (see SHARP) that exceeds 0 or a
+# a factor is promising if it gains at least this share of the wanted gain; a sharp peak (see SHARP) that exceeds 0 or a
 # neighbour by this share is also refined down to `NARROWEST`
 PROMISING = 0.4
-SHARP = 0.5  # a peak is sharp if both neighbouring factors gain at most this share of its gain
+SHARP = 0.5  # a peak is sharp if each neighbouring factor gains at most this share of the peak's gain
 
 
 def bracket(by_factor: Mapping[float, float]) -> float:
@@ -32,13 +32,13 @@ def bracket(by_factor: Mapping[float, float]) -> float:
 
 
 def between_neighbours(by_factor: Mapping[float, float]) -> float:
-    """Return the ratio of the factors on both sides of the best one, or 1 if it has none on one side or no gain."""
+    """Return the ratio of the two factors beside the best factor, or 1 if there are not two or nothing gains."""
     beside = _beside_peak(by_factor)
     return beside[1] / beside[0] if beside is not None else 1.0
 
 
 def _beside_peak(by_factor: Mapping[float, float]) -> tuple[float, float] | None:
-    """Return the factors on both sides of the best one, or None if it has none on one side or gains nothing."""
+    """Return the two factors beside the best factor, or None if there are not two or the best gains nothing."""
     factor = max(by_factor, key=by_factor.__getitem__)
     ordered = sorted(one for one in by_factor if one > 0.0)
     if factor not in ordered[1:-1] or by_factor[factor] <= 0.0:
@@ -48,9 +48,10 @@ def _beside_peak(by_factor: Mapping[float, float]) -> tuple[float, float] | None
 
 
 def amid(by_factor: Mapping[float, float], slack: float) -> list[float]:
-    """Return the factors between neighbouring ones of which the inner gains nothing and the outer loses.
+    """For two neighbouring factors of which the inner gains nothing and the outer loses, return one in between.
 
-    The old value and factors whose ratio is less than `APART` are left out: first steps lie between them already.
+    This is done for all such neighbours. The old value does not count as a neighbour. Factors with a ratio of less than
+    `APART` are left out, because the first steps already lie between them.
     """
     found = []
     for outward in (
@@ -65,10 +66,10 @@ def amid(by_factor: Mapping[float, float], slack: float) -> list[float]:
 
 
 def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:
-    """Return at most two factors to try next, with the sign of the best factor; none if no factor gains.
+    """Return at most two factors to try next. They have the sign of the best factor.
 
-    Also return none if both neighbours of the best factor are close to it and gain as much, but too little: the cause
-    is then elsewhere.
+    Return no factor if none gains. Return none either if both neighbours of the best factor are close to it and gain as
+    much as it does, but too little. The cause is then elsewhere.
 
     `by_factor` maps each tried factor to its gain; `wanted` is the gain that restores the designed reward.
     """
@@ -92,11 +93,11 @@ def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:
 def _narrow(
     gains: Mapping[float, float], factor: float, neighbours: tuple[float, float], wanted: float
 ) -> bool:
-    """Return whether the range of good factors may be narrower than the distance to the neighbouring factors."""
+    """Return whether the range of good factors around `factor` may be narrower than the gap to its neighbours."""
     most = gains[factor]
     if most >= ALMOST * wanted:
         return True
     known = [gains[one] for one in neighbours if one in gains]
     sharp = len(known) == 2 and max(known) <= SHARP * most
-    # a large fall of the reward between two close factors shows a narrow range, as a large gain does
+    # a narrow range shows in a large gain, or in a reward that falls sharply between two close factors
     return sharp and most - min(0.0, *known) >= PROMISING * wanted

@@ -16,7 +16,7 @@ from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import NEAR, Unit
 
-MANY = 40  # maximum number of units for which the sweep alone is shorter than screening and sweep
+MANY = 40  # with at most this number of units, the sweep alone takes fewer episodes than screening and sweep
 BLOCK = 20  # number of units per sweep after a screening
 AT_ONCE = 4  # number of units mutated per run
 RUNS = 6.0  # number of runs, as a multiple of the square root of the number of units
@@ -26,7 +26,7 @@ RIDGE = 1.0
 def screened(
     together: ForwardSelection, guard: Guard, generator: np.random.Generator
 ) -> Generator[Candidate, None, tuple[Unit, ...]]:
-    """Yield candidates that happen to be confirmed during the screening; return all units, best main effect first."""
+    """Screen the units; return them, best main effect first. Yield the candidates that happen to be confirmed."""
     units = together.units
     drawn = [_drawn(units, generator) for _ in range(ceil(RUNS * sqrt(len(units))))]
     joints = [Joint(tuple((units[i], NEAR[turn]) for i, turn in one), guard) for one in drawn]
@@ -55,7 +55,7 @@ def _drawn(units: Sequence[Unit], generator: np.random.Generator) -> list[tuple[
 
 
 def main_effects(design: np.ndarray, gains: np.ndarray) -> np.ndarray:
-    """Return each column's contribution to the gains by ridge regression.
+    """Estimate by ridge regression how much each column of `design` contributes to the gains.
 
     `design` has shape (runs, columns), `gains` shape (runs,), the result shape (columns,).
     """
@@ -70,6 +70,6 @@ def worth_screening(units: Sequence[Unit]) -> bool:
 
 
 def blocks(units: Sequence[Unit]) -> list[Sequence[Unit]]:
-    """Split screened units into blocks, so that the best are refined before the rest are tried."""
+    """Split screened units into blocks, so that the best units are refined before the others are tried."""
     size = BLOCK if worth_screening(units) else max(len(units), 1)
     return [units[start : start + size] for start in range(0, len(units), size)]

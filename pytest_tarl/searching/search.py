@@ -1,8 +1,8 @@
 """The parts that all searches share: candidates, the goal, and trials in the drifted world.
 
-A mission is one episode of the test. A candidate passes on a seed if its mission there earns about as much as designed.
-A search yields candidates that are confirmed (see `confirming`), best first. `searching.accept` then tests them on
-fresh seeds.
+A mission is one episode of the test. A candidate passes on a seed if its mission with this seed earns about as much
+reward as designed. A search yields candidates that are confirmed (see `confirming`), best first. `searching.accept`
+then tests them on fresh seeds.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 
 # factors for a constant, in the order in which they are tried
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)
-FAR = 0.6  # minimum gain of a candidate that releases the reserve of episodes, as a share of the wanted gain
+FAR = 0.6  # the reserve of episodes is released when a candidate gains at least this share of the wanted gain
 # a published message counts as usual if it is at most this multiple of the largest designed message
 USUAL = 1.5
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
-# A mission is compared with the designed mission of its seed if its reward falls short of `near` by at most this share
-# of the distance between the drifted missions and `near`.
+# a mission is compared with the designed mission of its seed if its reward is less than `near` by at most this share of
+# the distance between the drifted missions and `near`
 LACKS = 0.1
 LATE = (
-    1.2  # minimum ratio of the length of a failed mission to that of designed ones if it did not end in time
+    1.2  # a failed mission did not end in time if it is at least this many times as long as designed missions
 )
 
 
@@ -46,13 +46,13 @@ class Candidate:
 
     @property
     def changes(self) -> tuple[Mutation, ...]:
-        """Return the mutations without their place in the source, to compare candidates by their effect."""
+        """Return the mutations without their places in the source, so that candidates compare by their effect."""
         return tuple(replace(mutation, place=None) for mutation in self.mutations)
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """An episode in the drifted world without any mutation: its seed, total reward and number of steps, if known."""
+    """A drifted episode without any mutation: its seed, its total reward and, if known, its number of steps."""
 
     seed: int
     total: float
@@ -64,10 +64,11 @@ class Goal:
     """The target of a search.
 
     - `pairs`: episodes of the unrepaired program that lost reward in the drifted world.
-    - `near`: the minimum total reward of a candidate that is worth confirming.
+    - `near`: a candidate is worth confirming if its total reward is at least this.
     - `enough`: the minimum mean total reward that confirms a candidate.
     - `online`: the mean total reward of all drifted episodes, including those without loss.
-    - `passing`: whether a failed mission never counts as near, because ending early can earn more than continuing.
+    - `passing`: whether failed missions never count as near. This is needed if ending early can earn more than
+      continuing.
     - `harder`: seed → the mean designed reward minus the designed reward of that seed, where known.
     - `tolerated`: seed → the additional loss allowed on this seed if only few missions lose reward.
     - `controls`: drifted episodes without loss.
@@ -82,7 +83,7 @@ class Goal:
     harder: Mapping[int, float] = field(default_factory=dict)
     tolerated: Mapping[int, float] = field(default_factory=dict)
     controls: tuple[Pair, ...] = ()
-    # whether the drift's size varies by episode; then a mission may fail only because the drift is large
+    # whether the drift's size varies by episode; a mission may then fail just because the drift is large
     ranged: bool = False
     steps: float | None = None  # mean length of a designed mission, if known
     margin: float | None = None
@@ -96,7 +97,7 @@ class Goal:
         return max(self.enough_on([pair.seed for pair in self.pairs]) - lost, 0.0)
 
     def reached(self, outcome: Outcome, seed: int) -> bool:
-        """Return whether an episode earns about as much as the same seed in the designed world."""
+        """Return whether an episode earns about as much as the episode of the same seed in the designed world."""
         return outcome.total >= self.near - self._less(seed) and not self.lost(outcome)
 
     def lost(self, outcome: Outcome) -> bool:
@@ -104,7 +105,7 @@ class Goal:
         return self.passing and not outcome.passed
 
     def feigned(self, outcome: Outcome) -> bool:
-        """Return whether a failed mission earns as much as a repaired one only because it does not end in time.
+        """Return whether a failed mission earns as much as a repaired one just because it does not end in time.
 
         A machine that stands still until the time is up may earn more than one that works.
         """
@@ -116,7 +117,7 @@ class Goal:
         return self.enough - fmean(map(self._less, seeds))
 
     def _less(self, seed: int) -> float:
-        """Return by how much the mission of a seed may earn less than the mean."""
+        """Return by how much the mission of this seed may earn less than the mean designed mission."""
         return self.harder.get(seed, 0.0) + self.tolerated.get(seed, 0.0)
 
 
@@ -142,7 +143,7 @@ def never_late() -> None:
 class Trials:
     """Run candidates in the drifted world, each seed once, and keep the outcomes.
 
-    `beside` counts the episodes that ran in the designed world; they use the same budget. `foresee` receives the
+    `beside` counts the episodes that ran in the designed world, which use the same budget. `foresee` receives the
     episodes that are likely to be requested next.
     """
 
@@ -152,11 +153,13 @@ class Trials:
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
     # extra episodes, added to the budget once a candidate has gained the share `FAR` of the wanted gain
     reserve: int = 0
-    limit: int | None = None  # most episodes of all phases together, which `granting` may use
+    # maximum number of episodes of all phases together, up to which `granting` may extend the budget
+    limit: int | None = None
     worth: Goal | None = None  # `reserve` is released after a gain of FAR times the wanted gain of this goal
-    # returns whether a candidate loses missions that were lost by rejected candidates
+    # returns whether a candidate loses reward in missions in which rejected candidates lost reward
     loses: Callable[[Candidate], bool] = lost_nothing
-    lost_missions: Callable[[], Sequence[int]] = no_missions  # returns the seeds of these missions
+    # returns the seeds of missions in which rejected candidates lost reward
+    lost_missions: Callable[[], Sequence[int]] = no_missions
     # returns whether the constants of a candidate made the designed world worse
     harms: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world
@@ -172,7 +175,7 @@ class Trials:
     _short: list[dict[int, float]] = field(default_factory=list)
 
     def __call__(self, candidate: Candidate, seed: int) -> Outcome:
-        """Return the outcome of one episode, from the cache if it has run. Raise BudgetSpentError and RepairError."""
+        """Return the outcome of one episode; run it only once. Raise BudgetSpentError and RepairError."""
         key = (candidate, seed)
         if key not in self._known:
             self._afford()
@@ -186,20 +189,20 @@ class Trials:
         self._known = {**other._known, **self._known}
 
     def equate(self, candidate: Candidate, other: Candidate) -> None:
-        """Use the outcomes of a candidate for another candidate that acts alike, unless the other one ran itself."""
+        """Use the outcomes of `candidate` for `other`, which acts alike, unless `other` has run itself."""
         for (one, seed), outcome in list(self._known.items()):
             if one == candidate:
                 self._known.setdefault((other, seed), outcome)
 
     def expect(self, wanted: Iterable[Wanted]) -> None:
-        """Announce the episodes that are likely to be requested next, in order, so that workers can start them."""
+        """Announce in order the episodes that are likely to be requested next, so that workers can start them."""
         left = max(self.budget - self.spent, 0)
         self.foresee([one for one in wanted if one not in self._known][:left])
 
     def deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
         """Return the mean deviation of a candidate's missions from the designed ones (see `course`), or 0 if unknown.
 
-        Each designed mission that runs is charged to the budget once. Raise BudgetSpentError and RepairError.
+        Each designed mission runs and is charged to the budget only once. Raise BudgetSpentError and RepairError.
         """
         ran = [self(candidate, seed) for seed in seeds]
         design = self.design
@@ -209,9 +212,9 @@ class Trials:
         return fmean(deviation(one.rewards, other.rewards) for one, other in zip(ran, designed, strict=True))
 
     def exceeds(self, candidate: Candidate, seed: int) -> bool:
-        """Return whether a candidate publishes larger messages than the designed mission of a seed, by `USUAL`.
+        """Return whether a candidate's largest message exceeds `USUAL` times that of the designed mission of a seed.
 
-        Return False if that is unknown. A designed mission that runs is charged to the budget once. Raise
+        Return False if this is unknown. The designed mission runs and is charged to the budget only once. Raise
         BudgetSpentError and RepairError.
         """
         found, design = self(candidate, seed).outputs, self.design
@@ -221,10 +224,10 @@ class Trials:
         return any(largest > USUAL * usual[topic] > 0.0 for topic, (_, _, largest) in found if topic in usual)
 
     def lost(self, candidate: Candidate, seeds: Sequence[int]) -> float | None:
-        """Return by how much a candidate earns less than the designed missions of the same seeds, on average.
+        """Return how much less a candidate earns, on average, than the designed missions of the same seeds.
 
-        Return None if no designed mission can run. Each one that runs is charged to the budget once. Raise
-        BudgetSpentError and RepairError.
+        Return None if no designed mission can run. Each designed mission runs and is charged to the budget only once.
+        Raise BudgetSpentError and RepairError.
         """
         design = self.design
         if design is None or not seeds:
@@ -234,9 +237,9 @@ class Trials:
     def reaches(self, candidate: Candidate, seed: int, goal: Goal) -> bool:
         """Return whether a candidate's mission earns about as much as the designed mission of its seed.
 
-        The mean designed mission is only an estimate of that. If a mission that does not fail lacks little of it, the
-        designed mission of the same seed runs, too: its start may be so bad that no program earns more. Raise
-        BudgetSpentError and RepairError.
+        At first, the mission is compared with the mean designed mission. If it does not fail and earns only a little
+        less, the designed mission of the same seed runs, too: with this seed, the start may be so bad that no program
+        earns more. Raise BudgetSpentError and RepairError.
         """
         outcome = self(candidate, seed)
         if goal.reached(outcome, seed):
@@ -260,9 +263,10 @@ class Trials:
         self.beside += 1
 
     def gain(self, candidate: Candidate, pairs: Iterable[Pair], goal: Goal | None = None) -> float:
-        """Return a candidate's mean gain over the unmutated runs, on all seeds on which it ran (at least one).
+        """Return a candidate's mean gain over the unmutated runs, on all seeds on which the candidate ran.
 
-        With a goal, a feigned reward (see `Goal.feigned`) is no gain.
+        The candidate must have run on at least one seed. If `goal` is given, rewards that are earned just because a
+        mission does not end in time (see `Goal.feigned`) do not count as gains.
         """
         known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in pairs)
         return fmean(
@@ -272,14 +276,14 @@ class Trials:
         )
 
     def ran(self, candidate: Candidate, pairs: Iterable[Pair]) -> list[Outcome]:
-        """Return a candidate's outcomes on those of the given seeds on which it has run."""
+        """Return a candidate's outcomes on the seeds of `pairs`, as far as it has run there."""
         known = (self._known.get((candidate, pair.seed)) for pair in pairs)
         return [outcome for outcome in known if outcome is not None]
 
     def moved(self, candidate: Candidate, pairs: Iterable[Pair]) -> bool:
         """Return whether a candidate changed the reward or the length of any episode that it ran.
 
-        The length counts because a reward paid only at the end is the same for all missions that fail.
+        The length counts because a reward that is paid only at the end is the same for all failing missions.
         """
         known = ((self._known.get((candidate, pair.seed)), pair) for pair in pairs)
         return any(
@@ -288,9 +292,9 @@ class Trials:
         )
 
     def fails_sooner(self, candidate: Candidate, goal: Goal) -> bool:
-        """Return whether all missions of a candidate failed, and sooner than without it.
+        """Return whether all missions of a candidate failed, and did so sooner than without the candidate.
 
-        A mission that ends early saves the costs of its remaining steps, which shows no progress.
+        A mission that ends early saves the costs of its remaining steps. Such a gain is no progress.
         """
         known = [(self._known.get((candidate, pair.seed)), pair.steps) for pair in goal.pairs]
         ran = [(one, steps) for one, steps in known if one is not None]
@@ -305,7 +309,7 @@ class Trials:
         return [one.steps for one in known if one is not None and one.steps is not None]
 
     def same_as(self, candidate: Candidate, other: Candidate) -> int:
-        """Return the number of common seeds if two candidates had equal outcomes on all of them, else 0."""
+        """Return the number of common seeds of two candidates if their outcomes are equal on all of them, else 0."""
         mine, its = self._outcomes(candidate), self._outcomes(other)
         both = mine.keys() & its.keys()
         return len(both) if all(mine[seed] == its[seed] for seed in both) else 0
@@ -328,14 +332,14 @@ class Trials:
         return found
 
     def fell_short(self, candidate: Candidate, pairs: Iterable[Pair]) -> None:
-        """Store a candidate that was near the goal on every seed but earned too little on average."""
+        """Store that a candidate was near the goal on every seed but earned too little on average."""
         self._short.append(self.totals_of(candidate, pairs))
 
     def falls_short(self, candidate: Candidate, pairs: Sequence[Pair], enough: float) -> bool:
-        """Return whether a candidate will probably earn too little, judging by earlier candidates that did.
+        """Return whether a candidate will probably earn too little, judging by earlier ones that earned too little.
 
-        The estimate uses an earlier candidate as a control variate: the earlier candidate's mean total, plus the mean
-        difference between the two candidates on their common seeds. At least `PAIRED` common seeds are needed.
+        The estimate uses an earlier candidate as a control variate. It is the mean total of the earlier candidate plus
+        the mean difference between both candidates on their common seeds. At least `PAIRED` common seeds are needed.
         """
         totals = self.totals_of(candidate, pairs)
         for other in self._short:
@@ -347,7 +351,7 @@ class Trials:
         return False
 
     def reason(self, pair: Pair) -> str:
-        """Return why the unchanged program fails on the seed of a pair, judging by a change without any effect.
+        """Return why the unchanged program fails on the seed of a pair, as shown by a change that has no effect.
 
         Return "" if no such change has run, or if the mission does not fail.
         """
@@ -363,7 +367,7 @@ class Trials:
 
     @contextmanager
     def granting(self, episodes: int) -> Iterator[None]:
-        """Extend the budget meanwhile, so that at least some episodes are left, but not beyond `limit`."""
+        """In the `with` block, extend the budget so that `episodes` are left, but never beyond `limit`."""
         most = self.budget if self.limit is None else self.limit
         extra = max(min(self.spent + episodes, most) - self.budget, 0)
         self.budget += extra
@@ -384,10 +388,10 @@ class Trials:
             raise BudgetSpentError
 
     def _come_far(self, goal: Goal) -> bool:
-        """Return whether any candidate that ran on several seeds gained at least `FAR` of the wanted gain.
+        """Return whether any candidate that ran on several seeds gained at least the share `FAR` of the wanted gain.
 
-        Missions that were lost by rejected candidates do not have the seeds of the goal's pairs, so they are compared
-        with the mean of the pairs.
+        Missions in which rejected candidates lost reward have other seeds than the goal's pairs. They are therefore
+        compared with the mean of the pairs.
         """
         before = {pair.seed: pair.total for pair in goal.pairs}
         usual = fmean(before.values()) if before else goal.online
@@ -410,9 +414,9 @@ def label(candidate: Candidate) -> str:
 
 
 def operand_effect(mutation: Mutation, gain: float) -> OperandEffect:
-    """Return the gain of a mutation with its new value, or its factor if the constant is known only at run time.
+    """Return the gain of a mutation together with its new value, or its factor if the value is known only at run time.
 
-    If the constant follows something, the value is the power with which it does.
+    If the constant follows a sensor or a variable, the value is the exponent.
     """
     constant = mutation.operand.value
     known = None if constant is None else float(constant)
@@ -431,7 +435,7 @@ def _followed(mutation: Mutation) -> str:
 
 
 def effective_value(mutation: Mutation) -> float:
-    """Return the operand's value under the mutation, or the factor if the constant is known only at run time."""
+    """Return the mutated value of the operand, or the factor if the constant is known only at run time."""
     if mutation.place is not None:
         return float(redefinition(mutation))
     if mutation.form is not None:

@@ -1,9 +1,9 @@
-"""Decide which constants to change a little before one that has to change a lot.
+"""If a repair has to change a constant a lot, decide which other constants to change a little instead.
 
-For example, the moisture probe of a dryer reads too low in frost, so that the grain leaves too moist. Doubling the
-limit of the hot air restores the reward, and so does lowering the target by a sixth. A miscalibrated constant is more
-often wrong by a sixth than by a factor of two, and an unnecessarily large change is likely to do harm in a world that
-the test does not contain.
+For example, the moisture probe of a dryer reads too low in frost, so the grain leaves the dryer too moist. Doubling the
+limit of the hot air restores the reward, and so does lowering the moisture target by a sixth. A miscalibrated constant
+is more often wrong by a sixth than by a factor of two. Besides, an unnecessarily large change is likely to do harm in
+worlds that were not tested.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit, change_size
 
 STEPS = (0.82, 1.22)  # factors that are tried on each constant
-BESIDE = (1.06, 0.94)  # factors by which a step that earns nearly enough is multiplied
-LEAST = 1.9  # a smaller change is sought only if the change found has at least this factor
-LESS = 0.5  # maximum size of a small change (see `change_size`), as a share of the size of the change found
+BESIDE = (1.06, 0.94)  # if a step earns nearly enough, it is multiplied by these factors
+LEAST = 1.9  # for changes by at least this factor, a smaller change of another constant is tried
+LESS = 0.5  # a small change has at most this share of the size (see `change_size`) of the change found
 ONWARD = (
     (0.74, 1.33),
     (0.62, 1.61),
@@ -30,16 +30,16 @@ TRACE = 0.005  # steps ONWARD follow a small step only if it gains at least this
 OTHERS = 4  # maximum number of constants that are tried in small steps
 EPISODES = 20  # number of episodes after which no further constant is tried
 EARLY = 0.5  # after this share of the budget, a repair is no longer compared with smaller changes
-LOST = 0.01  # maximum reward that a milder value of the same constant may lose, as a share of the wanted gain
+LOST = 0.01  # a milder value of the same constant may lose at most this share of the wanted gain
 INSIDE = 0.85  # a milder or smaller change is accepted only if a change by this share of its size passes, too
 WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
 
 
 def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Part]:
-    """Return other named constants with small steps, the best gain so far first, then those not tried yet.
+    """Return small steps of other named constants: first the constants that gained most, then untried ones.
 
-    There are at most `OTHERS` constants. Constants that never changed a mission are left out, and so are steps larger
-    than `LESS` times the change found.
+    At most `OTHERS` constants are returned. Constants that never changed a mission are left out, and so are steps
+    larger than `LESS` times the change found.
     """
     most, tried = LESS * change_size(found, factor), gains.under(guard)
     others = [
@@ -68,7 +68,7 @@ def known_steps(found: Unit, units: Sequence[Unit], gains: Gains, guard: Guard) 
 def onward(
     tried: Sequence[Part], found: Unit, factor: float, gains: Gains, guard: Guard, wanted: float
 ) -> list[Part]:
-    """Return larger steps in the direction in which small steps gained something, best constant first.
+    """If small steps gained something, return larger steps in the same direction, best constant first.
 
     `tried` are the small steps that were tried, and `wanted` is the gain that a repair needs. Steps larger than `LESS`
     times the change found are left out.
@@ -103,6 +103,6 @@ def inside(factor: float) -> float:
 
 
 def outside(factor: float) -> float:
-    """Return the factor whose `inside` is this one."""
+    """Return the factor for which `inside` returns this one."""
     farther: float = factor ** (1.0 / INSIDE)
     return round(farther, 3)

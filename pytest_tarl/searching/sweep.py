@@ -1,8 +1,8 @@
-"""Sweep and confirm, the default search: try one factor on all operands, then the next factor.
+"""The default search, sweep and confirm: try one factor on all operands, then the next factor.
 
-Each run is paired with the unmutated run of the same seed. A candidate that earns nearly the designed reward is tried
-on further seeds. Results steer the search: larger steps are tried only on operands whose smaller step did not clearly
-reduce the reward, best gain first. If no single operand suffices, the search combines those that gained.
+Each run is compared with the unmutated run of the same seed. A candidate that earns nearly the designed reward is tried
+on further seeds. Earlier results steer the search: larger steps are tried only on operands whose smaller step did not
+clearly reduce the reward, best gain first. If no single operand suffices, the search combines operands that gained.
 """
 
 from __future__ import annotations
@@ -44,29 +44,35 @@ if TYPE_CHECKING:
     import numpy as np
 
 FINE = (*FINER, 1.1, 0.91)  # factors for operands that change the reward but gain nothing with larger steps
-# factors for named constants, if the `FINE` steps gain nothing either
+# factors for named constants, used if the `FINE` steps gain nothing either
 BETWEEN_FINE = (1.16, 0.86, 1.05, 0.95, 1.35, 0.74)
 LAST = (10.0, 0.05)
 BRIEFLY = 0.3  # a brief search continues if a change gains at least this share of the wanted gain
 
 
 class Sweep:
-    """Sweep and confirm: operands in the given order, each mutated at its use under one of the guards.
+    """Sweep and confirm: mutate each operand at its use under one of the guards, in the given order.
 
-    If the first guard is `ALWAYS`, only this guard is used throughout, otherwise the first two are. The others are used
-    only at the end. If `proposed` is true, the operands are parameters of a change that the program does not contain
-    yet. Such parameters are first tried with their own values. If the change has no effect, factors that make it
-    `weaker` are skipped. Only parameters of the same change are combined. The last steps of the sweep are tried on
-    every operand. If a search for structural changes follows, only the nearest of these steps are tried, on named
-    constants. If `brief` is true, the search ends after the first steps unless something gains `BRIEFLY`. `responding`
-    contains the ids of statements whose constants increased the reward. `interlude` is called with the largest gain
-    before each step and each long phase, and may yield candidates of another search. `due` says whether `interlude`
-    would begin the structural changes, before which named constants get farther steps. `measured` returns changes that
-    recorded missions suggest. `reached`, `entered` and `proportional` are those of `FirstSteps`. `corrections` returns
-    confirmed corrections of sensor readings, which come before extreme changes. `finer` is called with an operand that
-    nearly earned enough, so that `mutate` may allow values between those of its grid. `following` returns, for a
-    changed constant, candidates in which the constant follows a sensor or a variable instead. `scaled` says whether a
-    change of another search scales a command (see `constants_first`).
+    If the first guard is `ALWAYS`, all steps use it; otherwise they use the first two guards. Further guards are used
+    only at the end.
+
+    If `proposed` is true, the operands are parameters of a change that the program does not contain yet. Such
+    parameters are first tried with their own values. If the change has no effect, factors that make it `weaker` are
+    skipped. Parameters of different changes are not combined.
+
+    The last steps of the sweep are tried on every operand. If a search for structural changes follows, only the nearest
+    of these steps are tried, and only on named constants. If `brief` is true, the search ends after the first steps,
+    except if something gains at least `BRIEFLY`. `responding` contains the ids of statements whose constants increased
+    the reward.
+
+    `interlude` is called with the largest gain before each step and each long phase, and may yield candidates of
+    another search. `due` says whether `interlude` would now begin the structural changes; before that, named constants
+    get farther steps. `measured` returns changes that recorded missions suggest. `reached`, `entered` and
+    `proportional` are described in `FirstSteps`. `corrections` returns confirmed corrections of sensor readings, which
+    come before extreme changes. `finer` is called with an operand that nearly earned enough; `mutate` may then allow
+    values between those of the operand's grid. `following` takes a candidate and returns candidates in which the
+    changed constant follows a sensor or a variable. `scaled` says whether a change of another search scales a command
+    (see `constants_first`).
     """
 
     def __init__(
@@ -131,7 +137,8 @@ class Sweep:
             self.attempts, self.crossing, responding, measured, reached, entered, proportional
         )
         self._families: tuple[Unit, ...] = ()
-        self._swept: frozenset[Unit] = frozenset()  # units that got their first steps before a screening
+        # units that already got their first steps before the screening
+        self._swept: frozenset[Unit] = frozenset()
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield confirmed candidates."""
@@ -175,10 +182,10 @@ class Sweep:
         return self.brief and not tries.gains.anything(BRIEFLY * tries.goal.wanted)
 
     def _before_screening(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try the named constants alone if they are few, since a maintainer is likelier to change them than a literal.
+        """If there are few named constants, try them first: a maintainer is likelier to change them than a literal.
 
-        While missions that fail earn the same, a screening would only tell how many constants there are. Finer steps
-        on a few named constants then cost less than first steps on many literals.
+        While all failing missions earn the same, a screening learns nothing. Finer steps on a few named constants then
+        cost less than first steps on many literals.
         """
         tries = self.attempts
         every, few = tries.units, named(tries.units)
@@ -233,11 +240,11 @@ class Sweep:
             yield from self.first_steps.near(new, guard)
 
     def _finely(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try small steps on operands that change the reward and were not refined: only a few values may be good.
+        """Try small steps on operands that change the reward but were not refined: their good range may be narrow.
 
-        A proposed change that clearly lost with every value so far is harmful by itself and gets none. A constant may
-        still have a good value close to the old one.
-        If no step gains, try the steps between these on named constants.
+        A proposed change that clearly lost with every value so far is harmful by itself and gets no such steps. A
+        constant that lost with every value may still have a good value close to the old one, so it gets them. If no
+        step gains, try the steps in between on named constants.
         """
         tries, gains = self.attempts, self.attempts.gains
         for factor in (*FINE, *BETWEEN_FINE):
@@ -255,7 +262,7 @@ class Sweep:
                 )
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, for each site, the gain of each operand's best value over the unmutated runs of the same seeds."""
+        """For each site, return the gain of each operand's best value over the unmutated runs of the same seeds."""
         return best_effects(
             [(unit, gains) for (unit, _), gains in self.attempts.gains.items()], self.attempts.mutate
         )

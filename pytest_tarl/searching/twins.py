@@ -1,8 +1,8 @@
-"""Group constants that a program writes several times: a maintainer changes all of them.
+"""Group constants that a program repeats (twins). A maintainer would change all of them.
 
-For example, a node turns at `angular_velocity = 0.1` in two steps of a path; a mission succeeds only if both turns
-work. Literals are twins if they are assigned to the same name with the same value in one file. Uses of a name that
-stands for several constants, such as a parameter of a helper, are twins within one function.
+For example, a node sets `angular_velocity = 0.1` for two turns of a path. A mission succeeds only if both turns work.
+Literals are twins if they are assigned to the same name with the same value in one file. Uses of one name in one
+function are twins, too, if the name stands for several constants (such as a parameter of a helper).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Key = tuple[str, str, str, float]  # what twins have in common: "literal" or "na
 
 
 def twins(apart: Sequence[Unit]) -> tuple[Unit, ...]:
-    """Return a unit for each group of twins, in the order of its first constant."""
+    """Return one unit for each group of twins. Groups are ordered by their first constant."""
     groups: dict[Key, dict[Operand, None]] = {}
     for unit in apart:
         key = _key(unit) if unit.chart is None else None
@@ -56,7 +56,7 @@ def _key(unit: Unit) -> Key | None:
 
 @cache
 def assigned_alone(text: str) -> str:
-    """Return the name or attribute to which a statement assigns a number, or "" if it does something else.
+    """Return the name or attribute to which a statement assigns a literal number, or "" for other statements.
 
     >>> assigned_alone("turn = 0.1"), assigned_alone("self.rate: float = -2"), assigned_alone("turn = 2 * x")
     ('turn', 'self.rate', '')

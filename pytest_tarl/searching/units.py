@@ -13,9 +13,10 @@ from pytest_tarl.searching.search import Mutate, operand_effect
 from tarl_lint.model import Operand
 
 NEAR = (2.2, 0.4)  # the first factors to try on every unit
-# if one use gains at least this share of the gain of all uses together, it is credited with all of it
+# if one use gains at least this share of what all uses together gain, it gets credit for the whole gain
 ENOUGH = 0.9
-SET_UP = ("", "__init__")  # names of code that runs once, before any message: a module and a constructor
+# names of the code that runs once, before any message: module level ("") and constructors
+SET_UP = ("", "__init__")
 
 Scope = Callable[[Operand], str]
 
@@ -27,9 +28,9 @@ def everywhere(_: Operand) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """Operands that are mutated together: `max(-LIMIT, min(LIMIT, x))` has one limit, used twice.
+    """Operands that are mutated together, such as both uses of the limit in `max(-LIMIT, min(LIMIT, x))`.
 
-    With a chart (another scale for the constant), a factor is a step on that scale.
+    If the unit has a chart (another scale for the constant), its factors are steps on that scale.
     """
 
     operands: tuple[Operand, ...]
@@ -42,7 +43,7 @@ class Unit:
 
 
 def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
-    """Group the uses of one constant and pairs of literal limits such as -2 and 2; keep the order."""
+    """Group operands of one statement into units: uses of one constant, or two limits such as -2 and 2."""
     groups: list[list[Operand]] = []
     for operand in operands:
         alike = next((group for group in groups if _alike(group[0], operand)), None)
@@ -54,7 +55,7 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
 
 
 def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Unit, ...]:
-    """Add a unit on its chart after each unit whose constant has one; for a constant of 0, instead replace the unit."""
+    """If a unit's constant has a chart, add a unit with the chart after it; for a constant of 0, replace the unit."""
     found: list[Unit] = []
     for unit in plain:
         chart = charts.get(unit.operands[0])
@@ -75,7 +76,7 @@ def change_size(unit: Unit, factor: float) -> float:
 
 
 def whole_constants(apart: Sequence[Unit], scope: Scope = everywhere) -> tuple[Unit, ...]:
-    """Unite the uses of a named constant in all statements of a file; keep the order.
+    """Make one unit of all uses of a named constant in a file; keep the order.
 
     `scope` returns the part of the file in which the name of an operand means the same constant.
     """
@@ -95,10 +96,10 @@ def whole_constants(apart: Sequence[Unit], scope: Scope = everywhere) -> tuple[U
 def uses_apart(
     plain: Sequence[Unit], others: Sequence[Unit], scope: Scope = everywhere
 ) -> tuple[tuple[Unit, ...], dict[Unit, tuple[Unit, ...]]]:
-    """Return `plain` with all uses of a constant as one unit, and for each such unit its uses in `plain`.
+    """Make one unit of all uses of each constant in `plain`; return all units, and the uses that each replaces.
 
-    A constant that several statements use is one thing to a maintainer, who changes it everywhere. Uses among
-    `others`, which are not searched by themselves, change as well. The unit takes the place of its first use.
+    If several statements use a constant, a maintainer would change it everywhere. Uses in `others` are not searched by
+    themselves, but they change together with those in `plain`. The unit takes the place of its first use.
     """
     united: list[Unit] = []
     parts: dict[Unit, tuple[Unit, ...]] = {}
@@ -122,17 +123,17 @@ def _same_constant(unit: Unit, other: Unit, scope: Scope) -> bool:
 
 
 def runs_once(unit: Unit) -> bool:
-    """Return whether a unit is changed only in statements that a module or a constructor runs once."""
+    """Return whether all operands of a unit are in code that runs once: at module level or in a constructor."""
     return all(one.site.qualname.rpartition(".")[2] in SET_UP for one in unit.operands)
 
 
 def best_effects(
     gained: Iterable[tuple[Unit, Mapping[float, float]]], mutate: Mutate
 ) -> dict[str, list[OperandEffect]]:
-    """Return for each site id the gain of each operand at its best factor; on ties, the factor tried first wins.
+    """For each site id, return the gain of each operand with its best factor.
 
-    If all uses of a constant together gain more than the uses that were tried alone, untried uses may bring the
-    difference, so each tried use gets only its own gain.
+    All uses of a constant together may gain more than the uses that were tried alone. Then the untried uses may bring
+    the difference, so each tried use gets only its own gain. On ties, the smaller factor wins.
     """
     gained = list(gained)
     best: dict[Operand, OperandEffect] = {}
@@ -153,7 +154,7 @@ def best_effects(
 def _alone(
     operand: Operand, unit: Unit, factor: float, gained: Sequence[tuple[Unit, Mapping[float, float]]]
 ) -> float | None:
-    """Return an operand's own gain with a factor if it is small and another operand may bring the unit's gain."""
+    """Return an operand's own gain if it is small and another operand may bring the gain of the whole unit."""
     if len(unit.operands) < 2:
         return None
     alone: dict[Operand, float] = {}

@@ -1,8 +1,8 @@
-"""Retry constants that had no effect alone, together with a change after which missions last longer.
+"""Retry constants that had no effect alone, together with a change that makes missions last longer.
 
-A mission that fails early never reaches the statements that come later, so their constants have no effect. For
-example, a film tears after a few turns of a pallet. With less tension the film does not tear, but so few turns do
-not hold the load: the number of turns matters only with the smaller tension.
+A mission that fails early never reaches the statements that come later, so their constants have no effect. For example,
+a wrapping film tears after a few turns of a pallet. With less tension, the film does not tear, but then more turns are
+needed to hold the load. The number of turns matters only after the tension was reduced.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from pytest_tarl.searching.refining import between
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import NEAR, Unit
 
-# other constants are tried under a change only if it gains at least this share of the wanted gain
+# other constants are tried together with a change only if the change gains at least this share of the wanted gain
 GAINED = 0.3
 LONGER = 1.2  # minimum ratio of the length of missions with the change to their length without it
-MOST = 24  # maximum number of other constants that are tried while the change is applied
-FINER = (1.5, 0.65)  # factors for a constant that has an effect under the change
-ROUNDS = 2  # number of times that the best factor of a constant is refined under the change
+MOST = 24  # maximum number of other constants that are tried together with the change
+FINER = (1.5, 0.65)  # factors for a constant that has an effect together with the change
+ROUNDS = 2  # how often the best factor of a constant is refined together with the change
 
 
 def longer(base: Joint, selection: ForwardSelection) -> bool:
@@ -30,7 +30,7 @@ def longer(base: Joint, selection: ForwardSelection) -> bool:
 
 
 def lasting(base: Joint, selection: ForwardSelection) -> float:
-    """Return the ratio of the length of a combination's missions to that of the unrepaired ones, or 0 if unknown.
+    """Return the length of a combination's missions divided by the length of unrepaired ones, or 0 if unknown.
 
     Only missions of the same seeds are compared, since seeds differ in length.
     """

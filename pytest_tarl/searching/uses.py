@@ -1,4 +1,4 @@
-"""Change a constant that several statements use at one of its uses only."""
+"""If several statements use a constant, change it at only one of its uses."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ class Search(Protocol):
     trials: Trials
 
     def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """Try a factor; yield the candidates that are confirmed."""
+        """Try one factor on a unit under a guard; yield the candidates that further seeds confirm."""
 
     def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int, confirmable: bool = True) -> bool:
-        """Return whether a new factor reaches the goal on the seed of a pair."""
+        """Return whether a factor that is new reaches the goal on the seed of a mission pair."""
 
 
 class Uses:
@@ -37,16 +37,16 @@ class Uses:
         return self.parts.get(whole, ())
 
     def learn(self, whole: Unit, guard: Guard, factor: float, pair: int) -> None:
-        """Change each use of a confirmed constant alone, on one seed, to learn which of the statements matter."""
+        """Change each use of a confirmed constant alone, on one seed, to learn which statements matter."""
         uses, trials = self.of(whole), self.search.trials
         if len(uses) <= MOST and trials.budget - trials.spent > len(uses):
             for use in uses:
                 self.search.reaches(use, factor, guard, pair, confirmable=False)
 
     def alone(self, whole: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """Once try each use alone of a constant that reached the goal on some seeds only.
+        """If a constant reached the goal on only some seeds, once try to change each of its uses alone.
 
-        The other uses may be the reason why missions fail.
+        The change at the other uses may be the reason why missions fail on the other seeds.
         """
         uses = self.of(whole)
         if len(uses) <= MOST and (whole, guard) not in self._apart:
