@@ -1,4 +1,4 @@
-"""Examine confirmed candidates one after another: choose a guard, test on fresh seeds; stop at the first acceptance."""
+"""Examine confirmed candidates in turn, each under suitable guards and on fresh seeds, until one is accepted."""
 
 from __future__ import annotations
 
@@ -29,18 +29,21 @@ from pytest_tarl.searching.plainness import oddness
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
 UNWRITABLE: Reason = "cannot be written"
-WORLDS = 3  # number of worlds in which a test runs: drifted, designed, and designed without the candidate
-OLD_WORLD = 8  # number of episodes in the old world, to display the reward there if the drift is permanent
+WORLDS = 3  # a test runs missions of three kinds: drifted, designed, and designed without the candidate
+# if the drift is permanent, number of episodes in the old world, whose reward is only displayed
+OLD_WORLD = 8
 MOST = 5  # maximum number of candidates to test per search
-SHARE = 2  # maximum number of tests for the same operands while candidates of other operands are untested
+# maximum number of tests of the same operands while there are untested candidates of other operands
+SHARE = 2
 WORSE: Reason = "nominal gets worse"
 # Minimum number of search episodes for finding a confirmed candidate's guard: three missions in each world for about
-# six guards. Without them, all episodes that led to the candidate are lost.
+# six guards. Without these episodes, the candidate cannot be used and the search for it was in vain.
 EXAMINED = 40
 SAME = (
-    3  # minimum number of equal missions with and without a condition that holds throughout drifted missions
+    # a condition holds throughout drifted missions if at least this number of missions is the same with and without it
+    3
 )
-SCREENED = 20  # maximum number of candidates that are run on fresh seeds per search
+SCREENED = 20  # maximum number of candidates per search that are run on fresh seeds
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,8 @@ class Examiner:
         self.order = mutants.order
         self.guards = guards
         self.placing = Placing(mutants)
-        self.ranged: dict[Candidate, Ranged] = {}  # results by part of the range, for drifts with a range
+        # results for each part of the range, if the drift has a range of sizes
+        self.ranged: dict[Candidate, Ranged] = {}
         self.ledger = Ledger()
         # candidates that pass on known seeds; they wait because `SHARE` other candidates of the same operands have
         # been tested
@@ -73,7 +77,7 @@ class Examiner:
         self.turns = 1  # number of searches so far; each may spend `MOST` tests
         self.spent = 0
         self.refused = Refused(None, "no operand helps")
-        self.lost: tuple[str, ...] = ()  # one sentence for each other test whose reward fell with a candidate
+        self.lost: tuple[str, ...] = ()  # one sentence for each other test that lost reward with a candidate
         self.cut = False  # whether the budget ended the search
 
     @property
@@ -82,7 +86,7 @@ class Examiner:
         return self.ledger.tried
 
     def first(self, confirmed: Iterator[Candidate], trials: Trials) -> Accepted | None:
-        """Examine candidates until one is accepted, the tests are used up or the budget is spent."""
+        """Examine candidates until one is accepted, no more tests are allowed, or the budget is spent."""
         trials.loses = lambda candidate: self._missed.again(candidate, trials, self.order.goal)
         trials.lost_missions = self._missed.latest
         trials.harms = lambda candidate: operands(candidate) in self._missed.harmed
@@ -99,7 +103,7 @@ class Examiner:
         return self._of_those_waiting()
 
     def _under_guards(self, candidate: Candidate, trials: Trials) -> Accepted | None:
-        """Examine a candidate under every guard, then with other values (stronger, milder and neighbouring ones)."""
+        """Examine a candidate under every guard, then with other values (stronger, milder and neighbouring values)."""
         edges: list[Candidate] = []  # candidates that pass on known seeds but fail on some fresh seeds
         weak: list[Guard] = []  # guards under which the reward in the drifted world stays too low
         for guard in self.guards:
@@ -121,7 +125,7 @@ class Examiner:
                 )  # keep the centred values, so that they are not centred again
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
-                # this guard is as wide as the guard of the search, so narrower guards cannot gain more
+                # this guard holds wherever the guard of the search holds, so narrower guards cannot gain more
                 break
             if examined.fresh and examined.reason in TOO_LITTLE and self._holds_throughout(examined, trials):
                 break  # without the condition, drifted missions are the same, so no other condition can gain more
@@ -141,13 +145,13 @@ class Examiner:
         return None
 
     def _holds_throughout(self, examined: Tried, trials: Trials) -> bool:
-        """Return whether a condition never held in the designed world and changes nothing in drifted missions."""
+        """Return whether the condition never held in the designed world and makes no difference in drifted missions."""
         candidate = replace(examined.candidate, mutations=examined.candidate.changes)
         known = trials.same_as(candidate, replace(candidate, guard=candidates.ALWAYS))
         return bool(candidate.guard.conjuncts) and known >= SAME and not firing(self.order, candidate)
 
     def _harmful(self, candidate: Candidate) -> Iterator[Candidate]:
-        """Yield the candidate without its condition if that restores the drifted world and harms the designed one."""
+        """Yield the candidate without its condition if it then restores the drifted world but harms the designed."""
         known = self.ledger.alike(replace(candidate, guard=candidates.ALWAYS))
         if known is not None and known.reason in STRONG:
             yield known.candidate
@@ -155,7 +159,7 @@ class Examiner:
     def _other_values(
         self, candidate: Candidate, examined: Tried, weak: list[Guard], trials: Trials
     ) -> Iterator[OtherValues]:
-        """Yield the other values of a candidate that are tried before its next guard; update `weak`."""
+        """Yield sources of other values that are tried before the candidate's next guard; update `weak`."""
         guard = examined.candidate.guard
         if guard == candidates.ALWAYS and examined.reason in (*WEAK, *STRONG):
             yield self.others.unguarded(candidate, examined.reason, trials)
@@ -181,7 +185,7 @@ class Examiner:
             told = examined
 
     def _conditionally(self, examined: Tried, trials: Trials) -> Accepted | Tried:
-        """If a value passes in the drifted world but not in the designed one, examine it under every condition."""
+        """If a value passes in the drifted world but harms the designed one, examine it under every condition."""
         candidate, found = examined.candidate, examined
         weak: list[Guard] = []
         for guard in self.guards if not candidate.guard.conjuncts else ():
@@ -234,7 +238,7 @@ class Examiner:
         return self._on_fresh_seeds(candidate)
 
     def _harms_again(self, candidate: Candidate, trials: Trials) -> bool:
-        """Return whether one designed mission shows that a new candidate that reaches the goal does harm."""
+        """Return whether one designed mission shows that a new candidate does harm, although it reaches the goal."""
         if operands(candidate) not in self._missed.harmed or self._known(candidate) is not None:
             return False
         try:
@@ -244,7 +248,7 @@ class Examiner:
             return False
 
     def _failing_at_once(self, candidate: Candidate, trials: Trials) -> Reason:
-        """Return why a candidate fails on the first seed or in the designed world, or ""; it is not placed yet."""
+        """Return why a candidate fails on the first seed or in the designed world, or "" if it passes."""
         goal = self.order.goal
         first = goal.pairs[0].seed
         try:
@@ -256,10 +260,11 @@ class Examiner:
             return ""
 
     def _cheaper(self, candidate: Candidate, trials: Trials) -> Candidate:
-        """Return a smaller structural change if a candidate loses much of the margin in designed missions.
+        """If a structural change loses much of the margin in designed missions, return a smaller change.
 
-        A test can hardly show that the loss stays below the margin; it would only use up a share of α. A constant keeps
-        its value, because a smaller one may lie at the end of the good ones, and a condition may prevent the loss.
+        With such a loss, a test can hardly show that the loss stays below the margin, and would only use up a share of
+        α. A change of a constant is returned unchanged: a smaller change may lie at the end of the range of good
+        values, and a condition may prevent the loss.
         """
         if all(mutation.form is None for mutation in candidate.mutations):
             return candidate
@@ -284,7 +289,7 @@ class Examiner:
         return self.ledger.enter(Tried(candidate, reason, ()))
 
     def _centred(self, candidate: Candidate, trials: Trials) -> Candidate | Tried:
-        """Return the best candidate with a value nearby, or a known result that makes an examination unnecessary."""
+        """Return the candidate with the best value nearby, or the known result of such a candidate if there is one."""
         known = self._known(candidate)
         if known is not None:
             return known
@@ -294,26 +299,25 @@ class Examiner:
         if same is not None:
             return self.ledger.enter(Tried(candidate, same.reason, ()))
         if self._missed.again(candidate, trials, self.order.goal):
-            # test this value at once: it may lose the missions that rejected values lost, and then its neighbours lose
-            # them, too
+            # test this value at once: if it loses the missions that rejected values lost, its neighbours lose them, too
             return candidate
         goal, reference = self.order.goal, self.order.reference
         better = self.good_range.amid(candidate, trials, goal, reference)
         if better == candidate:
             better = centred(candidate, trials, self.mutants.mutate, goal, reference)
-        # if the centred value was examined before, examine the value that was not centred
+        # if the centred value was examined before, examine the original value
         return candidate if self.ledger.alike(better) else better
 
     def _known(self, candidate: Candidate) -> Tried | None:
-        """Return the result of a similar candidate that was examined before or waits for its test."""
+        """Return the result of a similar candidate that was examined before or still waits for its test, or None."""
         waiting = (Tried(one, "never tested", ()) for one in self.waiting if alike(one, candidate))
         return self.ledger.alike(candidate) or next(waiting, None)
 
     def _acting_alike(self, candidate: Candidate, trials: Trials) -> Tried | None:
-        """Return a tested candidate that earned too little and equals this candidate on all known seeds.
+        """Return a tested candidate that earned too little and had the same outcomes on all known seeds.
 
-        Tested candidates whose missions failed do not count: a candidate with the same outcomes on the known seeds may
-        still pass on harder ones.
+        Tested candidates whose missions failed do not count: a candidate with the same outcomes on known seeds may
+        still pass on harder seeds.
         """
         return next(
             (
@@ -327,7 +331,7 @@ class Examiner:
         )
 
     def _goes_further(self, candidate: Candidate) -> bool:
-        """Return whether a smaller step of the same operands under the same guard did harm before."""
+        """Return whether a smaller change of the same operands under the same guard has already done harm."""
         return any(
             one.reason in STRONG
             and one.candidate.guard == candidate.guard
@@ -352,7 +356,7 @@ class Examiner:
         return self.tested >= most or of_fresh_seeds(self.tried) >= screened
 
     def _on_fresh_seeds(self, candidate: Candidate) -> Accepted | Tried:
-        """Test a candidate once, then run the other tests that it affects."""
+        """Test a candidate once, then run the other recorded tests that use the changed files."""
         found = self._tested(candidate)
         self.spent += found.episodes
         others = beside(self.mutants, candidate) if found.accepted else NOTHING_BESIDE
@@ -379,7 +383,7 @@ class Examiner:
         return replace(found, nominal=tuple(self.mutants.run(candidate, seed, None) for seed in fresh))
 
     def _named(self, reason: Reason, totals: Sequence[float]) -> Reason:
-        """Replace the reason "gain too small" if the reward is even below that of the unrepaired program."""
+        """If the reward is even below that of the unrepaired program, replace the reason "gain too small"."""
         worse = reason == "gain too small" and fmean(totals) < self.order.goal.online
         return "worse than unrepaired" if worse else reason
 

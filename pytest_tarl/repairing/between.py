@@ -20,14 +20,15 @@ WEAK: tuple[Reason, ...] = (
     "not over the whole range",
 )
 STRONG: tuple[Reason, ...] = ("nominal gets worse", "breaks other missions")
-WEAKEST = 0.25  # smallest share of the parameter of a structural change that is tried
+WEAKEST = 0.25  # parameters of structural changes are reduced at most to this share of their value
 FINEST = 1.05  # the bisection stops when the ratio of its two factors is below this limit
 
 
 class Between:
-    """A bisection of all operands of a candidate together, on a log scale; a boolean or a change of sign ends it.
+    """A bisection on a log scale that moves all operands of a candidate together.
 
-    Parameters of structural changes have no original value, so they are bisected down to `WEAKEST` times their value.
+    It ends at once if an operand is a boolean or changes its sign. Parameters of structural changes have no original
+    value, so the bisection goes down to `WEAKEST` times their value.
     """
 
     def __init__(self, candidate: Candidate, mutate: Callable[[Operand, float], Mutation | None]) -> None:
@@ -45,7 +46,7 @@ class Between:
                 self.weak = max(self.weak, log(weak) / log(strong))
 
     def middle(self) -> Candidate | None:
-        """Return the candidate halfway between the weak and the strong exponent, or None when the bisection is over."""
+        """Return the candidate with the exponent `share`, or None if the bisection is over."""
         scales = [one for one in self._scales if one is not None]
         if self.steps >= STEPS or len(scales) < len(self._scales):
             return None
@@ -71,7 +72,7 @@ class Between:
         return replace(self.candidate, mutations=moved) if moved else None
 
     def told(self, reason: Reason) -> bool:
-        """Store the result of the last candidate; return whether it decides on which side to continue."""
+        """Store the result of the last candidate; return whether the result shows on which side to continue."""
         share = self.share
         if reason in WEAK:
             self.weak = share
@@ -83,7 +84,10 @@ class Between:
 
 
 def _scale(mutation: Mutation) -> tuple[float, float] | None:
-    """Return the weakest step of a mutation and the ratio of its own step to it, or None if it cannot be bisected."""
+    """Return the weakest step of a mutation, and by what factor the mutation's own step exceeds it.
+
+    Return None if the mutation cannot be bisected.
+    """
     if mutation.form is not None:
         step = None if on_grid(mutation) else searched_step(mutation)
         return (step * WEAKEST, 1.0 / WEAKEST) if step else None
@@ -94,7 +98,7 @@ def _scale(mutation: Mutation) -> tuple[float, float] | None:
 def stronger(
     candidate: Candidate, power: float, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Candidate | None:
-    """Return a candidate with its factors raised to a power, or None if no factor is positive and different from 1."""
+    """Return a candidate with its factors raised to a power, or None if one of the factors cannot be changed so."""
     moved: list[Mutation] = []
     for mutation in candidate.mutations:
         by = searched_step(mutation)
@@ -135,7 +139,7 @@ def on_grid(mutation: Mutation) -> bool:
 
 
 def common_factor(candidate: Candidate) -> float | None:
-    """Return the factor (or step on a chart) of a candidate that changes one constant at all of its uses, or None."""
+    """If a candidate changes one constant at all of its uses, return its factor (or step on a chart), else None."""
     found = {factor(mutation) for mutation in candidate.mutations}
     constants = {mutation.operand.definition for mutation in candidate.mutations}
     several = len(candidate.mutations) > 1 and (len(constants) > 1 or None in constants)

@@ -13,7 +13,8 @@ from functools import cache
 from pytest_tarl.patching.document import Document, called
 from tarl_lint.api import Analysis
 
-STAMPS = ("Time", "Time.from_sec", "Time.from_seconds")  # endings of names of calls that create time stamps
+# endings of the names of calls that create time stamps
+STAMPS = ("Time", "Time.from_sec", "Time.from_seconds")
 # call → index of the first positional argument that is a time stamp, a timeout or a queue length
 MIDDLEWARE = {
     **dict.fromkeys(
@@ -62,7 +63,7 @@ def is_bookkeeping(analysis: Analysis, source: Document, node: ast.expr) -> bool
 def _of_call(analysis: Analysis, call: ast.Call, inner: ast.AST) -> bool:
     """Return whether an argument of a call is a time stamp, a timeout or the length of a queue.
 
-    Functions and classes of the program that have such a name are its own.
+    If the program itself defines a function or class of this name, the call does not count.
     """
     name = ast.unparse(call.func)
     if name.rpartition(".")[2] in _defined(tuple(analysis.sources.values())):
@@ -74,7 +75,7 @@ def _of_call(analysis: Analysis, call: ast.Call, inner: ast.AST) -> bool:
 
 
 def _only_logs(analysis: Analysis, call: ast.Call) -> bool:
-    """Return whether a call makes a timer whose callback reaches no statement that influences what is published."""
+    """Return whether a call makes a timer whose callback has no influence on what is published."""
     at = TIMERS.get(called(call))
     if at is None:
         return False
@@ -93,7 +94,7 @@ def _only_logs(analysis: Analysis, call: ast.Call) -> bool:
 
 @cache
 def _callees(texts: tuple[str, ...]) -> dict[str, frozenset[str]]:
-    """Return, by the name of a function or method, the names that it mentions; same names are one function."""
+    """Map the name of each function or method to the names that it mentions; equal names count as one function."""
     found: dict[str, frozenset[str]] = {}
     for text in texts:
         for function in _functions(text):

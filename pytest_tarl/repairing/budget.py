@@ -15,7 +15,8 @@ from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 class Purse:
     """A budget that pays for the phases of a search, one after another.
 
-    A phase ends when it has spent `share` of the budget that was left at its start. `late` is set when the time is up.
+    Each phase has a `share`: it ends when it has spent this share of the budget that was left at its start. `late` is
+    set when the time is up.
     """
 
     episodes: int
@@ -27,7 +28,7 @@ class Purse:
     def phase(self, mutants: Mutants, method: str, watch: Watch, share: float = 1.0) -> Trials:
         """Return the trials of a phase.
 
-        The trials raise BudgetSpentError when the phase ends; then pass the trials to `settle`.
+        The trials raise BudgetSpentError when the phase ends. Afterwards, pass them to `settle`.
         """
         order, passed = mutants.order, monotonic() - self.begun
         until = None if self.seconds is None else passed + share * (self.seconds - passed)

@@ -1,9 +1,9 @@
 """Improve the value of a candidate that passes but loses much of the margin, before its expensive test.
 
-A test can hardly distinguish a loss of more than half of the margin from a loss of the whole margin. The mean reward on
-the known seeds is biased upwards, because the candidate was chosen on them: a candidate that loses a third of the
-margin there may lose half of the margin on other seeds. A value in the middle of the range of good values loses less.
-Finding it costs a few episodes on known seeds and can save a test of hundreds of episodes.
+A test can hardly distinguish a loss of more than half of the margin from a loss of the whole margin. The candidate was
+chosen on the known seeds, so its mean reward there is too high: a candidate that loses a third of the margin on known
+seeds may lose half of it on other seeds. A value in the middle of the range of good values loses less. To find such a
+value takes a few episodes on known seeds and can save a test of hundreds of episodes.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ STEPS = (1.3, 1.12, 1.04)  # ratios between neighbouring values, tried in this o
 SEEDS = 5  # maximum number of seeds on which to compare values
 BEHIND = 2  # number of seeds after which a value is dropped if it earned less than the best value
 MOVES = 3  # maximum number of moves in one direction with one ratio
-# ratios of values that are tried in place of a value that fails on some seeds
+# if a value fails on some seeds, values with these ratios to it are tried instead
 ASIDE = (1.25, 0.8, 1.12, 0.89)
 
 
@@ -32,9 +32,9 @@ def centred(
 ) -> Candidate:
     """Return the candidate with the best value found by hill climbing on known seeds.
 
-    A candidate that fails on these seeds, or loses little, is returned unchanged. Whether such a value loses reward is
-    known only from the designed missions of these seeds. If these missions also earn less than the mean, better values
-    would only be fitted to a few starts. Raise BudgetSpentError.
+    A candidate that fails on these seeds, or that loses little, is returned unchanged. The loss is the difference from
+    the designed missions of these seeds: if the designed missions also earn less than the mean, a better value would
+    only be fitted to a few starts. Raise BudgetSpentError.
     """
     pairs = sorted(goal.pairs, key=lambda pair: not trials.ran(candidate, [pair]))[:SEEDS]
     harder = fmean(goal.harder.get(pair.seed, 0.0) for pair in pairs)
@@ -54,7 +54,7 @@ def centred(
 def _loses_little(
     candidate: Candidate, trials: Trials, goal: Goal, seeds: Sequence[int], enough: float, margin: float
 ) -> bool:
-    """Return whether a candidate that earns less than `enough` earns nearly what the designed missions of seeds do."""
+    """Return whether a candidate earns less than `enough` but nearly as much as designed missions of the same seeds."""
     if goal.harder or fmean(trials(candidate, seed).total for seed in seeds) >= enough:
         return False
     lost = trials.lost(candidate, seeds)
@@ -62,7 +62,10 @@ def _loses_little(
 
 
 def neighbours(candidate: Candidate, mutate: Mutate) -> Iterator[Candidate]:
-    """Yield the candidate with slightly smaller and larger values; nothing if it has several constants or no factor."""
+    """Yield the candidate with slightly smaller and larger values.
+
+    Yield nothing if the candidate changes several constants or has no factor.
+    """
     for ratio in ASIDE:
         other = moved(candidate, ratio, mutate)
         if other is not None:
@@ -70,12 +73,12 @@ def neighbours(candidate: Candidate, mutate: Mutate) -> Iterator[Candidate]:
 
 
 def in_place(candidate: Candidate) -> Candidate:
-    """Return the candidate with its changes at the uses of the constants instead of at their definitions."""
+    """Return the candidate with its changes moved from the definitions of the constants to their uses."""
     return replace(candidate, mutations=candidate.changes)
 
 
 def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, enough: float) -> Candidate:
-    """Climb on the seeds of the goal's first pairs, until steps in both directions have no effect."""
+    """Climb on the seeds of the goal's first pairs until no step in either direction is better."""
     best, totals = candidate, [trials(candidate, pair.seed).total for pair in goal.pairs[:SEEDS]]
     for step in STEPS:
         for ratio in (step, 1 / step):
@@ -92,7 +95,7 @@ def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, e
 
 
 def _at_the_edge(further: Candidate | None, trials: Trials, goal: Goal) -> bool:
-    """Return whether a mission fails one step further: rewards that grow up to a cliff would lead to its edge."""
+    """Return whether a mission fails one step further, as at a cliff up to which the reward grows."""
     if further is None or not goal.passing:
         return False
     try:
@@ -102,7 +105,7 @@ def _at_the_edge(further: Candidate | None, trials: Trials, goal: Goal) -> bool:
 
 
 def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | None:
-    """Return a candidate with its value scaled by `ratio`; parameters on a grid, such as powers, are unchanged.
+    """Return a candidate with its value scaled by `ratio`. Parameters on a grid, such as exponents, do not change.
 
     Return None if the candidate changes several constants in several statements, or has no factor.
     """
@@ -128,8 +131,8 @@ def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | Non
 def _better(candidate: Candidate, trials: Trials, goal: Goal, totals: Sequence[float]) -> list[float] | None:
     """Return a candidate's totals if their mean is higher than that of `totals`.
 
-    Return None as soon as the candidate falls behind or a mission fails. Also return None if it loses reward in
-    missions in which rejected candidates lost reward.
+    Return None as soon as the candidate falls behind or a mission fails. Also return None if the candidate loses reward
+    in the same missions as rejected candidates.
     """
     earned: list[float] = []
     try:

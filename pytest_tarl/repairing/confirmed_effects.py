@@ -9,13 +9,14 @@ from statistics import fmean
 from pytest_tarl.model import OperandEffect
 from pytest_tarl.searching.search import Candidate, operand_effect
 
-SAME = 0.01  # relative difference of values that count as the same, because a definition has a rounded value
+# values with this relative difference count as the same, because the value at a definition is rounded
+SAME = 0.01
 
 Effects = Mapping[str, Sequence[OperandEffect]]
 
 
 def gaining(effects: Effects, structural: Effects) -> Effects:
-    """Return effects with those structural changes that gained reward, so that their statements rank by this gain.
+    """Add the structural changes that gained reward to the effects, so that their statements rank by this gain.
 
     Both arguments map site ids to effects.
     """
@@ -29,9 +30,9 @@ def gaining(effects: Effects, structural: Effects) -> Effects:
 def with_confirmed(
     effects: Effects, candidate: Candidate, repaired: Sequence[float], drifted: Sequence[float]
 ) -> Effects:
-    """Return the effects with the gain of an accepted change of one constant, if the search measured no such gain.
+    """Add the gain of an accepted change of one constant to the effects if the search did not measure this gain.
 
-    `effects` maps site ids to effects; `repaired` and `drifted` are total rewards of episodes with and without the
+    `effects` maps site ids to effects. `repaired` and `drifted` are total rewards of episodes with and without the
     change. The search may have found the change under another condition, or together with other constants.
     """
     if len(candidate.mutations) != 1 or not repaired or not drifted:

@@ -1,4 +1,4 @@
-"""Deliver the result: the patch of an accepted repair, or the best refused candidate and the reason for its refusal."""
+"""Deliver the result: the patch of an accepted repair, or the best refused candidate and why it was refused."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def delivered(
 def _written(order: Order, diff: str) -> str:
     """Write the patch and a SARIF file; return the patch's path relative to the root, or "" if that fails.
 
-    If the patch cannot be written, the report shows all of it, so that the repair is not lost.
+    If the patch cannot be written, the report shows the whole patch, so that the repair is not lost.
     """
     try:
         written = patch.write(diff, order.patches, order.fixture.test, order.drift)
@@ -70,7 +70,7 @@ def _written(order: Order, diff: str) -> str:
 
 
 def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> None:
-    """Check that the files differ only in the changed lines. Raise RepairError."""
+    """Check that the new files differ from the old ones only in the lines to change. Raise RepairError."""
     for shown, original in order.analysis.sources.items():
         text = changed.get(order.root / shown)
         if text is not None:
@@ -155,14 +155,14 @@ def attempts(order: Order, tried: Iterable[Tried]) -> tuple[Attempt, ...]:
 def _guard(order: Order, candidate: Candidate) -> str:
     try:
         return guard_text(candidate.guard, order.analysis, candidate.mutations, order.fixture.topics)
-    except RepairError:  # the node cannot evaluate the guard, which is why the candidate was dropped
+    except RepairError:  # the candidate was dropped because the node cannot evaluate its guard
         return " and ".join(
             f"{one.low:g} <= {one.sensor.name} <= {one.high:g}" for one in candidate.guard.conjuncts
         )
 
 
 def _edits(order: Order, candidate: Candidate) -> tuple[Edit, ...]:
-    """Return the edits in order; uses that share a definition have one edit."""
+    """Return the edits in order. Uses that share a definition have only one edit."""
     placed = {one.place or one: one for one in reversed(candidate.mutations)}
     return tuple(_edit(order, one) for one in candidate.mutations if placed[one.place or one] is one)
 
@@ -215,7 +215,7 @@ def _evidence(
 
 
 def _constants(candidate: Candidate) -> Iterator[str]:
-    """Yield where the changed constants are defined; two patches conflict if they share a definition."""
+    """Yield where the changed constants are defined. Two patches conflict if they change the same definition."""
     for mutation in candidate.mutations:
         operand = mutation.operand
         span = operand.definition or operand.span
@@ -241,7 +241,7 @@ def _stated(bounds: Mapping[str, Guarantee]) -> list[str]:
 
 
 def _recorded(order: Order) -> list[str]:
-    """Return the header line with hash and path of the recording with which the repair was compared."""
+    """Return the header line that gives the hash and the path of the recording used for the comparison."""
     path = order.recorded
     if path is None:
         return []
@@ -251,7 +251,7 @@ def _recorded(order: Order) -> list[str]:
 
 
 def _again(order: Order) -> str:
-    """Return the shell command that repeats the comparison; it is run in the root."""
+    """Return the shell command that repeats the comparison if it is run in the root folder."""
     return next_commands.command(replace(_in_root(order), flags=order.options.flags))
 
 

@@ -1,7 +1,7 @@
-"""Structural changes with symptoms, tried within the search of constants.
+"""Structural changes that recorded symptoms suggest, tried during the search of constants.
 
-Most drifts are repaired by a constant within few episodes. After that, a change with a symptom is likelier to help than
-further constants.
+Most drifts are repaired by a constant within a few episodes. If that does not succeed, a structural change with a
+symptom is likelier to help than further constants.
 """
 
 from __future__ import annotations
@@ -28,22 +28,23 @@ from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
 SOON = 15  # number of episodes before the changes with the clearest symptoms are tried
-FEW = 10  # number of episodes for all these changes; 1.5 times as many if one change gains much
+FEW = 10  # number of episodes for all these changes together; half as many again if one gains much
 # number of episodes before the changes are tried: the mean length of a search that succeeds with a constant
 FROM = 60
-# replaces FROM if a constant gains at least `PARTLY`, because this constant may only need another value or a second
+# used instead of FROM if a constant gains at least `PARTLY`: the constant may only need another value, or a second
 # constant
 LATER = 100
 PARTLY = 0.2  # share of the wanted gain that a constant must reach for `LATER`
-SEEDS = 2  # number of seeds on which a correction of a reading is tried; a seed may be hard in any world
-HALF = 0.5  # corrections of readings are tried unless a constant gains at least this share of the wanted gain
-MOST = 45  # number of episodes for all these changes; 1.5 times as many if one change gains much
+# number of seeds on which a correction of a reading is tried: two, because one seed may be hard in any world
+SEEDS = 2
+HALF = 0.5  # corrections of readings are tried if no constant gains at least this share of the wanted gain
+MOST = 45  # number of episodes for all these changes together; half as many again if one gains much
 
 
 class Early:
     """The structural changes of a search of constants, tried once; `spent` counts their episodes.
 
-    `waiting` is true from the moment a candidate is yielded until the search continues, so it stays true if that
+    `waiting` becomes true when a candidate is yielded, and false when the search continues. So it stays true if that
     candidate is accepted.
     """
 
@@ -57,12 +58,12 @@ class Early:
         self._traces: dict[Candidate, Trace] = {}  # changed program → its recorded mission
         self._signs: Signs | None = None
         self._structures: Structures | None = None
-        # the changes with the clearest symptoms; None until they were tried
+        # the changes with the clearest symptoms; None before they are tried
         self._surest: Structures | None = None
         self._corrected = False  # whether the readings were corrected
 
     def candidates(self, best: float = 0.0) -> Iterator[Candidate]:
-        """Yield confirmed candidates if the search has come to `FROM` episodes, or to `LATER`, otherwise nothing.
+        """Yield confirmed candidates if the search has already run `FROM` (or `LATER`) episodes, else nothing.
 
         `best` is the largest gain of a constant so far.
         """
@@ -87,16 +88,16 @@ class Early:
         return best >= PARTLY * self.order.goal.wanted
 
     def before_extreme(self) -> Iterator[Candidate]:
-        """Yield what is likelier than an extreme change of a constant: corrected readings and scaled commands.
+        """Before an extreme change of a constant, yield likelier changes: corrected readings and scaled commands.
 
-        A sensor that reads wrongly or an actuator that became weaker can also be hidden by a far too large constant,
-        which then fits only some missions.
+        A far too large constant can hide a sensor that reads wrongly or an actuator that became weaker, but it fits
+        only some missions.
         """
         yield from self.corrected()
         yield from self._surely(symptoms=False)
 
     def _surely(self, symptoms: bool) -> Iterator[Candidate]:
-        """Yield factors on published fields and, with `symptoms`, the changes with the clearest symptoms, once."""
+        """Once, yield factors on published fields; if `symptoms` is true, also yield changes with clear symptoms."""
         if self._surest is None:
             self._surest = Structures(self.order, self.guards, self.trials, signs=self.signs(self.trials))
             yield from self._counted(self._surest.surest(FEW, symptoms=symptoms))
@@ -146,7 +147,7 @@ class Early:
         return hints(self.order, self._pairs(self.trials), operands)
 
     def reached(self, mutants: Mutants, candidate: Candidate) -> Sequence[Limit]:
-        """Return the limits that only the drifted missions reach, with the change of a candidate if it has any.
+        """Return the limits that only drifted missions reach when a candidate's change is applied.
 
         A changed mission is recorded with the seed of the first pair and charged.
         """
@@ -158,9 +159,9 @@ class Early:
         return reached_limits(order, [(designed, trace)], drifted) if trace is not None else []
 
     def entered(self, mutants: Mutants, candidate: Candidate) -> Sequence[Operand]:
-        """Return the constants of the statements that a candidate lets a drifted mission enter.
+        """Return the constants of the statements that a drifted mission enters only with a candidate's change.
 
-        Return none without recorded pairs. A changed mission that was not recorded yet is charged.
+        Return none if no pairs are recorded. A changed mission is charged when it is recorded.
         """
         pairs = self._pairs(self.trials)
         trace = self._changed(mutants, candidate) if pairs else None
@@ -185,7 +186,7 @@ class Early:
         return self._recorded
 
     def effects(self) -> Mapping[str, Sequence[OperandEffect]]:
-        """Return the gains of the best values of each template, for each site."""
+        """For each site, return the gain of each template's best values."""
         found: dict[str, list[OperandEffect]] = {}
         for structures in (self._surest, self._structures):
             for site, effects in structures.effects().items() if structures is not None else ():

@@ -1,13 +1,13 @@
-"""If few missions fail, find more seeds whose missions fail, and their rewards in the designed world.
+"""If only few missions fail, find more seeds with failing missions, and the designed reward of these seeds.
 
-When few missions fail, they have something in common, such as a person on the road, which makes them harder in the
-designed world, too. A repair cannot be expected to reach the recorded mean on such a selection. Each mission is
-therefore compared with the designed mission of the same seed. Acceptance draws fresh seeds, so the selection does not
-bias its test.
+If only few missions fail, they often have something in common, such as a person on the road. This makes them harder in
+the designed world, too, so no repair can be expected to reach the recorded mean on them. Each mission is therefore
+compared with the designed mission of the same seed. The acceptance test draws fresh seeds, so this selection does not
+bias it.
 
-On a few of these missions, a repair may earn even less than the designed mission of the same seed. Example: a rover
-that skips its longest round in the frost loses a fifth of the reward in one mission of eight, but only 2.5 % on
-average.
+On a few of these missions, a repair may earn even less than the designed mission of the same seed. For example, a rover
+that skips its longest round in the frost loses a fifth of the reward in one of eight missions. The average loss is only
+2.5 %.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.searching.confirming import CONFIRMATIONS
 from pytest_tarl.searching.search import BudgetSpentError, Goal, Pair, Trials
 
-ENOUGH = 1 + CONFIRMATIONS  # number of seeds with a loss that a search needs
+ENOUGH = 1 + CONFIRMATIONS  # a search needs this number of seeds with a loss
 LOOKED_AT = 12  # maximum number of recorded missions that are run under the drift to find seeds with a loss
 SELECTED = 0.5  # if at least this share of the episodes fails, the failing episodes represent all episodes
-SHARE = 0.6  # share of the margin that the selected missions may use up
-HALF = 0.5  # a repaired mission may still have at most this share of its loss
-CONTROLS = 2  # number of episodes without a loss under the drift; a candidate must not lose reward in them
+SHARE = 0.6  # the selected missions may use up this share of the margin
+HALF = 0.5  # a repaired mission may keep at most this share of its loss
+CONTROLS = 2  # number of drifted episodes without a loss in which a candidate must not lose reward
 
 
 def enriched(mutants: Mutants, trials: Trials) -> Goal:
-    """Return the goal with enough failing seeds, and for each seed the reward in the designed world.
+    """Return the goal, extended by failing seeds and by the designed reward of each seed.
 
     The episodes are charged to the budget. If the budget does not suffice, the goal is returned unchanged. If most
     drifted episodes lose reward, no episode is run and the goal is returned unchanged, too.
@@ -76,11 +76,11 @@ def _run(mutants: Mutants, trials: Trials, seed: int, drift: str | None) -> floa
 
 
 def _likely(recorded: Sample, online: Sample, lost: set[int]) -> Iterator[tuple[int, float]]:
-    """Yield seeds and totals of recorded missions that are likely to lose reward under the drift, most likely first.
+    """Yield (seed, total) of the recorded missions that are likely to lose reward under the drift, likeliest first.
 
-    Each bin of a sensor has a score: its share of visits among the drifted episodes with a loss, minus that among those
-    without a loss. A mission's score is the score of its best bin. Bins of single sensors are scored instead of cells,
-    because one sensor may suffice to detect the drift.
+    Each bin of a sensor has a score: the share of drifted episodes with a loss that visit the bin, minus the same share
+    of the episodes without a loss. The score of a mission is the highest score of the bins that it visits. Bins of
+    single sensors are scored instead of cells, because one sensor may suffice to detect the drift.
     """
     bins = {place for sample in (recorded, online) for cell in sample.cells for place in enumerate(cell)}
     order = {place: at for at, place in enumerate(sorted(bins))}

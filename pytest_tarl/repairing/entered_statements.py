@@ -1,8 +1,8 @@
-"""Statements that a mission reaches only with a change: the mission then gets further than the unrepaired one.
+"""Find the statements that a mission reaches only with a change, which shows that it gets further.
 
-A climber whose flippers are too low never leaves the floor. With higher flippers it climbs a step, slides down again
-and earns less than before. The reward shows no progress, but the mission runs statements that only the designed
-mission ran so far. What stops it now is among their constants.
+For example, a climbing robot with too low flippers never leaves the floor. With higher flippers, it climbs a step,
+slides down again and earns less than before. The reward shows no progress, but the mission now runs statements that so
+far only the designed mission ran. One of the constants of these statements is what stops the mission now.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from tarl_lint.model import Operand
 
 
 def entered(order: Order, pairs: Sequence[Recorded], changed: Trace) -> list[Operand]:
-    """Return the constants of the statements that a change lets a mission enter, in the order in which it runs them.
+    """Return the constants of the statements that a mission enters only with a change, in the order of execution.
 
-    Designed missions run these statements, and drifted missions without the change do not. `pairs` are the recorded
-    missions without the change; some have the seed of the changed mission.
+    Designed missions run these statements, but drifted missions without the change do not. `changed` is the mission
+    with the change. `pairs` are recorded missions without the change, among them some with the same seed.
     """
     designed = {number for one, _ in pairs for number in np.unique(one.site).tolist()}
     drifted = {number for _, one in pairs for number in np.unique(one.site).tolist()}

@@ -21,12 +21,13 @@ CHANGES = 8  # maximum number of changes, each a template at an expression
 def evident(
     order: Order, known: Sequence[Template], among: Sequence[Spot], signs: Signs, least: float = STRONG
 ) -> Iterator[tuple[Operand, Form]]:
-    """Yield the operands of the `CHANGES` with the strongest symptoms, the strongest first.
+    """Yield the operands of at most `CHANGES` changes with the strongest symptoms, strongest first.
 
-    Equal strengths are ordered by the cost of the template. Each template has `PLACES`. If the value is wrong where it
-    is received, the places next to the subscription come first; otherwise, the places next to the publish call come
-    first. The arguments of the publish call come last, since a named value reads better. What shows a symptom along two
-    axes is changed for both. Symptoms weaker than `least` are left out.
+    Equally strong symptoms are ordered by the cost of the template. Each template is tried at up to `PLACES`
+    expressions. If a value is already wrong where it is received, expressions next to the subscription come first;
+    otherwise, expressions next to the publish call come first. Arguments of the publish call come last, because a
+    change of a named value is easier to read. If a symptom shows along two axes, both are changed. Symptoms weaker than
+    `least` are left out.
     """
     before = _before_sending(order)
     found: list[tuple[float, int, list[tuple[Operand, Form]]]] = []
@@ -63,7 +64,7 @@ def _strength(spot: Spot, template: Template, signs: Signs, before: Mapping[Site
 
 
 def _before_sending(order: Order) -> dict[SiteId, list[str]]:
-    """Return the statements whose values a publish call receives; the recording has no values of the call itself."""
+    """Map each publish call to the statements that compute its values: the call itself has no recorded value."""
     found: dict[SiteId, list[str]] = {}
     for flow in order.analysis.flows:
         if len(flow.steps) > 1:

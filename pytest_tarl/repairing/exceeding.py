@@ -1,4 +1,4 @@
-"""Repairs that earn more than the software did as designed, and so change more than the drift did."""
+"""Note repairs that earn more than the designed program: they change more than the drift did."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ CONFIDENCE = 0.95
 
 
 def exceeding(comparison: Comparison, totals: Mapping[str, Sequence[float]]) -> list[str]:
-    """Return a note if an accepted repair earns more than the designed reward, by more than the tolerance.
+    """Return a note if an accepted repair earns clearly more (by more than the tolerance) than designed.
 
     Such a repair often uses something that the reward does not punish, such as a higher speed. `totals` holds the
-    rewards by episode of `offline`, `repaired` and `nominal_repaired`.
+    rewards of all episodes under the keys `offline`, `repaired` and `nominal_repaired`.
     """
     designed = totals["offline"]
     places = {

@@ -1,11 +1,11 @@
-"""Parameters that nodes read under names that the analysis does not know, changed in the file that sets them.
+"""Change parameters in the file that sets them, if the analysis does not know their names in the program.
 
-In `config[mean]`, `get_param(f"~{axis}_gain")` or a loop over names, one expression reads several parameters. In
-`[get_param("~x", 0.0), get_param("~y", 0.0)]`, the node may store the parameters where the analysis cannot follow them.
-The episodes of the comparison tell the names and values of the parameters that were read. The number of such a
-parameter in a YAML, launch or `.cfg` file is then a constant of the search by itself, and is always changed there. So
-is the default of a parameter that no file sets, if the analysis loses its value, as in `min(get_param("~cutoff", 10),
-rate / 2)`.
+In `config[mean]`, in `get_param(f"~{axis}_gain")` or in a loop over names, one expression reads several parameters.
+With `[get_param("~x", 0.0), get_param("~y", 0.0)]`, the node may store the parameters where the analysis cannot follow
+them. The episodes of the comparison show the names and values of the parameters that were read. If a YAML, launch or
+`.cfg` file sets such a parameter, the number in the file is searched as a constant of its own and always changed in the
+file. If no file sets the parameter and the analysis loses its value, as in `min(get_param("~cutoff", 10), rate / 2)`,
+the default in the program is searched in the same way.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ from tarl_lint.api import Analysis
 from tarl_lint.model import Operand, SiteId, Span
 
 MOST = 16  # maximum number of parameters to search in this way
-MOST_PLACES = 2  # maximum number of places to search for one parameter, if several files of a kind may set it
-NAMED = 2  # minimum number of keys of a number in a file that names its node
+MOST_PLACES = 2  # maximum number of places that are searched for one parameter if several files may set it
+NAMED = 2  # a number in a file belongs to a named node if at least this number of keys stand above it
 USE = "use"  # value of --tarl-edit with which only uses are changed
 
 Number = bool | int | float
 
 
 def file_parameters(order: Order, operands: Sequence[Operand]) -> list[ParameterInFile]:
-    """Return the parameters whose uses are no operands by themselves, those that a flow names first."""
+    """Return the parameters that no operand stands for by itself. Those that a data flow names come first."""
     analysis = order.analysis
     calls = {key: one for one in operands if (key := _key_of_call(analysis, one))}
     known = {key for one in operands if one not in calls.values() for key in _keys(analysis, one)}
@@ -61,7 +61,7 @@ def file_parameters(order: Order, operands: Sequence[Operand]) -> list[Parameter
 
 
 def _values(order: Order, operands: Sequence[Operand]) -> Iterator[tuple[str, Place, float]]:
-    """Yield the keys of parameters with their numbers: in files, and the defaults of those that nothing else sets.
+    """Yield the keys of parameters with their numbers in files, or with their defaults if nothing else sets them.
 
     The last element is the usual size of such a parameter if its value is 0. The default of a parameter that is an
     operand is left out.
@@ -81,7 +81,7 @@ def _values(order: Order, operands: Sequence[Operand]) -> Iterator[tuple[str, Pl
 
 
 def _defaults(analysis: Analysis, path: str) -> Iterator[tuple[str, Place, set[Span]]]:
-    """Yield the parameters that a file reads with a number as default, and the spans of the number and of the call."""
+    """Yield the parameters that a file reads with a literal default, each with the spans of default and call."""
     try:
         source = analysed_document(analysis, path)
     except RepairError:
@@ -109,10 +109,11 @@ def files_of_packages(order: Order) -> dict[str, str]:
 
 
 def places_in_force(name: str, value: Number, texts: Mapping[str, str]) -> list[Place]:
-    """Return the numbers in files that may be the value which a node read for a parameter, by its absolute name.
+    """Return the numbers in files that may have set a parameter, given its absolute name and its value.
 
-    A value in a YAML file whose keys name the node comes before all others, and the default in a `.cfg` file is in
-    force only if no other file sets the parameter. Only places of the best kind are returned.
+    There are three kinds. A value in a YAML file whose keys name the node is the best, and a default in a `.cfg` file
+    is the worst, because it is in force only if no other file sets the parameter. Only places of the best kind found
+    are returned.
     """
     ranked: dict[int, list[Place]] = {}
     for place in configured(name, texts):
@@ -160,10 +161,11 @@ def _use(
     calls: Mapping[str, Operand],
     named: Mapping[str, tuple[SiteId, Span]],
 ) -> tuple[SiteId, Span] | None:
-    """Return the statement and expression that most likely use a parameter; None if the program has no flow.
+    """Return the statement and the expression that most likely use a parameter, or None if the program has no flow.
 
-    This is the call that reads it; an expression without a known parameter in a function that contains the key; an
-    expression of a flow that is named like the parameter; or else any expression without a known parameter, or any.
+    The first of these that exists is returned: the call that reads the parameter; an expression without a known
+    parameter, in a function that contains the key; an expression in a flow with the parameter's name; any expression
+    without a known parameter; any expression.
     """
     if key in calls:
         return calls[key].site, calls[key].span
@@ -212,7 +214,7 @@ def _node(analysis: Analysis, operand: Operand) -> ast.expr | None:
 
 
 def _usual_size(key: str, read: Mapping[str, Number]) -> float:
-    """Return the usual size of a parameter that is 0: that of parameters whose names begin alike, else of none."""
+    """Return the usual size of a parameter that is 0, taken from parameters whose names begin in the same way."""
     first = re.split(r"[_.]", key)[0]
     alike = [
         abs(value)

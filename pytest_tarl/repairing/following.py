@@ -1,9 +1,9 @@
-"""Let a constant follow a sensor, if one value of it is right in some missions and another value in others.
+"""Let a constant follow a sensor if it needs different values in different missions.
 
-A robot that drives faster has to look further ahead, but how far depends on its speed. A single value found for all
-fast missions fits only those of about their mean speed. Where the sensor has its designed value, the constant is known
-to be right; where it has the mean value of the drifted missions, the value found is about right. A power law leads
-through both points. Beyond the designed value, on the other side of it, the constant stays as it is, because the
+For example, a robot that drives faster has to look further ahead, but how far depends on its speed. A single look-ahead
+for all fast missions fits only missions of about their mean speed. Two points are known: the old constant is right at
+the sensor's designed value, and the value found is about right at the sensor's mean value in the drifted missions. A
+power law leads through both points. On the other side of the designed value, the constant keeps its old value, because
 designed missions go there, too.
 """
 
@@ -27,7 +27,7 @@ from tarl_lint.model import Operand
 
 ABOVE, BELOW, FOLLOWS = "above", "below", "follows"
 APART = 1.25  # minimum ratio of a sensor's usual values in the two worlds
-# smallest and largest exponent; with smaller ones, the sensor hardly matters, and larger ones are needed only if the
+# smallest and largest exponent: with a smaller one, the sensor hardly matters; a larger one is needed only if the
 # sensor changes too little
 LEAST, MOST = 0.2, 4.0
 SENSORS, VARIABLES = 2, 1  # maximum number of sensors and of variables that are tried
@@ -36,9 +36,10 @@ SENSORS, VARIABLES = 2, 1  # maximum number of sensors and of variables that are
 def following(order: Order, candidate: Candidate) -> Iterator[Candidate]:
     """Yield unconditional candidates that scale the changed constant by a power of a sensor or a variable.
 
-    The sensors of the candidate's condition come first, then the other sensors, then the variables that the node has
-    where it uses the constant: a speed need not be declared as a sensor. Their usual values must differ clearly between
-    the worlds. The candidate must change one constant by a positive factor, at one or all of its uses.
+    The sensors of the candidate's condition come first, then the other sensors. Variables that the node has where it
+    uses the constant come last: for example, a speed may not be declared as a sensor. The usual values of the sensor or
+    variable must differ clearly between the worlds. The candidate must change one constant by a positive factor, at one
+    or all of its uses.
     """
     factors = {factor(one) for one in candidate.mutations}
     by = factors.pop() if len(factors) == 1 else None
@@ -66,10 +67,11 @@ def following(order: Order, candidate: Candidate) -> Iterator[Candidate]:
 
 
 def proportional(order: Order, used: Sequence[Operand]) -> Iterator[Candidate]:
-    """Yield unconditional candidates in which a constant is proportional to a quantity that varies more than designed.
+    """Yield unconditional candidates in which a constant is proportional to a quantity that varies too much.
 
-    Such quantities are sensors that visit clearly more bins and, if there are any such sensors, the most suspect
-    variable at the uses of the constant. Where the quantity has its designed value, the constant keeps its own.
+    Such quantities are the sensors that visit clearly more bins than in the designed world. If there are such sensors,
+    the most suspect variable at the uses of the constant is tried, too. At the designed value of the quantity, the
+    constant keeps its value.
     """
     plain = all(not isinstance(one.value, bool) and one.value != 0 for one in used)
     template = next((one for one in templates(order.root) if one.name == FOLLOWS), None)
@@ -91,7 +93,7 @@ def _candidate(used: Sequence[Operand], form: Form) -> Candidate:
 
 
 def _usable(order: Order) -> list[Sensor]:
-    """Return the sensors that a power can be taken of."""
+    """Return the sensors whose values can be raised to a power."""
     numeric = [one for one in order.comparison.sensors if continuous(one)]
     return [one for one in numeric if one.low is not None and one.low >= 0.0]
 
@@ -108,9 +110,9 @@ def _form(order: Order, sensor: Sensor, by: float, known: Mapping[str, Template]
 
 
 def _law(form: Form, designed: float, drifted: float, by: float) -> Form | None:
-    """Return a form with the power that multiplies a constant by `by`, or None if that power means little.
+    """Return a form whose power of a quantity multiplies a constant by `by`, or None if there is no suitable power.
 
-    `designed` and `drifted` are the usual values of what the constant follows.
+    `designed` and `drifted` are the usual values of the quantity in the two worlds.
     """
     ratio = drifted / designed
     rises = form.template.name == ABOVE
@@ -123,6 +125,6 @@ def _law(form: Form, designed: float, drifted: float, by: float) -> Form | None:
 
 
 def _with_power(form: Form, power: float, designed: float) -> Form:
-    """Return a form whose power is searched, with this start value and the designed value of what is followed."""
+    """Return a form whose exponent is searched, starting at `power`; `designed` is the quantity's designed value."""
     defaults = (("power", float(f"{power:.2g}")), ("usual", float(f"{designed:.3g}")))
     return replace(form, parameter="power", defaults=defaults)

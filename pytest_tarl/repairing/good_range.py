@@ -20,20 +20,23 @@ from pytest_tarl.searching.accept import Outcome, Reference
 from pytest_tarl.searching.search import LACKS, Candidate, Goal, Mutate, Trials
 from tarl_lint.model import Operand
 
-# a value is moved if it lies in this share of the range at either end, unless its ratio to the end is at least `CLEAR`
+# a value is moved if it lies in the outer part of the range (this share at each end) and its ratio to the end is less
+# than `CLEAR`
 OUTER = 0.25
-CLEAR = 1.4  # minimum ratio of a value to an end of the range for the value to be far enough from this end
-MIDDLE = 0.45  # share of the range, from its end nearer to the old value, to which a value is moved
-# maximum ratio of the new value to the nearer end; larger changes are less likely to suit other missions
+CLEAR = 1.4  # a value is far enough from an end of the range if their ratio is at least this
+# a value is moved to this share of the range, counted from the end that is nearer to the old value
+MIDDLE = 0.45
+# maximum ratio of the new value to the end nearer to the old value; larger changes are less likely to suit other
+# missions
 FAR = 2.0
 ROUNDING = 0.1  # share of the range by which the new value may be rounded
 PROBES = 3  # maximum number of missions that show where the range ends
 SEEDS = 5  # number of known seeds on which the new value must pass
 COSTS = 0.1  # maximum reward that the new value may lose, as a share of the margin
-# if no value was tried beyond a value, the first value tried there differs by at least this ratio
+# if no value was tried beyond a value, the first value that is tried there has at least this ratio to it
 FARTHER = 1.3
-OPEN = 1.32  # minimum ratio of both ends of a range of which one end is unknown
-NARROW = 1.1  # minimum ratio of both ends of a range in which a value is moved
+OPEN = 1.32  # minimum ratio between the ends of a range if one end is unknown
+NARROW = 1.1  # a value is moved only if the ratio between the ends of the range is at least this
 
 
 @dataclass
@@ -44,7 +47,7 @@ class GoodRange:
     _seen: set[frozenset[Operand]] = field(default_factory=set)
 
     def amid(self, candidate: Candidate, trials: Trials, goal: Goal, reference: Reference) -> Candidate:
-        """Return the candidate with a value in the middle of the good ones, or unchanged. Raise BudgetSpentError."""
+        """Return the candidate, if possible with a value in the middle of the good range. Raise BudgetSpentError."""
         by = common_factor(candidate)
         if by is None or by == 1.0 or operands(candidate) in self._seen:
             return candidate
@@ -58,8 +61,8 @@ class GoodRange:
 class _Ends:
     """The ends of the range around a candidate's value, as |log(factor)|; `by` is the candidate's factor.
 
-    `inner` and `outer` are the nearest values known to be bad on both sides; the old value is bad. `nearest` and
-    `farthest` are the outermost values between them that are known to be good.
+    `inner` and `outer` are the nearest values on both sides that are known to be bad; the old value counts as bad.
+    `nearest` and `farthest` are the outermost values between these two that are known to be good.
     """
 
     def __init__(self, candidate: Candidate, by: float, trials: Trials, goal: Goal, mutate: Mutate) -> None:
@@ -77,7 +80,7 @@ class _Ends:
         self.nearest, self.farthest = min(between, default=self.place), max(between, default=self.place)
 
     def _known(self) -> Iterator[tuple[float, bool]]:
-        """Yield the values of the same constants that ran, and whether none of their missions fell short."""
+        """Yield the values of the same constants that ran, and whether all of their missions earned enough."""
         for other, outcomes in self.trials.alike(self.candidate).items():
             by = common_factor(other)
             if by is None or log(by) * self.sign <= 0.0:
@@ -98,11 +101,11 @@ class _Ends:
         return self.inner + margin <= self.place <= self.outer - margin
 
     def probe(self) -> None:
-        """Run values beyond the good ones while the range might be so wide that the value lies at its end."""
+        """Run values beyond the good ones to find the ends of the range, as long as the value might lie at an end."""
         if self.outer == inf:
             beyond = self.farthest + max((self.farthest - self.inner) / 2, log(FARTHER))
             if self._try(beyond):
-                # this end is not known: assume an end with which the value lies in the middle of the range
+                # this end is not known: assume an end for which the value lies in the middle of the range
                 self.outer = max(2.0 * self.place - self.inner, self.inner + log(OPEN))
                 self.farthest = min(self.farthest, self.outer)
         for _ in range(PROBES - 1):
@@ -115,7 +118,7 @@ class _Ends:
             self._try((low + high) / 2)
 
     def _try(self, at: float) -> bool:
-        """Run a value on the seed on which most candidates fell short, and store whether it is good."""
+        """Run a value on the seed on which most candidates earned too little, and store whether the value is good."""
         candidate, pairs = self._at(at), self.goal.pairs
         worst = max(pairs, key=lambda pair: self.trials.misses[pair.seed])
         try:
@@ -131,7 +134,7 @@ class _Ends:
         return good
 
     def inside(self) -> Iterator[Candidate]:
-        """Yield a value in the middle and one halfway to it, if the candidate's own value is at an end of the range."""
+        """If the value is at an end of the range, yield a value in the middle, then one halfway to the middle."""
         width = self.outer - self.inner
         if self.within or width == inf or width < log(NARROW):
             return
@@ -154,7 +157,7 @@ class _Ends:
 
 
 def rounded(value: float, tolerance: float) -> float:
-    """Return a value with as few digits as possible that differs by a ratio of at most exp(`tolerance`)."""
+    """Round a value to as few digits as possible; it may change by a ratio of at most exp(`tolerance`)."""
     for digits in range(1, 4):
         short = float(f"{value:.{digits}g}")
         if abs(log(short / value)) <= tolerance:

@@ -16,8 +16,8 @@ from pytest_tarl.searching.accept import Outcome
 def guaranteed(mutants: Mutants, accepted: Accepted) -> tuple[Mapping[str, Guarantee], int]:
     """Return bounds for the drifted and the designed world, and the number of episodes run.
 
-    If the repair changes nothing in the designed world, the bounds of the recording apply there. If the drift is
-    permanent, the designed world has no bounds.
+    If the repair changes nothing in the designed world, the bounds from the recording apply there. If the drift is
+    permanent, there are no bounds for the designed world.
     """
     order = mutants.order
     count = order.options.episodes or order.options.ONLINE_EPISODES

@@ -41,14 +41,14 @@ class Watch:
         return Refused(self.best, refused.reason, fmean(totals), len(totals))
 
     def unconfirmed(self, tried: Iterable[Tried]) -> list[Tried]:
-        """Return, in order, the candidates that nearly reached the goal once, but not on all further seeds."""
+        """Return, in order, the candidates that nearly reached the goal on one seed, but not on all further seeds."""
         examined = {one.candidate.changes for one in tried}
         dropped = []
         for candidate, runs in self.seen.items():
             first = next(iter(runs))
             near = self.order.goal.reached(runs[first], first) and len(runs) > LEAST
             if near and all(self.order.goal.reached(run, seed) for seed, run in runs.items()):
-                continue  # confirmed, but another candidate was preferred to it
+                continue  # this candidate was confirmed, but another one was preferred to it
             if near and candidate.changes not in examined:
                 totals = tuple(run.total for run in runs.values())
                 dropped.append(Tried(candidate, "not confirmed", totals, fresh=False))

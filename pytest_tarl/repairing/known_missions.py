@@ -49,16 +49,17 @@ def harmed(mutants: Mutants, candidate: Candidate, trials: Trials, missed: Misse
 
 
 def lost_as_designed(mutants: Mutants, candidate: Candidate, missed: Missed) -> float:
-    """Return the mean loss of a candidate in the recorded missions that it ran, or 0 if it ran none."""
+    """Return the mean loss of a candidate in those recorded missions that it has run, or 0 if it has run none."""
     recorded = _recorded(mutants.order)
     lost = [recorded[seed] - total for (one, seed), total in missed.designed.items() if one == candidate]
     return fmean(lost) if lost else 0.0
 
 
 def harms_again(mutants: Mutants, candidate: Candidate, trials: Trials, missed: Missed) -> bool:
-    """Return whether a candidate makes the same recorded mission worse as the same constants did before.
+    """Return whether a candidate harms a recorded mission that an earlier change of the same constants harmed.
 
-    One mission then shows that another value or condition is as harmful. Raise BudgetSpentError and RepairError.
+    This one mission then shows that the new value or condition is as harmful as the earlier one. Raise BudgetSpentError
+    and RepairError.
     """
     seed = missed.harmed.get(operands(candidate))
     if seed is None or seed not in firing(mutants.order, candidate):
@@ -67,7 +68,7 @@ def harms_again(mutants: Mutants, candidate: Candidate, trials: Trials, missed: 
 
 
 def _harms(mutants: Mutants, candidate: Candidate, seed: int, trials: Trials, missed: Missed) -> bool:
-    """Return whether a candidate earns clearly less in a recorded mission, which runs and is charged once."""
+    """Return whether a candidate earns clearly less in a recorded mission. The mission runs and is charged once."""
     order = mutants.order
     if (candidate, seed) not in missed.designed:
         trials.charge()

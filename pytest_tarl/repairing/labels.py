@@ -1,11 +1,11 @@
-"""Labels: constants that are not quantities, so that no search moves them.
+"""Labels: constants that are not quantities. No search changes them.
 
 A factor on a member of an enumeration raises an error. A factor on `self.done` in `if not self.done` changes nothing.
-Other constants follow from notation and were not chosen by the author: the exponents in `(x**2 + y**2) ** 0.5` are
-geometry, and so is the `1` in `array([x, y, z, 1])`, the last of homogeneous coordinates; the `1e-9` in
+Some constants follow from notation and were not chosen by the author. The exponents in `(x**2 + y**2) ** 0.5` are
+geometry, and so is the `1` in `array([x, y, z, 1])`, the last of four homogeneous coordinates. The `1e-9` in
 `stamp.nanosec * 1e-9` converts a unit (see `unit_factors`), and the `1.0` in `1.0 - alpha` is the sum of two shares.
-Others are needed by ROS only (see `bookkeeping`). Booleans and zeros are not labels, because a search can change them
-from false to true.
+Other constants are needed only by ROS (see `bookkeeping`). Booleans and zeros are not labels, because a search can
+switch booleans and add to zeros.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def quantities(analysis: Analysis, operands: Iterable[Operand]) -> list[Operand]
 
 
 def is_member(source: Document, node: ast.expr, texts: Iterable[str]) -> bool:
-    """Return whether an expression is an enumeration member, is compared with one, or is compared by `is`.
+    """Return whether an expression is an enumeration member or is compared with one (or with anything by `is`).
 
     `texts` are the modules in which enumerations may be defined.
     """

@@ -11,8 +11,9 @@ from pytest_tarl.patching.mutate import Mutation, step_of
 from pytest_tarl.searching.search import Candidate
 from tarl_lint.model import Operand
 
-ALIKE = 0.05  # values of the same operands and guard count as equal up to this relative difference
-# reasons for refusing candidates that passed in the drifted world (first) or in both worlds (second)
+# under the same guard, values of the same operands count as equal up to this relative difference
+ALIKE = 0.05
+# reasons for refusing a candidate after it passed in the drifted world (first reason) or in both worlds (second reason)
 HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")
 
 
@@ -32,7 +33,7 @@ class Tried:
 
 @dataclass(frozen=True)
 class Refused:
-    """A refused candidate and the reason; `mean` is its mean reward on fresh seeds, or -inf if it ran on none."""
+    """A refused candidate and the reason; `mean` is its mean reward on fresh seeds, or -inf without such seeds."""
 
     candidate: Candidate | None
     reason: Reason
@@ -56,7 +57,7 @@ class Ledger:
         return next((one for one in self.tried if alike(one.candidate, candidate)), None)
 
     def examined(self, candidate: Candidate) -> bool:
-        """Return whether exactly these values were examined under this guard, at any place in the source."""
+        """Return whether a candidate's exact values were examined under its guard, at any place in the source."""
         return any(
             one.candidate.guard == candidate.guard and one.candidate.changes == candidate.changes
             for one in self.tried
@@ -74,7 +75,7 @@ def operands(candidate: Candidate) -> frozenset[Operand]:
 
 
 def alike(one: Candidate, other: Candidate) -> bool:
-    """Return whether two candidates have equal operands and guards, and values (or steps on a chart) within 5 %."""
+    """Return whether two candidates have equal operands and guards and nearly equal values (or steps on a chart)."""
     if one.guard != other.guard or operands(one) != operands(other):
         return False
     values = {mutation.operand: mutation for mutation in other.mutations}
@@ -99,7 +100,7 @@ def of_fresh_seeds(tried: Sequence[Tried]) -> int:
 
 
 def furthest(one: Refused, other: Refused) -> Refused:
-    """Return the candidate that passed in more worlds; on ties, the one with the higher reward on fresh seeds."""
+    """Return the candidate that passed in more worlds. On ties, return the one that earned more on fresh seeds."""
 
     def came(refused: Refused) -> tuple[bool, int, float]:
         held = HELD.index(refused.reason) + 1 if refused.reason in HELD else 0

@@ -1,8 +1,9 @@
-"""Steps that recorded missions suggest: values of the node differ between both worlds by a factor or by an offset.
+"""Steps that recorded missions suggest, because a value in the node differs between the worlds by a factor or offset.
 
-If electrodes deliver 45 % of the signal, the threshold with which the signal is compared must be 45 % as large. If a
-sensor reads 14 too high, the set point from which its value is subtracted must be 14 higher. Such steps have the unit
-and the size of the error, which fixed factors hit by chance only. Recorded missions with common seeds show these steps.
+For example, if electrodes deliver 45 % of their signal, the threshold for the signal must be 45 % as large. If a sensor
+reads 14 too high, a set point that is compared with the reading must be 14 higher. Such steps have the unit and the
+size of the error, which fixed factors match only by chance. Recorded missions with the same seed in both worlds show
+these steps.
 """
 
 from __future__ import annotations
@@ -27,19 +28,19 @@ from pytest_tarl.symptoms.series import Pair
 from tarl_lint.model import Operand
 
 MOST = 6  # maximum number of hints
-# maximum number of hints for thresholds that separate other values than in the designed missions
+# maximum number of hints for thresholds that no longer separate the values as in the designed missions
 SEPARATED = 3
 LEAST = 0.05  # minimum change of a value, as a logarithm or as a share of its designed size
-AGREE = 0.25  # maximum difference between mission pairs, as a share of the change
+AGREE = 0.25  # maximum difference between the changes of the mission pairs, as a share of the change
 ALIKE = 0.05  # maximum difference between the logarithms of two factors that count as equal
 SIZES = ("abs", "math.fabs", "fabs", "np.abs", "numpy.abs")  # functions that return the size of a value
 NUMBER = "data"  # the field of a message that holds a single number
-LARGEST = 20.0  # hints have a factor of at most this, and at least its inverse
+LARGEST = 20.0  # maximum factor of a hint; the minimum is the inverse
 
 
 @dataclass(frozen=True)
 class Change:
-    """How a value differs in the drifted world: by a factor and by a difference, each None unless the pairs agree."""
+    """How a value differs in the drifted world: by a factor and by a difference (None if the pairs disagree)."""
 
     ratio: float | None
     difference: float | None
@@ -48,11 +49,11 @@ class Change:
 def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand]) -> list[Hint]:
     """Return the changes of named constants that the recorded mission pairs suggest, the most certain ones first.
 
-    A constant that is compared with a value, added to it or subtracted from it has the unit of this value, so the
-    constant must change as the value did. Constants next to values with the same factor first change together, then one
-    by one, then by the difference. A constant that multiplies or divides a value changes by the factor of the result,
-    in either direction. A threshold that only designed missions cross moves to where the drifted ones cross it, even if
-    it is a literal.
+    A constant that is compared with a value, added to it or subtracted from it has the unit of this value. The constant
+    must therefore change as the value did. If values changed by the same factor, the constants beside them first change
+    together by this factor, then one by one, then by the difference. A constant that multiplies or divides a value
+    changes by the factor of the result and by its inverse. A threshold that only designed missions cross moves to where
+    drifted missions cross it, even if it is a literal.
     """
     changes = _changes(order, recorded)
     values = _values(order, recorded)
@@ -84,7 +85,7 @@ def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand
 def _reaching(
     order: Order, values: Mapping[str, Sequence[tuple[Floats, Floats]]], operands: Sequence[Operand]
 ) -> Iterator[tuple[Operand, float]]:
-    """Yield the thresholds that only designed missions cross, each with the factor that lets drifted ones cross it."""
+    """Yield the thresholds that only designed missions cross, with a factor that lets drifted missions cross them."""
     for operand in dict.fromkeys(operands):
         value, found = _number(operand), _place(order, operand)
         if not value or found is None:
@@ -96,7 +97,7 @@ def _reaching(
 
 
 def _first_uses(operands: Sequence[Operand]) -> Iterator[Operand]:
-    """Yield the named constants; of the uses of one constant in one statement, only the first."""
+    """Yield the named constants. If a statement uses a constant several times, yield only the first use."""
     known: set[object] = set()
     for operand in operands:
         key = (operand.site, operand.code)
@@ -110,7 +111,7 @@ def _sensible(by: float) -> bool:
 
 
 def _together(beside: Sequence[tuple[Operand, float]]) -> Iterator[Hint]:
-    """Yield the constants that change by about the same factor, if there are several."""
+    """If several constants change by about the same factor, yield them together."""
     left = list(beside)
     while left:
         first = left[0]
@@ -121,7 +122,7 @@ def _together(beside: Sequence[tuple[Operand, float]]) -> Iterator[Hint]:
 
 
 def _changes(order: Order, recorded: Sequence[Recorded]) -> dict[str, Change]:
-    """Return, by site id, how the values of each statement differ in the drifted world."""
+    """For each site id, return how the values of the statement differ in the drifted world."""
     found: dict[str, Change] = {}
     for number, place in enumerate(plan(order.analysis).places):
         pairs = [Pair(series(one, number), series(other, number)).together() for one, other in recorded]
@@ -131,7 +132,7 @@ def _changes(order: Order, recorded: Sequence[Recorded]) -> dict[str, Change]:
 
 
 def _values(order: Order, recorded: Sequence[Recorded]) -> dict[str, list[tuple[Floats, Floats]]]:
-    """Return, by site id, the values of each statement in the designed and the drifted mission of each pair."""
+    """For each site id, return the statement's values in the designed and the drifted mission of each pair."""
     found: dict[str, list[tuple[Floats, Floats]]] = {}
     for number, place in enumerate(plan(order.analysis).places):
         pairs = [Pair(series(one, number), series(other, number)) for one, other in recorded]
@@ -142,8 +143,9 @@ def _values(order: Order, recorded: Sequence[Recorded]) -> dict[str, list[tuple[
 def _separating(value: float, compared: Iterable[Sequence[tuple[Floats, Floats]]]) -> Iterator[float]:
     """Yield the factors with which a threshold separates the drifted values as it separated the designed ones.
 
-    For example, a node ignores positions that differ by more than its gate. After a slip of a wheel it ignores all of
-    them, until the gate lies between the slip and the errors that it is meant for.
+    For example, a node ignores positions that differ from its estimate by more than a threshold. After a wheel has
+    slipped, the node ignores all positions. The new threshold must be larger than the slip and smaller than the errors
+    that the node should ignore.
     """
     for pairs in compared:
         grouped = between_groups(value, pairs)
@@ -159,7 +161,7 @@ def _compared(
     source: Document,
     node: ast.expr,
 ) -> Iterator[Sequence[tuple[Floats, Floats]]]:
-    """Yield the values of each pair of missions with which a threshold is compared, for each place that makes them."""
+    """For each statement that makes values with which a threshold is compared, yield these values by mission pair."""
     around = source.parents.get(node)
     if not isinstance(around, ast.Compare) or len(around.ops) != 1:
         return
@@ -182,7 +184,7 @@ def _change(pairs: Sequence[Pair]) -> Change:
 
 
 def _agreed(changes: Sequence[float], least: float) -> float | None:
-    """Return the mean of the pairs' changes if it is at least `least` and the pairs agree, else None."""
+    """Return the mean of the changes, one per pair, if it is at least `least` and the pairs agree, else None."""
     mean = sum(changes) / len(changes)
     spread = max(changes) - min(changes)
     return mean if abs(mean) >= max(least, 1e-12) and spread <= AGREE * abs(mean) else None
@@ -226,7 +228,7 @@ def _beside(
 
 
 def _mirrored(change: Change, around: ast.AST, inner: ast.AST, node: ast.expr) -> Change:
-    """Return the change of the constant: opposite if `-constant` is compared, or if a value is added to it."""
+    """Return the change of the constant. It is opposite if `-constant` is compared or if a value is added to it."""
     opposite = isinstance(inner, ast.UnaryOp) and isinstance(inner.op, ast.USub) and inner.operand is node
     if isinstance(around, ast.BinOp) and isinstance(around.op, ast.Add):
         opposite = not opposite
@@ -235,7 +237,7 @@ def _mirrored(change: Change, around: ast.AST, inner: ast.AST, node: ast.expr) -
 
 
 def _made_at(order: Order, operand: Operand, source: Document, node: ast.expr) -> list[str]:
-    """Return the ids of the sites that assign a name or attribute, in the same function if it is a local name."""
+    """Return the ids of the sites that assign a name or attribute. For a local name, use only the same function."""
     if not isinstance(node, ast.Name | ast.Attribute):
         return []
     code, found = ast.unparse(node), []
@@ -251,7 +253,7 @@ def _made_at(order: Order, operand: Operand, source: Document, node: ast.expr) -
 
 
 def _receiving(order: Order, source: Document, node: ast.expr) -> list[str]:
-    """Return the ID of the callback around `msg.data` if `msg` is the message that it receives."""
+    """Return the site id of the callback around `msg.data` if `msg` is the message that the callback receives."""
     if not isinstance(node, ast.Attribute) or node.attr != NUMBER:
         return []
     function = source.function(node)
@@ -266,7 +268,7 @@ def _receiving(order: Order, source: Document, node: ast.expr) -> list[str]:
 
 
 def _assigned(text: str) -> str:
-    """Return the name or attribute that a statement assigns, or "" if it is none."""
+    """Return the name or attribute that a statement assigns, or "" if it assigns none."""
     try:
         statement = ast.parse(text).body[0]
     except (SyntaxError, IndexError):

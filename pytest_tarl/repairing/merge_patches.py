@@ -42,7 +42,7 @@ def joined(paths: Sequence[Path], cwd: Path) -> Joined:
 
 
 def _as_one(patches: Sequence[Patch]) -> tuple[list[str], list[Path]]:
-    """Return sentences about different patches of the same files, and the patches that are left to apply."""
+    """Merge different patches of the same files; return sentences about them and the patches that are left to apply."""
     paths = [one.path for one in patches]
     if len(patches) < 2:
         return [], paths

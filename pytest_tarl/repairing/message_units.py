@@ -1,7 +1,7 @@
-"""Ratios of units that a message may have, by its quantity; names, type and use of the message suggest the quantity.
+"""Ratios between units that a message may have. Its names, type and use suggest its quantity and thus the units.
 
-A topic `/tank/pressure` may change from bar to psi; nothing explains the same ratio on a topic `/ball`. Parts of ten
-occur with every quantity: millimetres, percent, thousandths.
+For example, a topic `/tank/pressure` may change from bar to psi, but nothing would explain the same ratio on a topic
+`/ball`. Powers of ten occur with every quantity: millimetres, percent, thousandths.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from typing import Final
 
 from tarl_lint.name_words import words
 
-TENS: Final = (10.0, 100.0, 1e3, 1e6)  # parts of any unit
+TENS: Final = (10.0, 100.0, 1e3, 1e6)  # powers of ten by which any unit may be divided
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A quantity: the ratios of its usual units to each other, and the words that suggest it, with spaces between."""
+    """A quantity: the ratios between its usual units, and the words that suggest it, separated by spaces."""
 
     ratios: tuple[float, ...]
     words: str
@@ -55,7 +55,7 @@ QUANTITIES: Final = {
 
 
 def ratios(texts: Iterable[str]) -> tuple[float, ...]:
-    """Return the ratios, and their inverses, of units that a number may have, given its names, type and use."""
+    """Return the ratios between units that a number may have, and their inverses, given its names, type and use."""
     known = {word for text in texts for word in words(text)}
     fitting = [
         each for one in QUANTITIES.values() if not known.isdisjoint(one.words.split()) for each in one.ratios

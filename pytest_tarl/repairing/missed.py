@@ -1,4 +1,4 @@
-"""Missions in which refused candidates lost reward. Later candidates run on them first, before their own test."""
+"""Missions in which refused candidates lost reward. Later candidates run these missions before their own test."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tarl_lint.model import Operand
 
 LATEST = 3
 FEW = 0.25  # a candidate's value counts as nearly right if at most this share of its missions loses reward
-SPREAD = 5  # number of missions of each test that are run
+SPREAD = 5  # number of missions from each earlier test that a later candidate runs
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +30,13 @@ class Lost:
 
 @dataclass
 class Missed:
-    """Seeds on which tested candidates lost reward, each with the total that counts as close to the designed mission.
+    """Seeds on which tested candidates lost reward, with the total reward that counts as close to designed.
 
-    `few` holds these seeds for candidates that lost reward in at most `FEW` of their missions. `poor` holds the
-    candidates that failed hardly any mission but earned too little. For each of these, `spread` holds missions of its
-    test, from the smallest to the largest loss. `costly` holds the candidates that may lose too much in the designed
-    world, and hardly any mission under the drift. `harmed` holds, for the constants of a candidate, a recorded mission
-    that it made worse, and `designed` what candidates earned in recorded missions.
+    `few` holds these seeds for candidates that lost reward in at most the share `FEW` of their missions. `poor` holds
+    the candidates that failed hardly any mission but earned too little. For each candidate in `poor`, `spread` holds
+    missions of its test, from the smallest to the largest loss. `costly` holds the candidates that fail hardly any
+    drifted mission but may lose too much in the designed world. `harmed` maps the constants of a candidate to a
+    recorded mission that the candidate made worse. `designed` holds what candidates earned in recorded missions.
     """
 
     seeds: list[tuple[int, float]] = field(default_factory=list)
@@ -69,11 +69,11 @@ class Missed:
         return [seed for seed, _ in self.seeds[-LATEST:]]
 
     def nearly_right(self, candidate: Candidate) -> bool:
-        """Return whether a refused candidate's missions succeeded, so that its value may only have to be improved."""
+        """Return whether a refused candidate's missions succeeded. A better value may then be all that is needed."""
         return candidate in self.costly or candidate in self.spread
 
     def equate(self, candidate: Candidate, other: Candidate) -> None:
-        """Use the results of a candidate in recorded missions for another one that acts alike."""
+        """Use the results of `candidate` in recorded missions for `other`, which acts alike."""
         for (one, seed), total in list(self.designed.items()):
             if one == candidate:
                 self.designed.setdefault((other, seed), total)
@@ -88,12 +88,12 @@ class Missed:
         return False
 
     def mends(self, candidate: Candidate, refused: Candidate, trials: Trials, goal: Goal) -> bool:
-        """Return whether a candidate loses no reward in the missions in which `refused` did. Raise BudgetSpentError."""
+        """Return whether a candidate loses no reward in missions where `refused` lost some. Raise BudgetSpentError."""
         return not any(_loses(candidate, trials, goal, seed, near) for seed, near in self.few[refused])
 
 
 def _spread(found: Acceptance) -> list[Lost]:
-    """Return missions at equally spaced ranks of the loss, so that their mean loss is close to that of the test."""
+    """Sort the missions by loss and return equally spaced ones, so that their mean loss is close to the test's."""
     rows = zip(found.seeds, found.drifted, found.designed, strict=False)
     ranked = sorted(
         (Lost(seed, outcome.total, total) for seed, outcome, total in rows), key=lambda one: one.loss

@@ -29,10 +29,10 @@ Recorded = tuple[Trace, Trace]  # the designed and the drifted mission of a seed
 
 @dataclass(frozen=True)
 class Signs:
-    """The strength of each symptom by site id, and the sensor cells of each step, by mission pair.
+    """The symptoms of mission pairs: their strength for each site id, and the sensor cells of each step.
 
-    Steps before the first message have no cell. Both missions of a pair have the same number of steps here. `steady`
-    has the ids of the statements whose value never varied within a mission.
+    Steps before the first message have no cell. The longer mission of a pair is cut, so that both have the same number
+    of steps. `steady` has the ids of the statements whose value never varied within a mission.
     """
 
     strengths: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
@@ -45,9 +45,9 @@ class Signs:
         return max((found.get(one, 0.0) for one in symptoms), default=0.0)
 
     def overlap(self, order: Order, sensor: Sensor) -> float:
-        """Return the share of the steps in which a sensor is in the same bins in both worlds; 0 if nothing is known.
+        """Return the share of steps in which a sensor visits the same bins in both worlds; 0 if nothing is known.
 
-        Only steps that both missions of a pair reached count, since a mission that ends early has seen less.
+        Only steps that both missions of a pair reached count, because a mission that ends early visits fewer bins.
         """
         at = [one.name for one in order.comparison.sensors].index(sensor.name)
         counts = [Counter(cell[at] for pair in self.cells for cell in pair[world]) for world in (0, 1)]
@@ -100,7 +100,7 @@ def _strengths(order: Order, recorded: Sequence[Recorded]) -> Iterator[tuple[str
 
 
 def _steady(order: Order, recorded: Sequence[Recorded]) -> Iterator[str]:
-    """Yield the ids of the statements whose value never varied within a mission; each designed mission has a value."""
+    """Yield the ids of statements that have a value in each designed mission but never vary within a mission."""
     for number, place in enumerate(plan(order.analysis).places):
         values = [series(trace, number).values for pair in recorded for trace in pair]
         same = all(one.min() == one.max() for one in values if one.size)
@@ -109,7 +109,7 @@ def _steady(order: Order, recorded: Sequence[Recorded]) -> Iterator[str]:
 
 
 def series(trace: Trace, number: int) -> Series:
-    """Return the values of a statement, given by its number, in a mission."""
+    """Return the values of a statement in a mission; `number` identifies the statement."""
     here = trace.site == number
     return Series(trace.flow[here], trace.event_step[here], trace.reward)
 

@@ -20,7 +20,7 @@ from tarl_lint.model import Operand
 
 ORIGINAL = Candidate((), Guard())  # the unrepaired program
 MOST_KEPT = 128  # maximum number of candidates whose source is cached
-_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")  # a number in the text of a failure
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")  # matches a number in the text of a failure
 
 
 class Mutants:
@@ -33,7 +33,7 @@ class Mutants:
         self._sources: dict[Candidate, Mapping[Path, str]] = {}
 
     def mutate(self, operand: Operand, factor: float) -> Mutation | None:
-        """Return the mutation of an operand by a factor; None if it changes nothing or crosses the opposite limit."""
+        """Return the mutation of an operand by a factor; None if nothing changes or limits cross (see `crosses`)."""
         found = mutations(operand, factor, is_integral(self.order.analysis, operand))
         if found is None or not operand.literal or isinstance(found.value, bool):
             return found
@@ -72,7 +72,7 @@ class Mutants:
     def run_at(
         self, rollout: Rollout, worst: float, candidate: Candidate | None, seed: int, drift: str | None = None
     ) -> Outcome:
-        """Run one episode of another test; if `candidate` is None, with the unrepaired program.
+        """Run one episode of another test with a candidate, or with the unrepaired program if `candidate` is None.
 
         `worst` is the total reward that counts if the candidate breaks the test. Raise RepairError.
         """
@@ -105,9 +105,9 @@ def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     """Run an episode of a candidate and return its outcome. Raise StaleTextError.
 
     The unrepaired program ran in this test without an error, so any error now (such as a reward that is not a number)
-    is due to the candidate. A node that publishes nothing is not an error: a watchdog with a higher threshold may
-    rightly publish nothing in a mission. The reward shows whether it should publish. After an error or a crash of the
-    node, the reward so far is meaningless. The total is then at most that of the worst recorded episode.
+    is due to the candidate. It is no error if a node publishes nothing: for example, a watchdog with a higher threshold
+    may rightly stay silent in a mission, and the reward shows whether it should. After an error or a crash of the node,
+    the reward so far is meaningless, so the total is at most that of the worst recorded episode.
     """
     try:
         ended = run()

@@ -1,8 +1,8 @@
 """Find where a name means the same constant, so that all of its uses can be changed together.
 
-A name of the module, such as `LASER_YAW`, means the same in the whole file, and `self.kp` in the whole class. A
-parameter of a function, such as `dt`, is a name of this function only: if the function passes the parameter to another
-function, a factor on the uses in both functions would count twice.
+A name of the module, such as `LASER_YAW`, means the same constant in the whole file, and `self.kp` means the same in
+the whole class. A parameter of a function, such as `dt`, means the same only in this function. If the function passes
+the parameter to another function and both uses were multiplied by a factor, the factor would count twice.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def name_scope(analysis: Analysis) -> Callable[[Operand], str]:
 
 
 def _module_names(path: str, text: str) -> frozenset[str]:
-    """Return the names that statements at the top level of a file bind, unless a function binds them as well."""
+    """Return the names that are bound at the top level of a file and in none of its functions."""
     tree = document(path, text).tree
     functions = [one for one in ast.walk(tree) if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef)]
     arguments = {one.arg for function in functions for one in ast.walk(function) if isinstance(one, ast.arg)}

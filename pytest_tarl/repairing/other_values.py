@@ -22,13 +22,16 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
-POWERS = (1.5, 2.0)  # exponents of the factors of a candidate at the edge of the range of good values
-MILDER = (0.75, 0.5)  # exponents of the factors of a candidate whose missions succeed but earn too little
-RATIOS = (1.1, 1.03)  # ratios between neighbours of a value that loses too much in its test
+# if a candidate is at the edge of the range of good values, its factors are raised to these powers
+POWERS = (1.5, 2.0)
+# if a candidate's missions succeed but earn too little, its factors are raised to these powers
+MILDER = (0.75, 0.5)
+# if a value loses too much in its test, its neighbours are tried, spaced by these ratios
+RATIOS = (1.1, 1.03)
 MOVES = 3  # maximum number of moves in one direction with one ratio
 BETTER = 0.1  # a neighbour is better if it earns more by at least this share of the margin
 KNOWN = 3  # number of known seeds on which a smaller change must reach the goal
-UNGUARDED = 3  # maximum number of values of a candidate that are tried without the candidate's condition
+UNGUARDED = 3  # maximum number of values of a candidate that are tried without its condition
 CLOSE = 1.3  # maximum ratio of two rejected values between which good values may lie
 
 OtherValues = Generator[Candidate, Tried, None]
@@ -36,7 +39,7 @@ Place = tuple[frozenset[Operand], Guard]
 
 
 class Others:
-    """Propose other values of a candidate; each method acts at most once for a set of operands and a guard."""
+    """Propose other values of a candidate. Each method acts at most once for the same operands and guard."""
 
     def __init__(self, mutants: Mutants, ledger: Ledger, missed: Missed) -> None:
         self.mutants = mutants
@@ -50,11 +53,11 @@ class Others:
         self._nearer: set[Place] = set()
         self._mended: set[Candidate] = set()
         self._recentred: set[Place] = set()
-        # values that earned more than a refused value in the missions of its acceptance test
+        # values that earned more than a refused value in missions of the refused value's acceptance test
         self.chosen: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:
-        """Propose larger steps if the candidate fails on some seeds, or smaller ones if it only earns too little.
+        """Propose larger steps if the candidate fails on some seeds, or smaller steps if it just earns too little.
 
         A candidate that fails on some seeds is at the edge of the range of good values.
         """
@@ -71,7 +74,7 @@ class Others:
                 return
 
     def following(self, candidate: Candidate) -> OtherValues:
-        """Propose that the constant follows a sensor, because its value fits only some missions or one world."""
+        """Propose that the constant follows a sensor, because one value fits only some missions or one world."""
         if operands(candidate) in self._following:
             return
         self._following.add(operands(candidate))
@@ -80,10 +83,11 @@ class Others:
     def unguarded(self, candidate: Candidate, reason: Reason, trials: Trials) -> OtherValues:
         """Propose smaller changes that may work in both worlds without the condition of a candidate.
 
-        A lower threshold may suit both worlds although the value found under the condition goes too far in the rest of
-        a mission. Bisect between the original value and the one found: if a value fails without the condition, the same
-        value under the condition shows whether it is too small. A value that reaches the goal is moved to the middle of
-        the good ones. `reason` says why the value found fails without its condition. Raise BudgetSpentError.
+        For example, the threshold that was found may be too low where the condition does not hold, but a threshold that
+        is a little higher may suit both worlds. Bisect between the original value and the value that was found. If a
+        value fails without the condition, run it under the condition to see whether it is too small. Move a value that
+        reaches the goal to the middle of the good range. `reason` says why the candidate fails without its condition.
+        Raise BudgetSpentError.
         """
         if not candidate.guard.conjuncts or operands(candidate) in self._unguarded:
             return
@@ -103,9 +107,9 @@ class Others:
             between.told(STRONG[0] if enough else WEAK[0])
 
     def _amid(self, between: Between, good: Candidate, harmful: bool, trials: Trials) -> Candidate:
-        """Return a value in the middle of those that reach the goal: `good`, one halfway inward and one outward.
+        """Try a value halfway inward from `good` and one outward; return the mean of all values that reach the goal.
 
-        If larger changes are harmful in the designed world, do not try the one outward.
+        If larger changes harm the designed world (`harmful`), do not try the outward value.
         """
         low, high = (between.weak + between.share) / 2, (between.share + between.strong) / 2
         beside = (low,) if harmful else (low, high)
@@ -116,11 +120,11 @@ class Others:
         return good if amid is None else amid
 
     def inward(self, refused: Candidate, trials: Trials) -> OtherValues:
-        """Propose a smaller change than `refused`, which lost reward in few missions of its test and may go too far.
+        """Propose a smaller change than `refused`, which may go too far: it lost reward in a few missions of its test.
 
         Bisect between the original value and the refused one. A change that fails on the first seed of the search is
-        too small; one that passes may be too large. Of the values that also pass in the missions in which `refused`
-        lost reward, propose the middle one. Raise BudgetSpentError.
+        too small; a change that passes may be too large. Find the values that also pass in the missions in which
+        `refused` lost reward, and propose the middle one. Raise BudgetSpentError.
         """
         place = (operands(refused), refused.guard)
         if not self.missed.few.get(refused) or place in self._inward:
@@ -141,10 +145,11 @@ class Others:
         yield from self.nearer(refused, trials) if costly else self.recentred(refused, trials)
 
     def nearer(self, costly: Candidate, trials: Trials) -> OtherValues:
-        """Propose a value nearer to the original one than `costly`, which may lose too much in the designed world.
+        """Propose a value nearer to the original value if `costly` may lose too much in the designed world.
 
-        A smaller change does less harm there. Bisect for the smallest change with which missions succeed on the known
-        seeds, the hardest ones first, and propose the middle of the good values. Raise BudgetSpentError.
+        A smaller change does less harm in the designed world. Bisect for the smallest change with which missions
+        succeed on the known seeds (the hardest seeds run first). Propose the middle of the good values. Raise
+        BudgetSpentError.
         """
         place = (operands(costly), costly.guard)
         if place in self._nearer:
@@ -160,7 +165,7 @@ class Others:
             yield good[len(good) // 2]
 
     def _holds(self, candidate: Candidate, trials: Trials) -> bool:
-        """Return whether a candidate reaches the goal on the known seeds on which most candidates fell short."""
+        """Return whether a candidate reaches the goal on the known seeds that most candidates failed."""
         goal = self.mutants.order.goal
         hardest = sorted(goal.pairs, key=lambda pair: -trials.misses[pair.seed])[:KNOWN]
         try:
@@ -177,11 +182,11 @@ class Others:
             return False
 
     def beside(self, trials: Trials) -> OtherValues:
-        """Propose neighbours of a candidate that lost reward in few missions of its test, if they lose none in these.
+        """If a candidate lost reward in only a few missions of its test, propose neighbouring values.
 
-        If a close value was rejected as well, the value halfway between the two comes first. A neighbour may be close
-        to a rejected value, because the missions in which that one lost reward distinguish the two. Raise
-        BudgetSpentError.
+        A neighbour is proposed only if it loses no reward in these missions. If another close value was rejected as
+        well, the value halfway between both comes first. A neighbour may be close to a rejected value, because the
+        missions show that it is better. Raise BudgetSpentError.
         """
         while refused := next((one for one in self.missed.few if one not in self._mended), None):
             self._mended.add(refused)
@@ -192,10 +197,10 @@ class Others:
                     break
 
     def recentred(self, refused: Candidate, trials: Trials) -> OtherValues:
-        """Propose the best value near a refused one whose missions succeed but earn too little in its test.
+        """Propose the best value near a refused one if the refused value's missions succeed but earn too little.
 
-        Values are compared on missions that represent the test, so that small improvements are found. Raise
-        BudgetSpentError.
+        Values are compared on missions that represent the refused value's test, so that small improvements are found.
+        Raise BudgetSpentError.
         """
         place = (operands(refused), refused.guard)
         missions = self.missed.spread.get(refused)
@@ -219,7 +224,7 @@ class Others:
     def _earned(
         self, candidate: Candidate, missions: Sequence[Lost], most: float, trials: Trials
     ) -> float | None:
-        """Return a candidate's total reward in missions, minus the designed total.
+        """Return a candidate's total reward in all of `missions`, minus their designed total.
 
         The reward of a mission is capped at its designed reward. Return None if the difference cannot exceed `most` or
         if a mission fails.
@@ -237,7 +242,7 @@ class Others:
         return earned
 
     def bracketed(self, candidate: Candidate) -> bool:
-        """Return whether close values on both sides lost reward in few missions, so that good ones may lie between."""
+        """Return whether good values may lie between two close values that each lost reward in only a few missions."""
         ratios = [ratio_of(candidate, other) for other in self.missed.few]
         close = [one for one in ratios if one is not None and max(one, 1.0 / one) <= CLOSE]
         return bool(close) and min(close) < 1.0 < max(close)
@@ -274,7 +279,7 @@ class Others:
 
 
 def ratio_of(one: Candidate, other: Candidate) -> float | None:
-    """Return the ratio of two candidates' factors on their only constant, or None if they differ in anything else."""
+    """Return the ratio of the factors of two candidates that differ only in the factor on one constant, else None."""
     if one.guard != other.guard or operands(one) != operands(other):
         return None
     mine, its = common_factor(one), common_factor(other)

@@ -1,4 +1,4 @@
-"""Partial repairs: changes with a significant gain that cost nothing, or little of this gain, in the designed world."""
+"""Partial repairs: changes that gain significantly and, in the designed world, cost nothing or little of this gain."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 MOST = 2  # maximum number of candidates that are tested
 EPISODES = 40  # number of episodes per world, each paired with an episode of the unrepaired program
 SCREENED = 12  # maximum number of candidates that are screened
-KNOWN = 3  # number of recorded episodes of the designed world in which a candidate is screened
-PLACING = 12  # maximum number of episodes that look for the definition of a candidate's constant
-LEAST = 0.1  # share of the loss that a candidate must have gained in the search
-# if no harmless candidate helps, candidates are tested whose loss in the designed world is at most this share of their
-# gain
+KNOWN = 3  # number of recorded designed episodes on which a candidate is screened
+PLACING = 12  # maximum number of episodes for finding the definition of a candidate's constant
+LEAST = 0.1  # in the search, a candidate must have gained at least this share of the loss
+# if no harmless candidate helps, candidates are tested that lose some reward in the designed world: at most this share
+# of their gain
 TRADED = 0.2
 HARMFUL: tuple[Reason, ...] = (
     "another test gets worse",
@@ -57,7 +57,8 @@ class Best:
 def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | None, int]:
     """Test the best candidates; return the first with a significant gain (or None), and the number of episodes.
 
-    Candidates that lose more than the margin in the designed world, but little of what they gain, are tested last.
+    Some candidates lose more than the margin in the designed world, but little compared with their gain. They are
+    tested last.
     """
     tests = _Tests(mutants)
     costly: list[Candidate] = []
@@ -91,7 +92,7 @@ class _Tests:
     spent: int = 0
 
     def helping(self, candidate: Candidate) -> Best | None:
-        """Return the candidate with its gains, or None if it does not help or costs too much as designed."""
+        """Return the candidate with its gains, or None if it does not help or loses too much in the designed world."""
         try:
             drifted = self._gained(candidate, self.mutants.order.drift)
             designed = self._gained(candidate, None) if drifted.low > 0.0 else None
@@ -110,7 +111,7 @@ class _Tests:
 
 
 def _placed(mutants: Mutants, examiner: Examiner, candidate: Candidate) -> tuple[Candidate, int]:
-    """Return the candidate, moved to the definition if that has the same effect, and the number of episodes."""
+    """Move the candidate to the definition if this has the same effect; return it and the number of episodes run."""
     trials = Trials(lambda one, seed: mutants.run(one, seed, mutants.order.drift), PLACING)
     try:
         return examiner.placing(candidate, trials) or candidate, trials.spent
@@ -135,7 +136,7 @@ def _affordable(mutants: Mutants, drifted: Gained, designed: Gained) -> bool:
 
 
 def _promising(examiner: Examiner, watch: Watch) -> Iterator[Candidate]:
-    """Yield the best refused candidate, then those with the highest gains in the search; skip harmful ones."""
+    """Yield the best refused candidate, then candidates with the highest gains in the search. Skip harmful ones."""
     goal = watch.order.goal
     harmful = [one.candidate.changes for one in examiner.tried if one.reason in HARMFUL]
     furthest = [examiner.refused.candidate] if examiner.refused.candidate is not None else []

@@ -1,4 +1,4 @@
-"""Choose where to write a repair: at the constant's definition if this test uses it, else at the use."""
+"""Choose where to write a repair: at the constant's definition if this test uses the definition, else at the use."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
-LOOKED_AT = 3  # number of seeds on which a repair must pass if it is moved to the definition
+LOOKED_AT = 3  # number of seeds on which a repair must still pass after it is moved to the definition
 MOST_PLACES = 6  # maximum number of configuration files or rows of a table to try for one constant
 MOST_NAMED = 5  # maximum number of other users of a constant that a note names
 
@@ -36,12 +36,12 @@ class Placing:
     def __init__(self, mutants: Mutants) -> None:
         self.mutants = mutants
         self.order = mutants.order
-        # by the definitions in the source, or by the operand if there are none
+        # keys: the definitions in the source, or the operand if there are none
         self._in_force: dict[Operand | tuple[Place, ...], tuple[Place, ...]] = {}
         self._why: dict[Operand, str] = {}
 
     def __call__(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Return the candidate with its final places, or None if the place required by `--tarl-edit` does not work."""
+        """Move a candidate to its final places; return None if the place that `--tarl-edit` requires does not work."""
         edit = self.order.options.edit
         candidate = replace(candidate, mutations=tuple(map(located, candidate.mutations)))
         movable = [one for one in candidate.mutations if not _stays(one)]
@@ -54,7 +54,7 @@ class Placing:
         return moved or (None if edit == "definition" else candidate)
 
     def notes(self, candidate: Candidate) -> Iterator[str]:
-        """Yield notes that say why a constant is changed at its use, and who else uses a changed definition."""
+        """Yield notes that say why a constant is changed at its use, and which other code uses a changed definition."""
         for mutation in candidate.mutations:
             if mutation.place is None and not candidate.guard.conjuncts and mutation.operand in self._why:
                 yield self._why[mutation.operand]
@@ -63,7 +63,7 @@ class Placing:
             yield from self._users(place, [m.operand for m in candidate.mutations if m.place == place])
 
     def _unused(self, candidate: Candidate) -> Iterator[str]:
-        """Yield notes that name the numbers of a changed variable that stay, because this test does not use them."""
+        """Yield notes that name the numbers of a changed variable that do not change as this test does not use them."""
         changed = {one.place for one in candidate.mutations if one.place is not None}
         for operand in dict.fromkeys(one.operand for one in candidate.mutations if one.place is not None):
             written = defined(self.order.analysis, operand)
@@ -78,7 +78,7 @@ class Placing:
                 )
 
     def _moved(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Move mutations to definitions that the test uses; return None if there are none or if the result fails."""
+        """Move mutations to definitions that the test uses. Return None if there are none or the moved repair fails."""
         mutations: list[Mutation] = []
         for mutation in candidate.mutations:
             places = () if _stays(mutation) else self._places(mutation, candidate, trials)
@@ -116,7 +116,7 @@ class Placing:
         return self._in_force[one]
 
     def _found(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> tuple[Place, ...]:
-        """Return the first places at which a change affects the episode, which shows that the test uses them."""
+        """Return the first places at which a change affects the episode: this shows that the test uses the places."""
         analysis, operand = self.order.analysis, mutation.operand
         name = parameter(analysis, operand)
         written = defined(analysis, operand)
@@ -147,11 +147,11 @@ class Placing:
     def _in_use(
         self, mutation: Mutation, places: Sequence[Place], candidate: Candidate, trials: Trials
     ) -> tuple[Place, ...]:
-        """Return the places that take part in the missions of the test; all of them if no change can be attributed.
+        """Return the places that missions of the test use. If this cannot be determined, return all places.
 
-        A node may set a variable in several modes. A number of a mode that the test does not run stays, because nothing
-        shows that it should change. The whole change is compared with the change without one place, since a mission
-        that fails early may not come to it.
+        A node may set a variable in several modes. If the test does not run a mode, its number stays as it is, because
+        nothing shows that it should change. To find out, the whole change is compared with the change without one
+        place. A change at this place alone would not do, because the mission may fail before it reaches the place.
         """
         if not 1 < len(places) <= MOST_PLACES:
             return tuple(places)
@@ -176,7 +176,8 @@ class Placing:
     ) -> bool:
         """Return whether a change at these places alters the reward of an episode.
 
-        Alone it may alter nothing, because another constant hides it: then it is tried beside the candidate's others.
+        The change alone may alter nothing because another constant hides it. It is then tried together with the other
+        mutations of the candidate.
         """
         if not places:
             return False
@@ -223,7 +224,7 @@ class Placing:
 
 
 def _same_mission(one: Outcome, other: Outcome) -> bool:
-    """Return whether two episodes of one seed earned the same and published the same, if that is known."""
+    """Return whether two episodes of one seed earned the same and (if this is known) published the same messages."""
     return one.total == other.total and one.outputs == other.outputs
 
 
@@ -244,7 +245,7 @@ def _at(mutation: Mutation, places: Sequence[Place]) -> list[Mutation]:
 
 
 def _united(mutations: Sequence[Mutation]) -> list[Mutation]:
-    """Unite the change of a literal with a factor on its use: `rate = 0.1` and `3 * rate` become `rate = 0.3`."""
+    """Unite a changed literal with a factor on its use: instead of `rate = 0.1` and `3 * rate`, write `rate = 0.3`."""
     used: dict[tuple[str, int, object], Place] = {
         (place.path, place.line, place.value): place for one in mutations if (place := one.place) is not None
     }

@@ -1,6 +1,6 @@
-"""A factor in place of a template with state: a maintainer prefers `3.0 * turn` to an integral of `turn`.
+"""Try a factor instead of a change that keeps state: a maintainer prefers `3.0 * turn` to an integral of `turn`.
 
-An integral also overcomes friction or a weak actuator, and its symptom, an offset that stays, is the same.
+An integral also overcomes friction or a weak actuator. The symptom is the same in all cases: an offset remains.
 """
 
 from __future__ import annotations
@@ -15,12 +15,13 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.search import Candidate
 
 FACTORS = (2.0, 3.0, 5.0)  # factors that are tried, smallest change first
-GAIN = "gain"  # name of the template that multiplies any number by a factor, and of its parameter
-REPLACED = ("value", "number")  # kinds of templates whose expression can have a factor instead
+# name of the template that multiplies any number by a factor, and also the name of its parameter
+GAIN = "gain"
+REPLACED = ("value", "number")  # kinds of templates that a factor on the same expression can replace
 
 
 def factors(order: Order, candidate: Candidate) -> Iterator[Candidate]:
-    """Yield the candidates with a factor at the expression at which a candidate keeps state; nothing for others."""
+    """If a candidate keeps state at an expression, yield candidates with a factor at this expression instead."""
     found = {one.form and replace(one.form, parameter="") for one in candidate.mutations}
     form = found.pop() if len(found) == 1 else None
     gain = next((one for one in templates(order.root) if one.name == GAIN), None)

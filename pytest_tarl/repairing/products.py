@@ -1,6 +1,6 @@
 """Constants that need not be searched, because a factor on another constant has the same effect.
 
-Such constants are factors of one product, and constants that a constructor stores for later use.
+This holds for constants that are factors of one product, and for constants that a constructor stores for later use.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from pytest_tarl.patching.mutate import is_integral
 from tarl_lint.api import Analysis
 from tarl_lint.model import Operand
 
-Product = tuple[str, int, int]  # file, and the offsets of the outermost expression
+Product = tuple[str, int, int]  # file, start offset and end offset of the outermost expression
 
 
 def one_of_each(analysis: Analysis, operands: Sequence[Operand]) -> tuple[list[Operand], list[Operand]]:
-    """Split operands into those that a search must move and those that are equivalent to one of them.
+    """Split operands into those that a search must move, and those that are equivalent to one of the former.
 
-    The first constant of a product, in the given order, must be moved. So must a constant that a statement uses twice,
-    such as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`, because both uses move together. The operand in `self.limit =
-    limit` of a constructor is equivalent to the later use of that attribute.
+    In each product, the search must move the first constant (in the given order). It must also move a constant that a
+    statement uses twice, such as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`, because both uses move together. The operand
+    in `self.limit = limit` of a constructor is equivalent to the later use of that attribute.
     """
     stored = {operand for operand in operands if _stored(analysis, operand)}
     used = {one.definition for one in operands if one not in stored and one.definition is not None}
@@ -59,7 +59,7 @@ def _stored(analysis: Analysis, operand: Operand) -> bool:
 
 
 def _product(analysis: Analysis, operand: Operand) -> Product | None:
-    """Return the product of which an operand is a factor, or None if there is none or the operand has no factor."""
+    """Return the product of which an operand is a factor, or None if there is no such product."""
     if operand.value == 0 or isinstance(operand.value, bool):
         return None
     path = operand.span.path

@@ -13,10 +13,11 @@ from pytest_tarl.model import Band, Sizes
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.accept import TOO_LITTLE, Acceptance, Outcome
 
-# minimum number of successful episodes for the note that a candidate works in a part of the range
+# a note says that a candidate works in a part of the range only after this number of successful episodes
 LEAST_NEAR = 2
 
-STRATA = 4  # number of strata (parts of the range); the episodes of each interim test are a multiple of this number
+# number of strata (parts of the range); the number of episodes at each interim test is a multiple of it
+STRATA = 4
 
 Test = Callable[[Sequence[int]], Acceptance]  # tests a candidate on the given seeds
 
@@ -33,12 +34,12 @@ class Ranged:
 def over_the_range(order: Order, stream: str, most: int, test: Test) -> tuple[Acceptance, Ranged]:
     """Test a candidate once; if the drift has a range, spread the seeds evenly over it.
 
-    Each block of `STRATA` episodes has one from each stratum of the range, so the test needs no more episodes than for
-    a single size. The bound on the risk remains valid for two reasons. First, over a block, the expected growth of a
-    fixed bet is not larger than with episodes from random strata (inequality of arithmetic and geometric means).
-    Second, if strata have different failure rates, a small number of failures is less likely than in a binomial
-    distribution with the mean rate (Hoeffding 1956). In addition, an accepted candidate must lose less than the margin
-    on average in each third of the range; this check can only turn an acceptance into a refusal.
+    Each block of `STRATA` episodes has one episode from each stratum of the range. Therefore, the test needs no more
+    episodes than for a drift of a single size. The bound on the risk remains valid for two reasons. First, a fixed bet
+    is not expected to grow more over a block than with episodes from random strata (inequality of arithmetic and
+    geometric means). Second, if strata have different failure rates, a small number of failures is less likely than in
+    a binomial distribution with the mean rate (Hoeffding 1956). In addition, an accepted candidate must lose less than
+    the margin on average in each third of the range; this check can only turn an acceptance into a refusal.
     """
     bands = [band for one in order.comparison.sizes.values() for band in one.bands]
     if not bands:
@@ -66,7 +67,7 @@ def spread_seeds(order: Order, stream: str, most: int) -> tuple[int, ...]:
 
 
 def _stratum(order: Order, seed: int) -> int:
-    """Return the stratum of a seed: a quarter of the only range, or a pair of halves of the first two ranges."""
+    """Return the stratum of a seed: a quarter of the range, or a pair of halves if the drift has two ranges."""
     drawn = _drawn(order, seed)
     first = list(order.comparison.sizes.items())[:2]
     each = STRATA if len(first) == 1 else 2
@@ -88,7 +89,7 @@ def _holds_in(order: Order, band: Band, found: Acceptance) -> bool:
 
 
 def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
-    """Return the drift sizes of the comparison, with those of the repair's acceptance test added."""
+    """Return the drift sizes of the comparison together with those of the repair's acceptance test."""
     drawn = [_drawn(order, seed) for seed in ranged.seeds]
     return {
         part: replace(one, of={**one.of, "repaired": tuple(each[part] for each in drawn)})
@@ -97,7 +98,7 @@ def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
 
 
 def fits_a_part(order: Order, runs: Mapping[int, Outcome]) -> str:
-    """Describe the sizes at which a candidate passed if they form one end of a range; otherwise return ""."""
+    """If the sizes at which a candidate passed form one end of a range, describe them; otherwise return ""."""
     for part in order.comparison.sizes:
         near = [_drawn(order, seed)[part] for seed, run in runs.items() if order.goal.reached(run, seed)]
         far = [_drawn(order, seed)[part] for seed, run in runs.items() if not order.goal.reached(run, seed)]

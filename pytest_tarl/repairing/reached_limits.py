@@ -1,9 +1,9 @@
-"""Limits that a mission reaches and its designed mission does not: what ends it, or keeps it from going on.
+"""Limits that a mission reaches, but the designed mission with the same seed does not: they may stop the mission.
 
-A capper gives up a bottle when its spindle has made two turns or has turned for a second. No cap of the design takes
-that much, so neither limit is ever reached. In the drifted world the first one is, and once it is relaxed, the second
-one. Recorded missions show both: a comparison takes a result that it rarely has as designed, more often than with the
-same seed, or a value stays at a bound that it rarely has.
+For example, a bottle capper gives up when its spindle has made two turns or has turned for a second. In the designed
+world, no cap takes that much, so neither limit is ever reached. In the drifted world, the first limit is reached and,
+once this limit is relaxed, the second one. Recorded missions show such limits in two ways. A comparison often gives a
+result that is rare in the designed missions, or a value stays at a bound that it rarely reaches there.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from tarl_lint.model import Operand, Step
 
 UP, DOWN = NEAR  # factors that are tried on a limit
 # a value stays at a bound if at least the share `OFTEN` of its samples equals the bound. In the designed world, a bound
-# or a result of a comparison is rare up to the share `RARELY`.
+# or a result of a comparison counts as rare if its share of the samples is at most `RARELY`.
 OFTEN, RARELY = 0.3, 0.05
 SAME = 1e-9  # maximum relative difference between equal values
 
@@ -39,7 +39,7 @@ Ints = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class _Reached:
-    """A limit, whether the mission without the change reached it as well, and the step at which it was reached."""
+    """A limit, the step at which it was reached, and whether the mission without the change reached it, too."""
 
     limit: Limit
     before: bool
@@ -49,8 +49,8 @@ class _Reached:
 def reached_limits(order: Order, pairs: Sequence[Recorded], before: Trace | None = None) -> list[Limit]:
     """Return the constants of limits that only the second mission of a pair reaches, each with a relaxing factor.
 
-    The limits that are new since `before`, a drifted mission of the first pair's seed, come first. They are sorted by
-    the time at which they are reached, because later limits may be an effect of earlier ones.
+    `before` is a drifted mission of the first pair's seed. Limits that it did not reach come first. Then limits are
+    sorted by the time at which they are reached, because a later limit may be an effect of an earlier one.
     """
     found: list[_Reached] = []
     steps = {str(step.site): step for step in order.analysis.sites}
@@ -98,9 +98,9 @@ def _reached(order: Order, step: Step, pair: Pair, before: Series | None) -> Ite
 
 
 def _newly(pair: Pair, outcome: float) -> int | None:
-    """Return the step at which a comparison takes a result for one time more than as designed, or None.
+    """Return the step at which a comparison has given a result once more than in the designed mission, or None.
 
-    The result must be rare as designed. Only times until the end of the drifted mission count.
+    The result must be rare in the designed mission. Only steps before the end of the drifted mission count.
     """
     together = pair.together()
     designed, drifted = (_times(one.values == outcome) for one in (together.designed, together.drifted))
@@ -116,7 +116,7 @@ def _times(holds: Bools) -> Ints:
 
 
 def _stays(pair: Pair, bound: float) -> int | None:
-    """Return the first step at which a value is at a bound; None unless it often is there, and rarely as designed."""
+    """Return the first step at which a value is at a bound if it often is there, but rarely as designed; else None."""
     at = _at(pair.drifted, bound)
     often = at.mean() >= OFTEN and _at(pair.designed, bound).mean() <= RARELY
     return int(pair.drifted.step[np.flatnonzero(at)[0]]) if often else None
@@ -127,7 +127,7 @@ def _at(values: Series, bound: float) -> Bools:
 
 
 def _test(source: Document, line: int) -> ast.expr | None:
-    """Return what the statement at a line decides: its condition, or the comparison that it stores or returns."""
+    """Return the condition of the statement at a line, or the comparison that the statement stores or returns."""
     for node in ast.walk(source.tree):
         if isinstance(node, ast.If | ast.While) and node.lineno == line:
             return node.test
@@ -139,7 +139,7 @@ def _test(source: Document, line: int) -> ast.expr | None:
 def _side(source: Document, node: ast.expr, test: ast.expr) -> float:
     """Return 1 if a larger constant makes a test true, -1 if it makes it false, and 0 if neither is known.
 
-    Only sums and products around the constant are followed; a constant that is subtracted acts the other way.
+    Only sums and products around the constant are followed. A constant that is subtracted has the opposite effect.
     """
     sign, inner = 1.0, node
     for around in source.ancestors(node):

@@ -1,7 +1,7 @@
 """Corrections of sensor readings that are wrong from the start: an offset or a factor, seen in recorded missions.
 
-Both missions of a pair begin in the same state, and no command has had an effect when the first message arrives. If the
-first value of a statement differs by the same amount or by the same factor in all pairs, then the sensor is wrong: for
+Both missions of a pair begin in the same state, and when the first message arrives, no command has had an effect yet.
+If the first value of a statement then differs by the same amount or factor in all pairs, the sensor is wrong. For
 example, a lidar is bent, or a scale has lost its zero.
 """
 
@@ -21,8 +21,8 @@ from pytest_tarl.symptoms.series import Series
 
 OFFSET, GAIN = "offset", "gain"  # templates that correct a reading
 MOST = 2  # maximum number of readings that are corrected
-FIRST = 2  # number of first steps in which a reading cannot yet depend on commands
-AGREE = 0.1  # maximum difference between mission pairs, as a share of the change
+FIRST = 2  # number of steps at the start in which a reading cannot yet depend on commands
+AGREE = 0.1  # maximum difference between the changes of the mission pairs, as a share of the change
 LEAST = 0.02  # minimum change of a reading, as a share of the size of its first value
 
 
@@ -35,7 +35,7 @@ class Correction:
 
 
 def corrections(order: Order, recorded: Sequence[Recorded]) -> list[Mutation]:
-    """Return corrections of the readings whose first values differ, those nearest to the subscription first."""
+    """Return corrections of the readings whose first values differ. Readings near the subscription come first."""
     wrong = _wrong(order, recorded)
     known = {one.name: one for one in templates(order.root)}
     found: dict[str, Mutation] = {}
@@ -87,7 +87,7 @@ def _correction(firsts: Sequence[tuple[float, float]]) -> Correction | None:
 
 
 def spread(changes: Sequence[float]) -> float:
-    """Return the range of changes as a share of their mean, or 1 if the mean is 0."""
+    """Return the difference of the largest and smallest change as a share of their mean, or 1 if the mean is 0."""
     mean = sum(changes) / len(changes)
     return (max(changes) - min(changes)) / abs(mean) if mean else 1.0
 

@@ -16,7 +16,7 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 
 MOST = 5  # maximum number of other tests to run
-EPISODES = 8  # number of episodes per test; the first ones in which the guard holds are chosen
+EPISODES = 8  # number of episodes per test; the first episodes in which the guard holds are chosen
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def beside(mutants: Mutants, candidate: Candidate) -> Beside:
 
 
 def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
-    """Return whether a test depends on changed files: its nodes are among them, or its nodes or code mention them."""
+    """Return whether a test depends on changed files: they are its nodes, or its nodes or code mention them."""
     if changed & set(neighbour.nodes):
         return True
     texts = [root / neighbour.test.partition("::")[0], *neighbour.nodes]

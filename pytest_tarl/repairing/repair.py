@@ -41,15 +41,15 @@ from pytest_tarl.searching.sweep import Sweep
 
 CONSTANTS = 2 / 3  # share of the budget for the search of constants; structural changes get the rest
 RESERVE = 1 / 6  # share of the budget that is added to the search of constants if a candidate has gained much
-# share of the last phase's episodes that only examinations of confirmed candidates may use: a candidate found without
-# any episode left for its condition cannot be accepted
+# share of the last phase's episodes that is reserved for examining confirmed candidates: without episodes left for
+# choosing its condition, a candidate cannot be accepted
 EXAMINING = 0.1
-NAMED_FROM = 3  # minimum number of episodes for the note that a candidate works in a part of a range
+NAMED_FROM = 3  # a note says that a candidate works in a part of a range only after this number of episodes
 
 
 @dataclass(frozen=True)
 class Repaired:
-    """The result: the comparison with culprits, curves and repair, the accepted candidate, and episodes by kind."""
+    """The result: the comparison with suspect sites, curves and repair; the accepted candidate; the episode counts."""
 
     comparison: Comparison
     accepted: Accepted | None
@@ -59,7 +59,7 @@ class Repaired:
 
 @dataclass
 class _Findings:
-    """Results of the searches so far; `method` names the first search that found any `effects`."""
+    """Results of the searches so far. `method` is the name of the first search that found any `effects`."""
 
     accepted: Accepted | None = None
     effects: Mapping[str, Sequence[OperandEffect]] | None = None
@@ -123,7 +123,7 @@ def _search(
     found: _Findings,
     watch: Watch,
 ) -> None:
-    """Run one search; if a repair is already accepted, run it only for its curve in the report."""
+    """Run one search. If a repair is already accepted, the search runs only for its curve in the report."""
     share = CONSTANTS if mutants.order.options.structure and method == "sweep" else 1.0
     trials = purse.phase(mutants, method, watch, share)
     if share < 1.0:
@@ -292,7 +292,7 @@ def _formulas(order: Order, accepted: Accepted | None) -> tuple[FormulaRow, ...]
 
 
 def _ended(examiner: Examiner, found: _Findings) -> Refused:
-    """Return the best refused candidate; if nothing was tested, its reason says what ended the search."""
+    """Return the best refused candidate. If nothing was tested, its `reason` says what ended the search."""
     if found.interrupted:
         return replace(examiner.refused, reason="interrupted")
     if found.late and examiner.refused.reason == "budget":
@@ -344,7 +344,7 @@ def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[st
 
 
 def _ranked(order: Order, effects: Mapping[str, Sequence[OperandEffect]]) -> list[tuple[SitePlace, float]]:
-    """Return the sites in the order of the slices, then the sites that are not in the recording or not in any flow."""
+    """Return the sites in the order of the slices, then the sites that are in no recording or in no flow."""
     ranked = [(culprit.site, culprit.score) for culprit in order.comparison.culprits]
     known = {site.id for site, _ in ranked}
     analysis = order.analysis

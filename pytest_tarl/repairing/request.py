@@ -25,14 +25,15 @@ SMALL = 0.05  # margin as a share of the loss, used if designed missions have no
 
 @dataclass(frozen=True)
 class Neighbour:
-    """Another recorded test: its nodes' files, a function that runs it, and the tolerated loss per episode."""
+    """Another recorded test: the files of its nodes, a function that runs it, and the tolerated loss per episode."""
 
     test: str
     nodes: tuple[Path, ...]
     rollout: Rollout
     fixture: Fixture
     margin: float
-    drift: str | None = None  # the drift to repair, if it is permanent and this test declares it as well
+    # the drift to repair, if the drift is permanent and this test declares it as well
+    drift: str | None = None
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,7 @@ class Order:
 
 
 def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
-    """Yield the indices of (size, index) pairs, in an order in which the first few span the range of sizes."""
+    """Yield the indices of (size, index) pairs, ordered so that the first few pairs span the range of sizes."""
     parts = [[index for _, index in sorted(drawn)]]
     while parts:
         part = parts.pop(0)
@@ -113,7 +114,7 @@ def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
 
 
 def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
-    """Return the goal: the drifted episodes with a loss (the worst last), and the totals that a mutation must reach."""
+    """Return the goal: the drifted episodes with a loss (the worst last) and the totals that a mutation must reach."""
     spread = stdev(reference.totals) if len(reference.totals) > 1 else 0.0
     near = reference.mean - max(reference.margin, 2 * spread, 0.1 * loss)
     lost = sorted((pair for pair in online if pair.total < near), key=lambda pair: -pair.total)

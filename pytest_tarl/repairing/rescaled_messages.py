@@ -1,10 +1,10 @@
-"""Corrections of messages whose numbers come in another unit or scale: a factor where the node reads them.
+"""Correct messages whose numbers have another unit or scale, by a factor where the node reads the numbers.
 
-A new sensor sends degrees in place of radians, or millimetres in place of metres. What the node computes from such a
-number may look like noise, for example an angle that is wrapped, or like a constant, for example a value that is
-limited. The size of the message itself still shows the factor: from the first message on if both missions begin in the
-same state, or else as a ratio of usual sizes that only a unit explains. The factor belongs where the number is read,
-before anything is computed from it.
+For example, a new sensor sends degrees instead of radians, or millimetres instead of metres. What the node computes
+from such a number may look like noise (if an angle is wrapped) or like a constant (if a value is limited). The numbers
+in the message itself still show the factor. If both missions begin in the same state, already the first message shows
+it. Otherwise, the usual sizes have a ratio that only a change of unit explains. The factor belongs where the number is
+read, before anything is computed from it.
 """
 
 from __future__ import annotations
@@ -28,19 +28,21 @@ from pytest_tarl.symptoms.series import Pair
 from tarl_lint.model import Flow, SiteId, Step
 
 MOST = 2  # maximum number of messages that are corrected
-EXACT = 0.01  # maximum |log| between a factor of first values and a ratio of units that replaces it
-# maximum |log| between a factor of usual sizes and a ratio of units. Usual sizes also differ because missions differ.
-# One random factor in five to ten is this close to a ratio, but rarely in every mission.
+# a factor between first values is replaced by a ratio of units if their |log| differs by at most this
+EXACT = 0.01
+# a factor between usual sizes is replaced by a ratio of units if their |log| differs by at most this. Usual sizes also
+# differ because missions differ. One random factor in five to ten is this close to a ratio of units, but rarely in
+# every mission.
 CLOSE = 0.07
-# minimum |log| of a factor of first values, and of usual sizes; a node itself changes sizes by less than a factor of
-# five
+# minimum |log| of a factor between first values, and between usual sizes; other changes of the world alter usual sizes
+# by less than a factor of five
 LEAST, LARGE = 0.05, log(5.0)
 _LEFT_OUT = frozenset({"header", "stamp", "seq", "covariance"})
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 
 def rescaled(order: Order, recorded: Sequence[Recorded]) -> list[tuple[Mutation, ...]]:
-    """Return corrections of messages, the largest factors first; each multiplies all numbers read from a message."""
+    """Return corrections, largest factor first. Each correction multiplies all numbers that are read from a message."""
     gain = next((one for one in templates(order.root) if one.name == GAIN), None) if recorded else None
     if gain is None:
         return []
@@ -66,7 +68,7 @@ def rescaled(order: Order, recorded: Sequence[Recorded]) -> list[tuple[Mutation,
 
 
 def _factor(pairs: Sequence[Pair], units: Sequence[float]) -> float | None:
-    """Return the factor that makes a message as large as in the designed world, or None if there is none.
+    """Return the factor that makes the numbers of a message as large as in the designed world, or None.
 
     `units` are the ratios of the units that the message may have.
     """
@@ -91,7 +93,7 @@ def _factor(pairs: Sequence[Pair], units: Sequence[float]) -> float | None:
 
 
 def _snapped(size: float, close: float, units: Sequence[float]) -> float | None:
-    """Return the ratio of units whose logarithm is nearest to `size`, or None if none is close."""
+    """Return the ratio of units whose logarithm is nearest to `size`, or None if none is within `close`."""
     nearest = min(units, key=lambda one: abs(log(one) - size))
     return nearest if abs(log(nearest) - size) <= close else None
 
@@ -106,7 +108,7 @@ def _read(order: Order, step: Step) -> tuple[Document, list[ast.expr]] | None:
 
 
 def _described(order: Order, step: Step, source: Document, nodes: Sequence[ast.expr]) -> Iterator[str]:
-    """Yield what suggests the quantity of a message: topic, type, sensors, and the expressions around reads."""
+    """Yield texts that suggest a message's quantity: topic, type, sensors, and the expressions that use the message."""
     arriving = [one.source for one in order.analysis.flows if _first_received(one) == step]
     topics = {topic for one in arriving for topic in one.topics}
     yield from sorted(topics | {one.type for one in arriving})
@@ -191,7 +193,7 @@ def _of(source: Document, scope: ast.AST, message: str) -> Iterator[ast.expr]:
 
 
 def _number(node: ast.expr, around: ast.AST | None) -> bool:
-    """Return whether a field may be used as a number, judging by the node around it."""
+    """Return whether a field may be used as a number, judging by the syntax node `around` it."""
     if isinstance(around, ast.Call):
         return around.func is not node and ast.unparse(around.func) not in (
             "len",

@@ -1,4 +1,4 @@
-"""Remarks for the reviewer of an accepted repair: what its figures do not show."""
+"""Remarks for the reviewer of an accepted repair about what the measured figures do not show."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def remarks(mutants: Mutants, candidate: Candidate) -> list[str]:
 
 
 def jumps(candidate: Candidate) -> list[str]:
-    """Describe by how much constants jump at the threshold of a numeric condition; empty if there is none."""
+    """Describe by how much constants jump at the thresholds of numeric conditions. Without any, return nothing."""
     sensors = edges(candidate.guard)
     if not sensors:
         return []
@@ -38,7 +38,7 @@ def jumps(candidate: Candidate) -> list[str]:
 
 
 def large(candidate: Candidate) -> list[str]:
-    """Describe constants that change by a factor of at least `LARGE`: a simulation may lack what limits them."""
+    """Describe constants that change by at least the factor `LARGE`: in reality, something may limit them."""
     found = []
     for mutation in candidate.mutations:
         value = mutation.operand.value

@@ -1,7 +1,7 @@
 """Constants whose change has the same effect as a factor on a whole command.
 
-A factor before the publish call can hide which number of the command is too small: on carpet, only the smallest turning
-speed is. A maintainer changes this number.
+A factor before the publish call can hide which number of the command is too small. For example, on carpet only the
+smallest turning speed is too small, and a maintainer would change this number.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from pytest_tarl.searching.constants_first import Scaled
 from pytest_tarl.searching.search import Candidate
 from tarl_lint.api import Analysis
 
-GAIN = "gain"  # name of the only parameter of the templates that scale a command
+GAIN = "gain"  # name of the parameter of templates that scale a command and have no other parameter
 
 
 def scaled_command(analysis: Analysis, candidate: Candidate) -> Scaled | None:
-    """Return the factor and the statements that compute the command, nearest first; None for all other changes."""
+    """If a change scales a command, return the factor and the statements that compute the command, nearest first."""
     if len(candidate.mutations) != 1:
         return None
     (mutation,) = candidate.mutations

@@ -18,7 +18,7 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.typical_sizes import KEEPING_UNITS, TypicalSizes
 from tarl_lint.model import Operand
 
-NEARLY_ALL = 0.8  # for shares above this, the distance to 1 is a better scale than the share
+NEARLY_ALL = 0.8  # for a share above this, its distance to 1 is a better scale than the share itself
 SPREAD = 0.25  # usual size of an offset on a sensor's reading, as a share of the sensor's range
 
 
@@ -56,9 +56,9 @@ def _chart(order: Order, operand: Operand, sizes: TypicalSizes) -> Chart | None:
 
 
 def _spreads(order: Order, operand: Operand) -> Mapping[str, float]:
-    """Return the usual sizes of offsets on the readings that a statement uses, by the expression of the reading.
+    """Map the expression of each sensor reading that a statement uses to the usual size of an offset on it.
 
-    A reading of 1500 ± 100 is wrong by an amount of about 100.
+    If a reading is 1500 ± 100, a likely offset is about 100.
     """
     return {
         code: SPREAD * (sensor.high - sensor.low)
@@ -71,11 +71,11 @@ def _spreads(order: Order, operand: Operand) -> Mapping[str, float]:
 def _beside(
     source: Document, node: ast.expr, operand: Operand, sizes: TypicalSizes, read: Mapping[str, float]
 ) -> Iterator[float]:
-    """Yield the usual sizes of the values to which a constant is added, and of the sum.
+    """Yield the usual sizes of the values to which a constant is added, and the usual size of the sum.
 
-    For a zero, also yield the sizes of values that are combined or compared with it; for a reading, the size of `read`.
-    Yield nothing if the constant is a factor or stands alone. The result of most functions has a unit of its own, so it
-    says nothing about their arguments.
+    If the constant is 0, also yield the sizes of values that are combined or compared with it. For a sensor reading,
+    yield the size in `read` instead. Yield nothing if the constant is a factor or stands alone. The results of most
+    functions are not used, because they have another unit than the arguments.
     """
     inner: ast.AST = node
     for around in source.ancestors(node):

@@ -11,16 +11,16 @@ from pytest_tarl.instrumentation.trace import Floats
 
 FEWEST = 4  # minimum number of values in each world
 DIFFER = 0.1  # minimum difference between the shares of values above the threshold in the two worlds
-MARGIN = 1.25  # factor from the outermost value to a threshold beyond it
+MARGIN = 1.25  # a threshold beyond all values differs from the outermost value by this factor
 GAP = 0.4  # minimum width of the gap between two groups of values, as a share of the range of all values
 
 
 def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
-    """Return the factor of a threshold that leaves the designed share of values above it, or None if it does already.
+    """Return the factor on a threshold after which as many values lie above it as designed; None if they already do.
 
     `pairs` are the values of designed and drifted missions, of shape (values,) each. In each pair, the share must
     differ in the same direction. The new threshold lies halfway between two drifted values, on a log scale, or beyond
-    all of them. Values whose sign differs from that of the threshold say nothing about its size.
+    all of them. Values whose sign differs from the threshold's sign are left out.
     """
     size, pairs = _sized(threshold, pairs)
     if not pairs or not all(one.size and other.size for one, other in pairs):
@@ -40,11 +40,12 @@ def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> floa
 
 
 def between_groups(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
-    """Return the factor of a threshold that lies between the same two groups of values as in the designed missions.
+    """Return the factor on a threshold that moves it between the same two groups of values as designed, or None.
 
-    For example, the voltage of open contacts is near 21 V, and that of a charger near 28 V. If worn contacts leave 23 V
-    of it, the threshold must lie between 21 and 23 V. Return None unless both worlds have two groups, the threshold is
-    between the designed ones and not between the drifted ones, and has the sign of all values.
+    For example, the voltage of open contacts is near 21 V, and that of a charger near 28 V. If worn contacts leave only
+    23 V of the 28 V, the threshold must lie between 21 and 23 V. A factor is returned only if all of these conditions
+    hold: both worlds have two groups; the threshold is between the designed groups but not between the drifted groups;
+    and all values have the threshold's sign.
     """
     size, pairs = _sized(threshold, pairs)
     if not pairs:
@@ -71,12 +72,13 @@ def _gap(values: Floats) -> tuple[float, float] | None:
 
 
 def reaching(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
-    """Return the factor of a threshold that lets the drifted missions cross it as the designed ones did, else None.
+    """Return the factor on a threshold that lets drifted missions cross it as designed missions do, or None.
 
     `pairs` are the values of designed and drifted missions, of shape (values,) each. In each pair, the designed values
     lie on both sides of the threshold, and the drifted values lie on one side only, which is the same side in all
-    pairs. For example, a base stops a little before its goal, and the error never falls below the tolerance. The new
-    threshold is `MARGIN` beyond the drifted values that come nearest to it, in the mission in which they stay farthest.
+    pairs. For example, a mobile base stops a little before its goal, and the error never falls below the tolerance. In
+    each mission, take the drifted value that comes nearest to the threshold. The new threshold is `MARGIN` beyond the
+    farthest of these values.
     """
     size, pairs = _sized(threshold, pairs)
     if not pairs or not all(one.size and other.size for one, other in pairs):

@@ -1,4 +1,4 @@
-"""Replace a change that jumps at a sensor's threshold by one that grows with the sensor.
+"""Replace a change that jumps at a sensor's threshold by a change that grows with the sensor's value.
 
 `margin + self.length` reads better than `margin * 1.5 if self.length >= 0.3 else margin`, and suits other lengths.
 """
@@ -19,7 +19,7 @@ from pytest_tarl.searching.search import Candidate, effective_value
 from pytest_tarl.sensors import Sensor
 
 SUM, SCALE = "sum", "scale"
-# a plain sum is tried if the constant's change and the sensor's value differ by at most this ratio
+# a plain sum is tried if the constant's change and the sensor's value have at most this ratio
 ALIKE = 2.0
 REST = 0.9  # the sensor must be about zero in at least this share of the recorded steps
 

@@ -1,7 +1,7 @@
 """Expressions whose value does not vary, at which most structural changes have no effect of their own.
 
-A template without a sensor makes another constant of a constant, which the search of constants tries anyway. A filter
-returns the same value again.
+If a structural change without a sensor is applied to a constant, the result is another constant, and the search of
+constants tries that anyway. A filter returns the same value again.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pytest_tarl.patching.document import Document, called
 from pytest_tarl.patching.templates import OF_SENSORS, Template
 from tarl_lint.model import Operand
 
-# functions that return the same for the same arguments
+# functions that always return the same result for the same arguments
 _PURE = ("abs", "bool", "float", "int", "max", "min", "pow", "radians", "degrees", "round", "sqrt")
 
 
@@ -41,11 +41,11 @@ def adds_to(source: Document, node: ast.expr) -> bool:
 
 
 def has_effect(template: Template, constant: bool, steady: bool, added: bool) -> bool:
-    """Return whether a template may do what no other value of a constant does.
+    """Return whether a template may have an effect that no other value of a constant has.
 
-    `constant` says that the expression is computed from constants, `steady` that its value did not vary within any
-    recorded mission, and `added` that a variable is changed by it. What ramps up from zero changes a constant command
-    at the start of a mission.
+    `constant` says whether the expression is computed from constants. `steady` says whether its value did not vary
+    within any recorded mission. `added` says whether the value is added to a variable. A template that ramps up from
+    zero has an effect even on a constant command, at the start of a mission.
     """
     if template.on in OF_SENSORS or not template.parameters:
         return True

@@ -51,10 +51,10 @@ def strategy(
     """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
 
     Before each of its steps, the sweep calls `interlude` with the largest gain so far; `due` says whether `interlude`
-    then begins its structural changes. It calls `measured` for changes that recorded missions suggest, and `reached`
-    for limits that the missions of a change reach. It calls `entered` for constants of statements that missions run
-    only with a change, and `corrections` before it yields an extreme change. `following` returns candidates in which a
-    changed constant follows a sensor or a variable, `proportional` those in which an unchanged one does.
+    then begins its structural changes. `measured` returns changes that recorded missions suggest. `reached` returns
+    limits that missions with a change reach, and `entered` returns constants of statements that missions run only with
+    a change. `corrections` is called before the sweep yields an extreme change. `following` returns candidates in which
+    a changed constant follows a sensor or a variable. `proportional` does the same for an unchanged constant.
     """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
@@ -107,10 +107,10 @@ def ranking(mutants: Mutants, guard: Guard, trials: Trials) -> Ranking:
 
 
 def operands(order: Order) -> tuple[Operand, ...]:
-    """Return all operands of the analysed flows, most readable changes first, then in the order of the slices.
+    """Return all operands of the analysed flows: those with the most readable changes first, then as in the slices.
 
-    Among them are the constants that a set-up passes to an object of a library or stores in a list, ranked as the
-    statements that use the object, and the entries of tables of settings (see `table_entries`).
+    Among the operands are entries of tables of settings (see `table_entries`). There are also constants that start-up
+    code passes to a library object or stores in a list; they rank like the statements that use the object.
     """
     analysis = order.analysis
     rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
@@ -124,7 +124,7 @@ def operands(order: Order) -> tuple[Operand, ...]:
         given = tuple(o for o in given if o not in entries)
         best = min(ranks.get(user, len(rank)) for user in users)
         own = [o for o in given if o.definition is not None and o.definition.line == o.span.line]
-        # operands of this statement were already found at the statements that read them
+        # operands of this statement were already found where other statements read them
         if any((o.span.path, o.span.line) in defined for o in own):
             given = tuple(o for o in given if o not in own)
         found |= dict.fromkeys(given, best)
@@ -135,9 +135,10 @@ def operands(order: Order) -> tuple[Operand, ...]:
 
 
 def _with_parameters(order: Order, operands: Sequence[Operand]) -> list[Operand]:
-    """Return the operands, after the parameters in files that are none by themselves.
+    """Return parameters in files for which no operand stands, then the operands.
 
-    A call that reads one of these parameters is left out, unless a repair may need a condition, which stands at a use.
+    If a call reads one of these parameters, the call is left out. It is kept if a repair may need a condition, because
+    conditions are written at uses.
     """
     inside = file_parameters(order, operands)
     calls = {one.span for one in inside} if inside and order.permanent else set()
@@ -148,10 +149,10 @@ def _with_parameters(order: Order, operands: Sequence[Operand]) -> list[Operand]
 def _given_to_several(
     analysis: Analysis, found: Mapping[Operand, int], ranks: Mapping[SiteId, int]
 ) -> dict[Operand, int]:
-    """Return the constants that a program gives to objects of its own classes, with the rank of the best user.
+    """Map the constants that a program passes to objects of its own classes to the rank of their best user.
 
-    If a class has one object, the constant is found where the object uses it. If it has several, such as two wheels,
-    the use stands for several constants, so each is changed where its object is made.
+    If a class has only one object, the constant is found where the object uses it. If the class has several objects,
+    such as two wheels, the use stands for several constants. Then each constant is changed where its object is made.
     """
     known = {one.definition for one in found}
     last = len(ranks)
@@ -164,9 +165,9 @@ def _given_to_several(
 
 
 def aside_operands(order: Order, ranked: Sequence[Operand]) -> tuple[Operand, ...]:
-    """Return operands that decide when or what the nodes publish but are in no data flow, most readable first.
+    """Return operands that decide when or what the nodes publish, but that are in no data flow; most readable first.
 
-    The slices do not rank them; they rank the operands in `ranked`, which are left out.
+    The operands in `ranked`, which the slices rank, are left out.
     """
     analysis = order.analysis
     known = set(ranked)
