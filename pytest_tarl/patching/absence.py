@@ -1,4 +1,4 @@
-"""Check whether code already raises, or is skipped, while a variable is None (before the first message)."""
+"""Check whether code already raises, or is skipped, as long as a variable is None (before the first message)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytest_tarl.patching.document import Document
 
 
 def is_checked(source: Document, place: ast.AST, code: str) -> bool:
-    """Return whether, while `code` is None, a place is skipped or the code at or around it already raises."""
+    """Return whether a place is never completed while `code` is None: it is skipped, or code there already raises."""
     if isinstance(place, ast.stmt) and _relies_on(place, code):
         return True
     inner = place
@@ -30,7 +30,7 @@ def is_checked(source: Document, place: ast.AST, code: str) -> bool:
 
 
 def _checked_before(source: Document, statement: ast.AST, code: str) -> bool:
-    """Return whether an earlier statement of the same block raises, leaves the block or waits while `code` is None."""
+    """Return whether an earlier statement of the block raises, leaves the block or waits while `code` is None."""
     if not isinstance(statement, ast.stmt):
         return False
     block = source.block(statement)

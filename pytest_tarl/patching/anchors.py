@@ -33,7 +33,10 @@ _NODE_METHODS = {
 
 @dataclass(frozen=True)
 class Anchor:
-    """A statement next to which a subscription can be added; `node` is the rclpy node's expression, "" for rospy."""
+    """A statement next to which a subscription can be added.
+
+    `node` is the expression for the rclpy node, or "" for rospy.
+    """
 
     source: Document
     statement: ast.stmt
@@ -58,16 +61,16 @@ class Anchor:
 
 
 def anchors(analysis: Analysis, site: SiteId, path: str) -> Iterator[Anchor]:
-    """Yield places to subscribe: at subscriptions in the site's flows, at those in its file, then at starts of nodes.
+    """Yield places to subscribe: first next to subscriptions in the site's flows, then next to those in its file.
 
-    Starts of nodes are for nodes without a usable subscription.
+    The places at which a node starts come last. They are for nodes without a usable subscription.
     """
     own = {flow.source for flow in analysis.flows if any(step.site == site for step in flow.steps)}
     sources = dict.fromkeys(flow.source for flow in analysis.flows)
     for each in sorted(sources, key=lambda each: (each not in own, each.span.path != path)):
         yield from _registered(analysis, each)
     for name in sorted(analysis.sources, key=lambda name: (name != path, name)):
-        with suppress(RepairError):  # skip a file that cannot be parsed, since it cannot start a node
+        with suppress(RepairError):  # skip files that cannot be parsed, because they cannot start a node
             yield from _started(document(name, analysis.sources[name]))
 
 
@@ -116,7 +119,7 @@ def _registered(analysis: Analysis, origin: Source) -> Iterator[Anchor]:
 
 
 def _started(source: Document) -> Iterator[Anchor]:
-    """Yield the places after calls that start a node, then those after calls that use the node."""
+    """Yield the places after calls that start a node, then the places after calls that use the node."""
     ros2 = is_ros2(source)
     calls = [node for node in ast.walk(source.tree) if isinstance(node, ast.Call)]
     ranked = [(_start_rank(source, call, ros2), call) for call in calls]
@@ -128,7 +131,7 @@ def _started(source: Document) -> Iterator[Anchor]:
 
 
 def _start_rank(source: Document, call: ast.Call, ros2: bool) -> int:
-    """Return 0 if a call certainly runs once, at a node's start; 1 or 2 if this is less certain; else `_NO_START`."""
+    """Return 0 if a call runs once when a node starts, 1 or 2 if this is less certain, and `_NO_START` otherwise."""
     name = _called(call)
     if not ros2:
         return 0 if name == "init_node" else _NO_START
@@ -181,6 +184,6 @@ def _until_function(source: Document, statement: ast.stmt) -> Iterator[ast.stmt]
 
 
 def _leader(source: Document, statement: ast.stmt) -> ast.stmt | None:
-    """Return the first statement on a statement's line, or None if that is a definition."""
+    """Return the first statement on the line of a statement, or None if the first one is a definition."""
     around = [*reversed(source.block(statement)), *_until_function(source, statement)]
     return next((each for each in around if each.lineno == statement.lineno and source.leads(each)), None)

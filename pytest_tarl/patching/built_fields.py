@@ -1,7 +1,7 @@
-"""Fields of published messages that several statements build: `msg.data = a`, then `msg.data += b`.
+"""Fields of published messages that several statements build, such as `msg.data = a` followed by `msg.data += b`.
 
-No expression of the program is the published value of such a field, so that a change of the field stands before the
-publish call.
+The program has no single expression for the published value of such a field. Therefore, a change of the field is
+written before the publish call.
 """
 
 from __future__ import annotations
@@ -25,10 +25,11 @@ class Built:
 
 
 def built_fields(source: Document, statement: ast.stmt) -> list[tuple[ast.expr, Built]]:
-    """Return the argument of a publish call with each field that several statements of its function build.
+    """Return (message, field) for each field of a published message that several statements of the function build.
 
-    Every path to the call must set the field, or the function must make the message: if the message keeps the field of
-    an earlier call, a factor would be applied to it again and again. Fields of strings and integers are left out.
+    Every path to the publish call must set the field, or the function must create the message. Otherwise, the message
+    might keep the field from an earlier call, and a factor would be applied to it again and again. Fields that hold
+    strings or integers are left out.
     """
     published = _published(statement)
     function = source.function(statement)
@@ -46,7 +47,7 @@ def built_fields(source: Document, statement: ast.stmt) -> list[tuple[ast.expr, 
 
 
 def _published(statement: ast.stmt) -> ast.expr | None:
-    """Return the message of a statement that only publishes one, if it is a name or an attribute."""
+    """If a statement only publishes a message, return the message if it is a name or an attribute."""
     call = statement.value if isinstance(statement, ast.Expr) else None
     if not isinstance(call, ast.Call) or len(call.args) != 1 or call.keywords:
         return None
@@ -57,7 +58,7 @@ def _published(statement: ast.stmt) -> ast.expr | None:
 def _writes(
     function: ast.AST, message: str, statement: ast.stmt
 ) -> dict[str, list[ast.Assign | ast.AugAssign]]:
-    """Return the statements above the publish call that write each field of a message."""
+    """Map each field of a message to the statements above the publish call that write the field."""
     found: dict[str, list[ast.Assign | ast.AugAssign]] = {}
     for node in ast.walk(function):
         if not isinstance(node, ast.Assign | ast.AugAssign) or node.lineno >= statement.lineno:
@@ -101,7 +102,7 @@ def _leaves(statement: ast.stmt) -> bool:
 
 
 def _is_made(above: Sequence[ast.stmt], message: str) -> bool:
-    """Return whether one of the statements that run before a publish call makes its message."""
+    """Return whether one of the statements `above` a publish call creates the message."""
     return any(
         isinstance(one, ast.Assign)
         and isinstance(one.value, ast.Call)

@@ -11,12 +11,12 @@ Lines = tuple[bytes, ...]
 
 
 class MisfitError(Exception):
-    """A hunk fits nowhere in the file; the argument is the line number of the hunk in the original, counted from 1."""
+    """A hunk fits nowhere in the file. The argument is the hunk's line number in the original, counted from 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class Hunk:
-    """Lines with their line endings and signs ("+", "-" or " "); `start` is the line in the original, from 0."""
+    """Lines with their line endings and signs ("+", "-" or " "). `start` is the line in the original, from 0."""
 
     start: int
     lines: tuple[tuple[str, bytes], ...]
@@ -71,7 +71,7 @@ class FilePatch:
         return FilePatch(self.name, self.after, self.before, tuple(turned))
 
     def exact(self, content: bytes) -> bytes | None:
-        """Return the patched content, or None if the blob id of the content or of the result does not match."""
+        """Return the patched content, or None if the blob id of the old or of the new content does not match."""
         if not identical(content, self.before):
             return None
         lines, result, at = split_lines(content), list[bytes](), 0
@@ -115,7 +115,7 @@ def _replacements(hunk: Hunk) -> Iterator[Replacement]:
 
 
 def _place(hunk: Hunk, lines: Sequence[bytes], least: int, likely: int) -> int | None:
-    """Return the line nearest to `likely`, but not before `least`, where all original lines of the hunk match."""
+    """Return the line at or after `least`, nearest to `likely`, where all original lines of the hunk match."""
     old = list(hunk.old)
     fits = [at for at in range(least, len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
     return min(fits, key=lambda at: abs(at - likely), default=None)

@@ -1,8 +1,8 @@
 """Charts: scales on which a search moves a constant, in addition to factors on its value.
 
-A share such as 0.95 is moved by its distance from 1: if it should be 0.994, this distance is wrong by a factor of 8. An
-offset such as -0.012 is moved in steps of the size of the numbers to which it is added. On these two scales, a search
-takes the same steps as with factors.
+For a share such as 0.95, the search scales its distance from 1. If the share should be 0.994, this distance is wrong by
+a factor of 8. An offset such as -0.012 is moved in steps that are as large as the numbers to which it is added. On both
+scales, a search takes the same steps as with factors.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from math import copysign
 
 
 class Scale(Enum):
-    """`REST` scales the distance of a share from 1, `SHIFT` adds to an offset."""
+    """A kind of scale: `REST` scales the distance of a share from 1, `SHIFT` adds to an offset."""
 
     REST = "rest"
     SHIFT = "shift"
@@ -27,7 +27,7 @@ class Chart:
     size: float = 1.0
 
     def factor(self, value: float, step: float) -> float | None:
-        """Return the factor on the constant's value that corresponds to a step; None if there is none.
+        """Return the factor on the constant's value that a step stands for, or None if there is no such factor.
 
         A step of 1 changes nothing. A step of 5 divides a share's distance from 1 by 5, and adds four times `size` to
         an offset. A step of 0.2 is the inverse.
@@ -47,7 +47,7 @@ class Chart:
 
 
 def distance(step: float) -> float:
-    """Return the change that a step makes, in multiples of the size: 4 for a step of 5, -4 for a step of 0.2."""
+    """Return the change that a step makes, as a multiple of the chart's size: 4 for a step of 5, -4 for 0.2."""
     return step - 1.0 if step >= 1.0 else 1.0 - 1.0 / step
 
 

@@ -1,7 +1,8 @@
-"""Limits that cross: `max(1.2, min(1.0, x))` is 1.2 whatever x is.
+"""Find limits that cross, as in `max(1.2, min(1.0, x))`, which is 1.2 for every x.
 
-A changed limit that lies beyond the opposite limit makes a clamp a constant. The node then ignores what it computes,
-and may command a value that the opposite limit forbids. Even if all missions pass, nobody would merge such a change.
+If a changed limit lies beyond the opposite limit, the clamp always returns the same value. The node then ignores the
+value that it computes, and may command a value that the opposite limit forbids. Even if all missions pass, nobody would
+merge such a change.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ def crosses(source: Document, node: ast.expr, value: float) -> bool:
 
 
 def _limit(node: ast.AST | None, name: str) -> float | None:
-    """Return the literal argument of a call of `min` or `max` with two arguments; None for anything else."""
+    """Return the literal argument of a two-argument call of `min` or `max`, or None for any other expression."""
     if not isinstance(node, ast.Call) or called(node) != name or len(node.args) != 2:
         return None
     return next((found for one in node.args if (found := _number(one)) is not None), None)
@@ -45,6 +46,6 @@ def _number(node: ast.expr) -> float | None:
 
 
 def _with_sign(source: Document, node: ast.expr) -> ast.expr:
-    """Return the expression that is the argument: a negative literal is an operation on a positive one."""
+    """Return the literal with its sign: in the syntax tree, `-2` is an operation on the literal `2`."""
     parent = source.parents.get(node)
     return parent if isinstance(parent, ast.UnaryOp) else node

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
 PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached_param")
-# name of the method of rclpy that declares several parameters: its arguments are a namespace and (name, default) pairs
+# name of the rclpy method that declares several parameters; its arguments are a namespace and (name, default) pairs
 SEVERAL = "declare_parameters"
 _CONVERSIONS = ("int", "float", "round")
-ENTRY = "get"  # name of the method that reads an entry of a parameter that is a mapping
+ENTRY = "get"  # name of the method that reads an entry of a parameter if the parameter is a mapping
 _FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
 _MOST_FILES = 400  # maximum number of configuration files to read per package
 ENVIRONMENT = ("os.environ.get", "environ.get", "os.getenv", "getenv")
@@ -35,9 +35,9 @@ _PLAIN = re.compile(r"[-+]?\d+")
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A number at its definition: its offsets `start` and `end` in a file, its name there and its value.
+    """A number at a definition: its offsets `start` and `end` in a file, its name in this file, and its value.
 
-    If the constant is to be f times as large, the number must be (1 + (f - 1) · `share`) times as large.
+    To make the constant f times as large, the number must be made (1 + (f - 1) · `share`) times as large.
     """
 
     path: str
@@ -51,7 +51,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class ParameterInFile(Operand):
-    """A parameter that is searched where a file sets it, because its uses stand for several parameters.
+    """A parameter that is searched in the file that sets it, because its uses stand for several parameters.
 
     `span` is a use of the parameter. `size` is the usual size of such a parameter if its value is 0, or 0 if unknown.
     """
@@ -61,9 +61,9 @@ class ParameterInFile(Operand):
 
 
 def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
-    """Return the definitions of an operand's constants; empty unless all are numbers away from the use.
+    """Return the definitions of an operand's constants if all are numbers away from the use, else nothing.
 
-    A constant has several definitions if the operand is a parameter of a function with several calls, for example.
+    An operand has several definitions, for example, if it is a parameter of a function that is called several times.
     Zeros among other numbers are left out, because a factor does not change them.
     """
     if operand.literal:
@@ -77,13 +77,13 @@ def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
 
 
 def alternatives(analysis: Analysis, places: Sequence[Place]) -> bool:
-    """Return whether one of several numbers is selected: rows of one table, or arms of one conditional expression."""
+    """Return whether the program selects one of these numbers: they are in one table or conditional expression."""
     holders = [_holders(analysis, place) for place in places] if len(places) > 1 else []
     return any(one & other for one, other in itertools.combinations(holders, 2))
 
 
 def _holders(analysis: Analysis, place: Place) -> set[tuple[str, int, int]]:
-    """Return the displays and conditional expressions around a number, by path and offsets."""
+    """Return the path and offsets of each table literal and conditional expression around a number."""
     source = document(place.path, analysis.sources[place.path])
     return {
         (place.path, source.start(node), source.end(node))
@@ -110,9 +110,9 @@ def _defined_at(analysis: Analysis, operand: Operand, span: Span) -> Place | Non
 def number_at(
     source: Document, node: ast.expr, name: str, value: bool | int | float, share: float = 1.0
 ) -> Place | None:
-    """Return the place of a number with some value and name, inside the quotes if it is written as a string.
+    """Return the place of a number with this name and value. If it is in a string, return the place inside the quotes.
 
-    Return None if the string is written in another way than its value, such as with escape sequences.
+    Return None if the string is not written exactly as its value, for example if it has escape sequences.
     """
     start, end = source.start(node), source.end(node)
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
@@ -147,7 +147,7 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
 
 
 def _converted(node: ast.expr | None) -> ast.expr | None:
-    """Return the expression inside conversions to a number: the call that reads in `int(get_param("~times"))`."""
+    """Remove conversions to a number: for `int(get_param("~times"))`, return the call of `get_param`."""
     while isinstance(node, ast.Call) and called(node) in _CONVERSIONS and len(node.args) == 1:
         node = node.args[0]
     return node
@@ -208,7 +208,7 @@ def _launched(path: str, key: str, text: str) -> Iterator[Place]:
 
 
 def _target(source: Document, node: ast.expr) -> str:
-    """Return the name to which a number is assigned, or its place in an expression; "" if it stands alone."""
+    """Return the name to which a number is assigned, or where it is in an expression, or "" if it stands alone."""
     around = source.parents.get(node)
     if isinstance(around, ast.Assign) and len(around.targets) == 1:
         return source.source(around.targets[0])
@@ -216,7 +216,7 @@ def _target(source: Document, node: ast.expr) -> str:
 
 
 def computed_at(name: str, files: Mapping[str, str]) -> str:
-    """Return where a Python launch file computes a parameter in a way that cannot be changed, as a string, or ""."""
+    """Say where a Python launch file computes a parameter so that no number can be changed, or return ""."""
     key = key_of(name)
     for path, text in files.items():
         source = _python(path, text) if _kind(Path(path)) == "launch.py" else None
@@ -257,7 +257,7 @@ def edits(places: Mapping[Place, bool | int | float], text: str) -> list[Edit]:
 
 
 def _written(node: ast.expr | None) -> ast.expr | None:
-    """Return where a number is written: in `float(os.environ.get("SPEED", "0.5"))`, the default."""
+    """Return the part of an expression that is a number: the default in `float(os.environ.get("SPEED", "0.5"))`."""
     while isinstance(node, ast.Call):
         function = ast.unparse(node.func)
         if function in ("float", "int") and len(node.args) == 1 and not node.keywords:
@@ -271,7 +271,7 @@ def _written(node: ast.expr | None) -> ast.expr | None:
 
 
 def literal_number(node: ast.expr | None) -> bool | int | float | None:
-    """Return the value of a literal number, with its sign, or of a string that is one; None for other expressions."""
+    """Return the value of a literal number with its sign, or of a string that contains a number, else None."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str) and re.fullmatch(_NUMERAL, node.value):
         return int(node.value) if _PLAIN.fullmatch(node.value) else float(node.value)
     sign = 1
@@ -290,7 +290,7 @@ def _same(old: str, value: float) -> bool:
 
 
 def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
-    """Return the other places that use the constant of these operands, as `path:line`, in order."""
+    """Return the other places that use the same constant as these operands, as `path:line`, in order."""
     mine = {(operand.span.path, operand.span.line) for operand in used}
     spans = {span for operand in used for span in (operand.definition, *operand.definitions)} - {None}
     names = {key_of(parameter(analysis, operand)) for operand in used} - {""}
@@ -305,7 +305,7 @@ def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
 
 
 def _entry_of_parameter(call: ast.Call) -> str:
-    """Return the last part of the parameter's name in `get_param("~", {}).get("gain", 0.3)`: `gain`."""
+    """Return the key of an entry that is read from a parameter: `gain` for `get_param("~", {}).get("gain", 0.3)`."""
     of_environment = ast.unparse(call.func) in ENVIRONMENT
     return "" if of_environment else next(iter(strings(call.args[:1])), "")
 
@@ -319,7 +319,7 @@ def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
 
 
 def _name(source: Document, node: ast.expr) -> str:
-    """Return the name of a literal: the target of its assignment, or the parameter that has it as default; else ""."""
+    """Return a literal's name: the target of its assignment or the parameter whose default it is, or ""."""
     key = ""
     inner: ast.AST = node
     for each in source.ancestors(node):
@@ -342,7 +342,7 @@ def _name(source: Document, node: ast.expr) -> str:
 
 
 def _key(source: Document, table: ast.Dict | ast.List | ast.Tuple, entry: ast.expr) -> str:
-    """Return the subscript of an entry in a table: `["hold"]`, `[2]`."""
+    """Return the subscript that reads an entry of a table, such as `["hold"]` or `[2]`."""
     if isinstance(table, ast.Dict):
         keys = [key for key, value in zip(table.keys, table.values, strict=True) if value is entry and key]
         return f"[{source.source(keys[0])}]" if keys else ""
@@ -384,7 +384,7 @@ def _matches(kind: str, key: str, text: str) -> Iterator[tuple[int, int]]:
 
 
 def _named(word: str) -> str:
-    """Return a pattern for an element of a launch file with this name, up to its value."""
+    """Return a pattern that matches a launch-file element with this name, up to its value."""
     named = rf"""name[ \t]*=[ \t]*["'](?:[^"']*(?<![\w-]))?{word}["'][^<>]*?"""
     return rf"""{named}(?:value|default)[ \t]*=[ \t]*["'][ \t]*"""
 

@@ -15,7 +15,7 @@ _PARTS = ("msg", "srv", "action")
 
 
 def undeclared(changed: Mapping[Path, str], root: Path) -> list[str]:
-    """Return a sentence for each message package that a patch imports but package.xml does not list.
+    """Return a sentence for each message package that a patch imports although package.xml does not list it.
 
     `changed` maps files to their new text. Packages that the file imported before the patch are not reported.
     """

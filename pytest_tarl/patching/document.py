@@ -20,7 +20,7 @@ _COMMENT = re.compile(r"[ \t\f]*(#[^\r\n]*)?")
 
 
 def called(call: ast.Call) -> str:
-    """Return the last part of the name of a called function."""
+    """Return the last part of the name of the function that is called."""
     return ast.unparse(call.func).rpartition(".")[2]
 
 
@@ -36,7 +36,7 @@ def strings(nodes: Iterable[ast.AST]) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """Replace the characters from `start` to `end` by `text`; lines in `text` end with a line feed."""
+    """Replace the characters from `start` to `end` by `text`, in which every line ends with a line feed."""
 
     start: int
     end: int
@@ -69,7 +69,7 @@ class Document:
 
     @cached_property
     def expressions(self) -> dict[tuple[int, int], ast.expr]:
-        """Map (start, end) offsets to expressions; if several have the same offsets, to the innermost one."""
+        """Map (start, end) offsets to expressions. If several expressions have the same offsets, use the innermost."""
         nodes = (node for node in ast.walk(self.tree) if isinstance(node, ast.expr))
         return {(self.start(node), self.end(node)): node for node in nodes}
 
@@ -162,7 +162,7 @@ class Document:
         return next((each for each in self.ancestors(node) if isinstance(each, Function)), None)
 
     def method(self, node: ast.AST) -> tuple[ast.ClassDef, Function, str] | None:
-        """Return class, method and name of `self` for code inside a method, or None if there is no instance."""
+        """For code inside a method, return the class, the method and the name of `self`; None without an instance."""
         for method, owner in pairwise([node, *self.ancestors(node)]):
             if isinstance(method, Function) and isinstance(owner, ast.ClassDef):
                 return _bound(owner, method)
@@ -185,7 +185,7 @@ class Document:
         return self.line_starts[line - 1] + column - 1 if 0 < line <= len(self.line_starts) else -1
 
     def offset(self, line: int, byte: int) -> int:
-        """Return the offset of a position in the syntax tree, whose columns count UTF-8 bytes."""
+        """Return the character offset of a position in the syntax tree, where columns count UTF-8 bytes."""
         start = self.line_starts[line - 1]
         if self.text.isascii():
             return start + byte
@@ -203,7 +203,7 @@ def document(path: str, text: str) -> Document:
 
 
 def parse(text: str) -> ast.Module:
-    """Parse a text without issuing the warnings of the compiler. Raise SyntaxError."""
+    """Parse a text without showing warnings of the compiler. Raise SyntaxError."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return ast.parse(text)
@@ -217,7 +217,7 @@ def parse_expression(code: str) -> ast.expr:
 
 
 def apply_edits(source: Document, edits: Iterable[Edit]) -> str:
-    """Return the text with all edits applied; insertions at the same offset keep their order.
+    """Return the text with all edits applied. Insertions at the same offset keep their order.
 
     Raise RepairError if two edits overlap or the result is not valid Python.
     """

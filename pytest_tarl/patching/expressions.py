@@ -88,12 +88,12 @@ def strength(code: str) -> int:
 
 
 def enclosed(code: str, needed: int) -> str:
-    """Return an expression, in parentheses if its precedence is below `needed`."""
+    """Return an expression. Put it in parentheses if its precedence is below `needed`."""
     return code if strength(code) >= needed else f"({code})"
 
 
 def fitted(source: Document, node: ast.expr, code: str) -> str:
-    """Return the code, in parentheses if it needs them at the place of `node`."""
+    """Return the code as it must be written in place of `node`, with parentheses if they are needed there."""
     before = source.text[: source.start(node)].rstrip(" \t")[-1:]
     after = source.text[source.end(node) :].lstrip(" \t")[:1]
     if before == "(" and after == ")":
@@ -126,7 +126,7 @@ def choice(condition: str, then: str, otherwise: str) -> str:
 
 
 def counting(source: Document, node: ast.expr) -> bool:
-    """Return whether a place needs an integer: an index, a length, or a code that is compared for equality."""
+    """Return whether a place needs an integer: it is an index, a length, or a number compared for equality."""
     child: ast.AST = node
     for parent in source.ancestors(node):
         if isinstance(parent, ast.BinOp) and not isinstance(parent.op, ast.Div | ast.Pow | ast.Mod):
@@ -158,7 +158,7 @@ def _counts(parent: ast.AST, child: ast.AST) -> bool:
 
 
 def _is_integer_vector(node: ast.AST) -> bool:
-    """Return whether a node is a literal list of at least two integers: a colour, a pixel, a shape."""
+    """Return whether a node is a literal list of at least two integers, such as a colour, a pixel or a shape."""
     elements = node.elts if isinstance(node, ast.List | ast.Tuple) else []
     numbers = [each.operand if isinstance(each, ast.UnaryOp) else each for each in elements]
     return len(numbers) > 1 and all(
@@ -167,7 +167,7 @@ def _is_integer_vector(node: ast.AST) -> bool:
 
 
 def _needed(parent: ast.AST, child: ast.expr) -> int:
-    """Return the lowest precedence of a child expression that needs no parentheses under `parent`."""
+    """Return the lowest precedence that the expression `child` may have without parentheses under `parent`."""
     if isinstance(parent, ast.BinOp):
         return _beside(parent, child)
     if isinstance(parent, ast.UnaryOp):

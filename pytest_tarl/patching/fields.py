@@ -15,7 +15,7 @@ _SHAPING = ast.BinOp | ast.UnaryOp | ast.IfExp | ast.List | ast.Tuple
 
 
 def in_integer_field(source: Document, node: ast.expr) -> bool:
-    """Return whether an expression is the value, or part of the value, of an integer field of a message."""
+    """Return whether an expression is the value (or a part of the value) of an integer field of a message."""
     child: ast.AST = node
     for parent in source.ancestors(node):
         if isinstance(parent, ast.keyword) and parent.arg is not None:
@@ -54,7 +54,7 @@ def _takes_integer(source: Document, target: ast.expr) -> bool:
 
 @cache
 def _constructors(source: Document) -> dict[str, ast.expr]:
-    """Map targets of assignments to the function that the assigned call names, such as `out` to `Int32`."""
+    """Map each variable that is assigned a call to the called function: `out` to `Int32` for `out = Int32()`."""
     return {
         ast.unparse(target): node.value.func
         for node in ast.walk(source.tree)
@@ -74,7 +74,7 @@ def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bo
 
 
 def _type_name(source: Document, kind: ast.expr) -> str:
-    """Return the ROS name of a message type, given its expression in this file, or "" if it was not imported."""
+    """Return the ROS name of a message type, given its expression in this file, or "" if it is not imported."""
     package, _, short = _packages(source).get(ast.unparse(kind).partition(".")[0], "").partition("/")
     return f"{package}/msg/{short or ast.unparse(kind).rpartition('.')[2]}" if package else ""
 

@@ -18,14 +18,14 @@ from pytest_tarl.variables import prefixes
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """An expression for a sensor's value; `absent` is the subexpression that is None before the first message."""
+    """An expression for a sensor's value. Its part `absent` is None before the first message."""
 
     code: str
     absent: str = ""
 
 
 def condition(guard: Guard, readings: Mapping[str, Reading], topics: Mapping[str, str]) -> str:
-    """Return a guard as Python, or "" if it always holds; `readings` maps sensor names to expressions."""
+    """Return a guard as Python code, or "" if it always holds. `readings` maps sensor names to expressions."""
     parts: list[str] = []
     for conjunct in guard.conjuncts:
         if not always(conjunct):
@@ -53,8 +53,8 @@ def boolean(sensor: Sensor, topics: Mapping[str, str]) -> bool:
 def held(source: Document, place: ast.AST, expressions: Iterable[str], conjunct: Conjunct) -> Reading | None:
     """Return the first expression that can be evaluated at `place`, or None.
 
-    An expression is skipped if it may be unbound at `place`, or if its initial value makes the condition true: the
-    original code must run until the first message arrives.
+    An expression is skipped if it may be unbound at `place`, or if its initial value makes the condition true. The
+    condition must be false until the first message arrives, so that the original code runs.
     """
     for code in expressions:
         chain = prefixes(code)
@@ -73,7 +73,7 @@ def bound(sensor: Sensor, value: float) -> str:
 
 
 def _starts_true(source: Document, place: ast.AST, chain: tuple[str, ...], conjunct: Conjunct) -> bool:
-    """Return whether a condition can hold before the first message, given that fields of new messages are zero."""
+    """Return whether a condition can hold before the first message, when fields of new message objects are 0."""
     constants = initial(source, place, chain[-1])[0]
     if any(initial(source, place, each)[1] for each in chain):
         constants.add(0.0)
@@ -86,7 +86,7 @@ def _satisfied(conjunct: Conjunct, value: Constant) -> bool:
     if value is None:
         return False
     number = float(value)
-    # the interval of an angle crosses the end of the range, as from 3.0 to -3.0
+    # the interval of an angle wraps around the end of the range, such as an interval from 3.0 to -3.0
     if conjunct.low > conjunct.high:
         return number >= conjunct.low or number <= conjunct.high
     return conjunct.low <= number <= conjunct.high
@@ -105,9 +105,9 @@ def _test(conjunct: Conjunct, code: str, is_boolean: bool) -> str:
 
 
 def _interval(sensor: Sensor, low: float, high: float, code: str) -> str:
-    """Return the condition `low <= code < high`; at the upper end of the sensor's range, `<=` replaces `<`.
+    """Return the condition `low <= code < high`. If `high` is the end of the sensor's range, use `<=` instead of `<`.
 
-    If the interval of an angle crosses the end of the range, the condition bounds the angle relative to `low`.
+    If the interval of an angle wraps around the end of the range, the condition bounds the difference from `low`.
     """
     if low > high:
         period = (sensor.high or 0.0) - (sensor.low or 0.0)
@@ -140,6 +140,6 @@ def _quoted(text: str) -> str:
 
 
 def _rejects_none(conjunct: Conjunct, is_boolean: bool) -> bool:
-    """Return whether the condition is False, and does not raise, if the value is None."""
+    """Return whether the condition evaluates to False, without raising, if the value is None."""
     equality = bool(conjunct.sensor.categories) or conjunct.low == conjunct.high
     return equality and not (is_boolean and not conjunct.low)

@@ -39,10 +39,10 @@ def imported(source: Document, module: str, name: str) -> str:
 
 
 def reference(source: Document, module: str, name: str) -> tuple[str, Import | None] | None:
-    """Return the expression for a new name of `module`, and the import that it needs, or None if it needs no import.
+    """Return the expression for a new name of `module`, and the import that must be added (or None).
 
-    Return None if the file imports nothing from `module`. Modules are compared by the end of their dotted names, so
-    that relative imports and files run as scripts match.
+    Return None if the file imports nothing from `module`. Modules match if one dotted name ends with the other, which
+    allows for relative imports and for files that are run as scripts.
     """
     leaf = module.rpartition(".")[2]
     for node in top_imports(source):
@@ -61,7 +61,7 @@ def reference(source: Document, module: str, name: str) -> tuple[str, Import | N
 
 
 def import_edits(source: Document, wanted: Iterable[Import]) -> list[Edit]:
-    """Return edits that add imports; they extend an existing import of the same module if there is one."""
+    """Return edits that add imports. If a module is already imported from, extend this import."""
     by_module: dict[str, list[Import]] = {}
     for each in dict.fromkeys(wanted):
         by_module.setdefault(each.module, []).append(each)
@@ -92,7 +92,7 @@ def _added(source: Document, module: str, group: Sequence[Import]) -> Iterator[E
 
 
 def _extended(source: Document, node: ast.Import | ast.ImportFrom, wanted: Import) -> Edit:
-    """Add a name to an import; keep names sorted if they are, and on separate lines if they are."""
+    """Add a name to an import. If its names are sorted or on separate lines, keep them so."""
     names = [alias.name for alias in node.names]
     later = [alias for alias in node.names if alias.name > wanted.name and names == sorted(names)]
     neighbour = later[0] if later else node.names[-1]

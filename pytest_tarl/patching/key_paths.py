@@ -1,4 +1,4 @@
-"""The keys above a number in a YAML or JSON file, which say to which node a parameter belongs."""
+"""The keys above a number in a YAML or JSON file. They show to which node a parameter belongs."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ _MOST_FILES = 64  # maximum number of files whose keys are cached
 
 
 def keys_above(place: Place, text: str) -> tuple[str, ...] | None:
-    """Return the keys of a number in a file with this text, without wildcards; None for a launch file, for example."""
+    """Return the keys above a number in a file with this text, without wildcards; None for other kinds of files."""
     if not place.path.endswith((".yaml", ".yml", ".json")):
         return None
     return _keys(text).get(place.start)
 
 
 def belongs(name: str, keys: Sequence[str]) -> bool:
-    """Return whether a number with these keys can be the value of a parameter with an absolute name: `/base/gain`."""
+    """Return whether a number under these keys can be the value of a parameter with an absolute name (`/base/gain`)."""
     return name.strip("/").split("/")[-len(keys) :] == [*keys]
 
 
 @lru_cache(_MOST_FILES)
 def _keys(text: str) -> dict[int, tuple[str, ...]]:
-    """Return the keys above each number of a file, by its offset, without wildcards; empty without PyYAML."""
+    """Map the offset of each number in a file to the keys above it, without wildcards; empty without PyYAML."""
     try:
         import yaml
 

@@ -1,4 +1,4 @@
-"""Find the numbers in a Python launch file that determine the value of a parameter: `{"gain": 2 * base}`."""
+"""Find the numbers in a Python launch file that determine a parameter's value, as in `{"gain": 2 * base}`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 DEEPEST = 20  # maximum number of names and arguments between a parameter and a number
 _NUMERAL = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*")
 _TRUTH = {"true": True, "false": False}
-# functions that return their first argument, also as another type
+# functions that return their first argument, perhaps converted to another type
 _SAME = ("float", "int", "str", "ParameterValue", "TextSubstitution")
 
 
@@ -23,7 +23,7 @@ class _NoNumberError(Exception):
 class Numeral:
     """A number in a launch file, as a node of its syntax tree, that determines the value of a parameter.
 
-    If the parameter is to be f times as large, the number must be (1 + (f - 1) · `share`) times as large.
+    To make the parameter f times as large, the number must be made (1 + (f - 1) · `share`) times as large.
     """
 
     node: ast.expr
@@ -37,7 +37,7 @@ def key_of(name: str) -> str:
 
 
 def numerals(key: str, tree: ast.Module) -> Iterator[Numeral]:
-    """Yield the numbers that determine the parameters with the last name `key`, those in its own expression first."""
+    """Yield the numbers that determine parameters with the key `key`. Numbers in its own expression come first."""
     names = _Names.of(tree)
     for expression in _expressions(key, tree):
         found = _written(expression)
@@ -51,7 +51,7 @@ def numerals(key: str, tree: ast.Module) -> Iterator[Numeral]:
 
 
 def computed(key: str, tree: ast.Module) -> Iterator[ast.expr]:
-    """Yield the expressions of parameters with the last name `key` in which no number can be changed."""
+    """Yield the expressions of parameters with the key `key`, if no number in the expression can be changed."""
     names = _Names.of(tree)
     for expression in _expressions(key, tree):
         try:
@@ -64,7 +64,7 @@ def computed(key: str, tree: ast.Module) -> Iterator[ast.expr]:
 
 @dataclass
 class _Names:
-    """The values of names that are assigned once, and the defaults of launch arguments that are declared once."""
+    """The values of names that are assigned only once, and the defaults of launch arguments declared only once."""
 
     assigned: dict[str, ast.expr] = field(default_factory=dict)
     arguments: dict[str, ast.expr] = field(default_factory=dict)
@@ -100,7 +100,7 @@ def _single(found: Mapping[str, list[ast.expr | None]]) -> dict[str, ast.expr]:
 
 
 def _expressions(key: str, tree: ast.Module) -> Iterator[ast.expr]:
-    """Yield what a file assigns to parameters with the last name `key`, in the order of the file."""
+    """Yield the expressions that a file assigns to parameters with the key `key`, in the order of the file."""
     found: list[ast.expr] = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Dict):
@@ -119,7 +119,7 @@ def _is_named(node: ast.expr, key: str) -> bool:
 
 
 def _determining(expression: ast.expr, names: _Names) -> Iterator[Numeral]:
-    """Yield the numbers of which the value of an expression is a linear function. Raises _NoNumberError."""
+    """Yield the numbers on which the value of an expression depends linearly. Raises _NoNumberError."""
     found: dict[int, tuple[ast.expr, int]] = {}
     whole = _value(expression, names, {}, found)
     for node, _ in sorted(found.values(), key=lambda one: one[1]):
@@ -139,7 +139,7 @@ def _value(
     found: dict[int, tuple[ast.expr, int]],
     depth: int = 0,
 ) -> float:
-    """Return the value of an expression with the numbers `given` by the identity of their nodes.
+    """Return the value of an expression. `given` replaces numbers; its keys are the identities of their nodes.
 
     Adds each number with its distance from the expression to `found`. Raises _NoNumberError.
     """
@@ -156,7 +156,7 @@ def _value(
     if isinstance(node, ast.BinOp):
         left, right = (_value(one, names, given, found, depth) for one in (node.left, node.right))
         return _operated(node.op, left, right)
-    # launch joins a list of substitutions into one text; here, the list has a single element
+    # launch joins a list of substitutions into one text; here, the list has only one element
     if isinstance(node, ast.List) and len(node.elts) == 1:
         return _value(node.elts[0], names, given, found, depth)
     if isinstance(node, ast.Call) and _function(node) == "LaunchConfiguration":
@@ -181,7 +181,7 @@ def _operated(operator: ast.operator, left: float, right: float) -> float:
 
 
 def _written(node: ast.expr) -> bool | int | float | None:
-    """Return the number that a constant is, also as a string; None for other expressions."""
+    """Return the value of a literal number or of a string that contains a number, or None for other expressions."""
     sign, inner = 1, node
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         sign, inner = -1, node.operand

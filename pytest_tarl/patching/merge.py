@@ -66,7 +66,7 @@ def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
 
 
 def separated(content: bytes, wanted: Sequence[Replacement]) -> bytes | None:
-    """Undo `combined`: return the original text, or None if a replacement is not in the content."""
+    """Undo `combined`: return the original text, or None if the content lacks one of the replacements."""
     lines, result, at, shift = split_lines(content), list[bytes](), 0, 0
     for one in _in_order(wanted):
         start = one.start + shift
@@ -119,7 +119,7 @@ def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
 
 
 def _clash(one: Replacement, other: Replacement) -> bool:
-    """Return whether two replacements overlap; pure insertions overlap nothing."""
+    """Return whether two replacements overlap. Pure insertions never overlap anything."""
     if one == other or agreed(one, other) is not None:
         return False
     return one.start < other.end and other.start < one.end

@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 class Mutation:
     """A new value for an operand at its use.
 
-    An operand is a use of a constant. `value` is the new value of a literal. For other operands, `value` is a factor on
-    the use, or a summand if the constant is zero. A boolean operand is flipped. With a `place`, the change is made at
-    the constant's definition instead.
+    An operand is a use of a constant. For a literal, `value` is the new value. For other operands, `value` is a factor
+    on the use, or a summand if the constant is zero. A boolean operand is flipped. If `place` is set, the change is
+    made there, at the constant's definition, and not at the use.
     """
 
     operand: Operand
     value: float | int | bool
     place: Place | None = None
-    # set for a structural repair: the operand is then an expression and the value a factor
+    # set for a structural repair: then the operand is an expression, and the value is a factor
     form: Form | None = None
     # the scale on which the search moves the operand
     chart: Chart | None = field(default=None, compare=False)
@@ -64,7 +64,7 @@ def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutati
 def stepped(
     operand: Operand, step: float, chart: Chart | None, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Mutation | None:
-    """Return the mutation for a step on a chart (for a factor if `chart` is None), or None if nothing changes."""
+    """Return the mutation for a step on a chart (or for a factor if `chart` is None); None if nothing changes."""
     if chart is None or operand.value is None:
         return mutate(operand, step)
     by = chart.factor(float(operand.value), step)
@@ -82,7 +82,7 @@ def to_step(
 
 
 def step_of(mutation: Mutation) -> float | None:
-    """Return the step of a mutation on its chart, or None if it has no chart or no step gives its value."""
+    """Return the step of a mutation on its chart, or None if there is no chart or no such step."""
     constant = mutation.operand.value
     if mutation.chart is None or constant is None:
         return None
@@ -92,7 +92,7 @@ def step_of(mutation: Mutation) -> float | None:
 
 
 def located(mutation: Mutation) -> Mutation:
-    """Return the mutation of a parameter in a file with its place there; all others unchanged."""
+    """If a mutation changes a parameter in a file, add the place in the file; return other mutations unchanged."""
     operand = mutation.operand
     if isinstance(operand, ParameterInFile) and mutation.place is None:
         return replace(mutation, place=operand.place)
@@ -100,7 +100,7 @@ def located(mutation: Mutation) -> Mutation:
 
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:
-    """Return whether an operand must stay an integer: an index, a length, a compared code, or an integer field."""
+    """Return whether an operand must stay an integer, such as an index, a length or an integer message field."""
     source = analysed_document(analysis, operand.span.path)
     return isinstance(operand.value, int) and needs_integer(source, source.find(operand.span))
 
@@ -132,7 +132,7 @@ def redefinition(mutation: Mutation) -> float | int | bool:
 
 
 def form_values(mutation: Mutation) -> dict[str, float]:
-    """Return the parameters of a structural mutation; the one that is searched is scaled by the mutation's value."""
+    """Return the parameters of a structural mutation. The searched parameter is scaled by the mutation's value."""
     if mutation.form is None:
         return {}
     values = dict(mutation.form.defaults)
@@ -158,7 +158,7 @@ def _moved(operand: Operand, wanted: float, unchanged: float) -> Mutation | None
 
 
 def _step(factor: float) -> float:
-    """Return the value of a zero after a factor: negated for the inverse factor, 0 for factor 1."""
+    """Return what a zero becomes after a factor: 0 for factor 1, and opposite values for f and 1/f."""
     size = abs(factor)
     if size < 1e-9:
         return 0.0

@@ -1,7 +1,8 @@
-"""Numbers in the program that may define a constant which the analysis cannot follow, found by the constant's name.
+"""Find numbers that may define a constant that the analysis cannot follow. They are found by the constant's name.
 
-Examples are the default of `add_argument("--gain", default=2.0)` for `args.gain`, the entry `("gain", 2.0)` of a table
-that a loop reads, and the second number of `array([1.0, 2.0])` for `C[1]`. Whether a number is in force must be tested.
+Three examples: for `args.gain`, the default in `add_argument("--gain", default=2.0)`; if a loop reads a table, its
+entry `("gain", 2.0)`; for `C[1]`, the second number of `C = array([1.0, 2.0])`. Whether the program really uses a
+number must be tested.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
 OPTION = "add_argument"  # method of argparse that declares an option
-PAIR = 2  # minimum number of elements of an entry: a name and a number
+PAIR = 2  # minimum number of elements of a table entry: a name and a number
 
 
 def named_numbers(analysis: Analysis, operand: Operand) -> list[Place]:
-    """Return the numbers that may define an operand, those in its own expression and file first.
+    """Return the numbers that may define an operand. Those in its own expression and file come first.
 
-    Numbers that differ from the operand's value, if it is known, and zeros are left out.
+    Zeros are left out. If the operand's value is known, numbers with other values are left out, too.
     """
     found: dict[Place | None, None] = {}
     name = _name(analysis, operand)
@@ -44,7 +45,7 @@ def named_numbers(analysis: Analysis, operand: Operand) -> list[Place]:
 
 
 def _inside(source: Document, own: ast.expr) -> Iterator[Place | None]:
-    """Yield the only number of a call that reads a constant by its name: `read("gain", 2.0)`."""
+    """If a call reads a constant by its name, as `read("gain", 2.0)` does, yield the only number in the call."""
     given = [*own.args, *(one.value for one in own.keywords)] if isinstance(own, ast.Call) else []
     texts = strings(given)
     numbers = [one for one in given if _is_number(one)]
@@ -53,7 +54,7 @@ def _inside(source: Document, own: ast.expr) -> Iterator[Place | None]:
 
 
 def _elements(source: Document, own: ast.expr) -> Iterator[Place | None]:
-    """Yield the element of a list that a call turns into an array: `C[1]` after `C = array([1.0, 2.0])`."""
+    """Yield the list element that an expression reads from an array: 2.0 for `C[1]` after `C = array([1.0, 2.0])`."""
     if not isinstance(own, ast.Subscript):
         return
     index = literal_number(own.slice)
@@ -86,7 +87,7 @@ def _name(analysis: Analysis, operand: Operand) -> str:
 
 
 def _numbers(node: ast.AST, name: str) -> Iterator[ast.expr]:
-    """Yield the numbers that a piece of code gives to a name: an option, an entry of a table, a keyword."""
+    """Yield the numbers that code assigns to a name by an option, a table entry or a keyword."""
     if isinstance(node, ast.Call):
         named = {one.arg: one.value for one in node.keywords}
         if called(node) == OPTION and name in _destinations(node, named):

@@ -29,7 +29,7 @@ _NO_NEWLINE = "\\ No newline at end of file\n"
 def unified_diff(
     originals: Mapping[Path, bytes], changed: Mapping[Path, str], root: Path, header: Sequence[str]
 ) -> str:
-    """Return the diff from the files' bytes to their new text, preceded by comment lines.
+    """Return the diff from the original bytes of files to their new texts, preceded by comment lines.
 
     Paths are relative to the top of the git repository that contains the files, or else to `root`, because `git apply`
     silently skips other paths. Bytes that are not UTF-8 become surrogate characters, which `readable` replaces. Raise
@@ -52,7 +52,7 @@ def bytes_diff(texts: Mapping[str, tuple[bytes, bytes]], base: str, header: Sequ
 
 
 def seal(content: bytes) -> str:
-    """Return the hash of a patch, given its content without the line of the hash."""
+    """Return the hash of a patch, given its content without the line that contains the hash."""
     return hashlib.sha256(content).hexdigest()
 
 
@@ -82,7 +82,7 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
 
 
 def write_partial(diff: str, folder: Path, test: str, drift: str | None) -> Path:
-    """Write a change that is not a repair; each line is quoted so that no tool applies it. Raise RepairError."""
+    """Write a change that is not a repair. Quote each line, so that no tool applies the change. Raise RepairError."""
     content = b"".join(QUOTE + line for line in split_lines(diff.encode("utf-8", "surrogateescape")))
     path = folder / f"{slug(test)}-{slug(drift or 'online')}{PARTIAL}"
     try:
@@ -100,7 +100,7 @@ def unquoted(content: bytes) -> bytes:
 
 
 def apply_command(patch: Path, cwd: Path) -> str:
-    """Return the shell command that applies a patch of `<root>/.tarl/patches`; it is run in `cwd`.
+    """Return the shell command that applies a patch of `<root>/.tarl/patches` if it is run in `cwd`.
 
     In another folder, the command fails with a message that it cannot find the patch.
     """
@@ -109,13 +109,14 @@ def apply_command(patch: Path, cwd: Path) -> str:
     base = (patch.resolve().parents[2] / _stated_base(text)).resolve()
     if shutil.which("git") is None:
         return shlex.join(["patch", "-p1", "-d", _shown(base, here), "-i", str(patch.resolve())])
-    if base == here:  # in a subfolder, git silently skips files outside it and exits with 0
+    # if git runs in a subfolder, it silently skips files outside the subfolder and exits with 0
+    if base == here:
         return shlex.join(["git", "apply", _shown(patch.resolve(), here)])
     return shlex.join(["git", "-C", _shown(base, here), "apply", _shown(patch.resolve(), base)])
 
 
 def blob_id(content: bytes) -> str:
-    """Return git's blob id of a content."""
+    """Return the blob id that git gives to a content."""
     return hashlib.sha1(b"blob %d\0" % len(content) + content, usedforsecurity=False).hexdigest()
 
 
@@ -172,7 +173,7 @@ def _encoded(path: Path, original: bytes, text: str) -> bytes:
 
 
 def _with_endings(original: str, text: str) -> str:
-    """Keep the line endings of unchanged lines; new lines get the most frequent ending."""
+    """Keep the line endings of unchanged lines. New lines get the most frequent line ending of the file."""
     before, after = _lines(original), _lines(text)
     usual = "\r\n" if original.count("\r\n") * 2 > original.count("\n") else "\n"
     bare = [line.replace("\r\n", "\n") for line in before]

@@ -1,4 +1,4 @@
-"""Locate the files of a patch; refuse files outside the project, to which a header or symbolic links may lead."""
+"""Locate the files of a patch. Refuse files outside the project: a header or symbolic links may lead there."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
     """Return the project's folder and the patched files in order, with links resolved.
 
     The project is `directory`, or else the git repository around `.tarl`, or else the folder that contains `.tarl`.
-    Raise RepairError if a file does not exist, and RefusedError if one lies outside the project.
+    Raise RepairError if a file does not exist, and RefusedError if a file lies outside the project.
     """
     try:
         return _located(patch, directory)

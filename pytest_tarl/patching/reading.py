@@ -1,4 +1,4 @@
-"""Read patches from files: the facts in the header and the changes to each file."""
+"""Read patches from files: the keys and values in the header, and the changes to each file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _HEADER = (  # lines of a file after `diff --git`; git appends a tab to names wi
     re.compile(rb"\+\+\+ b/([^\t\n]+)\t?\n"),
 )
 
-# folders that no patch changes: git runs files of its own, and TARL loads compiled nodes from its cache
+# folders that no patch may change: git runs files in its folder, and TARL loads compiled nodes from its cache
 CLOSED = frozenset({".git", ".tarl"})
 
 
@@ -59,7 +59,7 @@ class Patch:
         return self.told(BASE)[-1]
 
     def told(self, key: str) -> list[str]:
-        """Return all header values of a key; a merged patch has one value for each of its parts."""
+        """Return all header values of a key. A merged patch has one value for each patch that it consists of."""
         return [value for name, value in self.facts if name == key]
 
 
@@ -110,7 +110,7 @@ def _inside(name: str) -> bool:
 
 
 def in_closed_folder(parts: Iterable[str]) -> bool:
-    """Return whether one of the names of a path is a folder that no patch changes, in any case of the letters."""
+    """Return whether a part of a path names a folder that no patch may change, in upper or lower case."""
     return not CLOSED.isdisjoint(map(str.lower, parts))
 
 
@@ -129,7 +129,7 @@ def _file(body: bytes) -> FilePatch:
 
 
 def _hunks(lines: Sequence[bytes]) -> Iterator[Hunk]:
-    """Yield the hunks; a backslash line marks the line before it as unterminated. Raise ValueError."""
+    """Yield the hunks. A line with a backslash says that the line before it has no line ending. Raise ValueError."""
     starts = [at for at, line in enumerate(lines) if line.startswith(b"@@ ")]
     for at, end in pairwise((*starts, len(lines))):
         found = _HUNK.fullmatch(lines[at])

@@ -1,4 +1,4 @@
-"""Write mutations and their guard into the source, exactly as in the later patch."""
+"""Write mutations and their guard into the source. The text is exactly what the patch contains later."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 def conditional_definition(mutations: Sequence[Mutation], guard: Guard) -> bool:
-    """Return whether a guard would apply to a number that is changed at its definition, which cannot be written."""
+    """Return whether a guard would apply to a number at its definition. Such a change cannot be written."""
     placed = any(located(mutation).place is not None for mutation in mutations)
     return placed and not all(map(always, guard.conjuncts))
 
@@ -88,7 +88,7 @@ def _formed(
 ) -> Iterator[tuple[Document, ast.expr, Form, dict[str, float], SiteId]]:
     """Yield each form (template at an expression) once, with the parameters from all its mutations.
 
-    A form that has the same expression of another axis as its partner is yielded for both.
+    If the partner of a form is the same expression for another axis, the form is yielded for both axes.
     """
     found: dict[tuple[Span, Template, str, Span | None], tuple[Mutation, dict[str, float]]] = {}
     for mutation in mutations:
@@ -133,14 +133,14 @@ def guard_text(
 
 @dataclass(frozen=True)
 class Use:
-    """A change of one use, with its site (statement)."""
+    """A change of one use of a constant, with its site (statement)."""
 
     site: SiteId
     change: Change
 
 
 class Conditions:
-    """The Python code of a guard at every place that checks it, and the subscriptions that the guard needs."""
+    """The Python code of a guard for every place that checks the guard, and the subscriptions that it needs."""
 
     def __init__(self, analysis: Analysis, guard: Guard, topics: Mapping[str, str]) -> None:
         self._analysis = analysis
@@ -155,7 +155,7 @@ class Conditions:
         return condition(self._guard, readings, self._topics)
 
     def value(self, sensor: Sensor, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return a sensor's value at a place as Python; it is 0 before the first message. Raise RepairError."""
+        """Return the code of a sensor's value at a place. It is 0 before the first message. Raise RepairError."""
         reading = self._reading(Conjunct(sensor, math.inf, math.inf), source, site, place)
         if reading.absent and reading.absent != reading.code:
             raise RepairError(
@@ -186,7 +186,7 @@ class Conditions:
 def _file_edits(
     source: Document, statements: Sequence[tuple[ast.stmt, list[Use]]], conditions: Conditions
 ) -> Iterator[Edit]:
-    """Yield the edits of one file: plain ones, conditional expressions, and branches around statements."""
+    """Yield the edits of one file: unconditional changes, conditional expressions, and branches around statements."""
     twice: list[tuple[ast.stmt, list[Change], str]] = []
     for statement, uses in statements:
         changes = [use.change for use in uses]
@@ -205,7 +205,7 @@ def _file_edits(
 def _by_file(
     analysis: Analysis, mutations: Sequence[Mutation]
 ) -> list[tuple[Document, list[tuple[ast.stmt, list[Use]]]]]:
-    """Return the mutated uses by file and statement, in the order of the text."""
+    """Group the mutated uses by file and statement, in the order of the text."""
     files: dict[str, dict[ast.stmt, list[Use]]] = {}
     for mutation in sorted(mutations, key=lambda each: each.operand.span):
         source = analysed_document(analysis, mutation.operand.span.path)
@@ -217,7 +217,7 @@ def _by_file(
 
 
 def _place(source: Document, statement: ast.stmt, uses: Sequence[Use]) -> Callable[[Use], ast.AST]:
-    """Return a function that gives the place where a use checks the condition: a statement, lambda or generator."""
+    """Return a function that takes a use and returns the statement, lambda or generator that checks its condition."""
     if doubled(source, statement, [use.change for use in uses]):
         return lambda _: statement
     return lambda use: lazy(source, use.change.node) or statement

@@ -1,4 +1,4 @@
-"""Reconcile two changes to the same lines: two added imports, or an insertion that contains the other."""
+"""Reconcile two changes of the same lines, if both add imports or if one insertion contains the other one."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _within(narrow: Lines, wide: Lines) -> bool:
 
 
 def _imported(texts: Sequence[Lines]) -> list[Imports] | None:
-    """Return the imports of each text, or None if one contains anything else, such as a comment."""
+    """Return the imports of each text, or None if a text contains anything else, such as a comment."""
     found = []
     for lines in texts:
         imports: Imports = {}
@@ -63,7 +63,7 @@ def _added(before: Imports, after: Imports) -> bool:
 
 
 def _written(first: Imports, second: Imports, ending: bytes) -> list[bytes]:
-    """Return lines with the imports of both texts; names are sorted if they are sorted in both texts."""
+    """Return lines with the imports of both texts. Sort the names if they are sorted in both texts."""
     lines = []
     for where in {**first, **second}:
         mine, theirs = list(first.get(where, ())), list(second.get(where, ()))

@@ -11,8 +11,8 @@ from pytest_tarl.patching.document import Document, Edit, parse_expression
 from pytest_tarl.patching.expressions import choice, fitted
 from pytest_tarl.patching.vocabulary import free, names
 
-LONGEST_COPY = 3  # maximum number of lines of a statement that may be written twice, under `if` and `else`
-# maximum number of characters of a condition inside an expression; longer ones are assigned to a name
+LONGEST_COPY = 3  # a statement of at most this number of lines may be written twice, under `if` and `else`
+# maximum number of characters of a condition inside an expression; longer conditions are assigned to a name
 LONGEST_CONDITION = 48
 _ARITHMETIC = {
     "abs",
@@ -47,7 +47,7 @@ class Change:
 
 
 def lazy(source: Document, node: ast.expr) -> ast.expr | None:
-    """Return the body of the lambda or generator that evaluates a use after the statement has run, or None."""
+    """If a use is evaluated after its statement has run, return the body of its lambda or generator, else None."""
     for around in source.ancestors(node):
         if isinstance(around, ast.stmt):
             return None
@@ -111,7 +111,7 @@ def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -
 def choices(
     source: Document, statement: ast.stmt, changes: Sequence[Change], tests: Sequence[str]
 ) -> Iterator[Edit]:
-    """Yield edits inside a statement; a long or repeated condition is assigned to a name before the statement."""
+    """Yield edits inside a statement. Before it, a condition that is long or repeated is assigned to a name."""
     test = tests[0]
     long = len(changes) > 1 or len(test) > LONGEST_CONDITION
     if long and nameable(source, statement, changes):
@@ -148,7 +148,7 @@ def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, 
 
 
 def _calls(statement: ast.stmt) -> bool:
-    """Return whether a statement runs code that may change a condition's value; arithmetic cannot."""
+    """Return whether a statement runs code that may change a condition's value. Arithmetic does not count."""
     for node in ast.walk(statement):
         if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
             return True

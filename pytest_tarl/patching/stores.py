@@ -1,4 +1,4 @@
-"""Where a subscription added by a repair stores its values: on the instance or in the module."""
+"""Choose where a subscription that a repair adds stores its values: on the instance or in the module."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from pytest_tarl.patching.document import Document, Edit, Function
 
 @dataclass(frozen=True)
 class Store:
-    """A place for values: attributes of `owner`'s instances, or globals of the module if there is no owner.
+    """A place to store values: attributes of the instances of `owner`, or module globals if there is no owner.
 
-    `places` are the syntax nodes that read the values. If another module subscribes, it imports this module under the
-    dotted name `module`.
+    `places` are the syntax nodes that read the values. `module` is the dotted name under which other modules import
+    this one if they subscribe.
     """
 
     source: Document
@@ -33,7 +33,7 @@ class Store:
 
 @dataclass(frozen=True)
 class Callback:
-    """A function to add that stores fields of a message in variables (`names`: field → variable)."""
+    """A function that a repair adds. It stores fields of a message in variables (`names`: field → variable)."""
 
     store: Store
     anchor: Anchor
@@ -42,7 +42,7 @@ class Callback:
     annotation: str = ""
 
     def lines(self, instance: str = "") -> list[str]:
-        """Return the lines of the function, which is a method if `instance` is given."""
+        """Return the lines of the function. If `instance` is given, the function is a method."""
         unit = self.store.source.unit
         argument = "message" if "message" not in self.names.values() else "received"
         typed = f"{argument}: {self.annotation}" if self.annotation else argument
@@ -116,7 +116,7 @@ def _first_reader(
 def _module_edits(callbacks: Sequence[Callback]) -> list[Edit]:
     """Put variables and functions before the first definition, or before an earlier statement that needs them.
 
-    If there are module variables just before that place, the new variables follow them.
+    If there are module variables just before this place, the new variables follow these.
     """
     source = callbacks[0].store.source
     start = _before_definitions(source, callbacks)
@@ -164,7 +164,7 @@ def _above_comments(source: Document, start: int) -> int:
 
 
 def _field(message: str, field: str) -> str:
-    """Return the expression for a dotted field; a number is an index into a sequence, with a length check."""
+    """Return the expression for a dotted field. A number in it is an index into a sequence, whose length is checked."""
     code, checks = message, list[str]()
     for part in field.split("."):
         if part.lstrip("-").isdigit():

@@ -1,4 +1,4 @@
-"""Apply a structural repair's template to an expression: edit the expression, and add state if the template has any."""
+"""Apply a structural repair's template to an expression: edit it, and add state if the template needs state."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _CLOSED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """A template at an expression: the parameter to search, the defaults of all parameters, sensor and partner."""
+    """A template applied to an expression: the parameter to search, all defaults, the sensor and the partner."""
 
     template: Template
     parameter: str = ""
     defaults: tuple[tuple[str, float], ...] = ()
-    # the other expression of a pair to swap, or the same expression of another axis, which changes alike
+    # the other expression of a pair to swap, or the same expression for another axis, which changes in the same way
     partner: Span | None = None
     sensor: Sensor | None = None
     field: str = ""  # for a published message: the field to change, such as `linear.x`
@@ -33,13 +33,13 @@ class Form:
     variable: str = ""  # a variable of the program that takes the place of the sensor
 
     def target(self, code: str) -> str:
-        """Return the code of what the form changes at an expression: the expression, or a field of it."""
+        """Return the code that the form changes: the expression itself, or a field of it."""
         return f"{code}.{self.field}" if self.field else code
 
 
 @dataclass(frozen=True)
 class Keeper:
-    """Where a node can store state between calls: the prefix of variable names and the place to initialise them."""
+    """Where a node can store state between calls: the prefix of the variable names, and where to initialise them."""
 
     prefix: str
     place: int
@@ -75,13 +75,13 @@ def form_edits(
     found = _written(_Place(source, statement, node, form, condition), fill)
     if (
         keeper is not None
-    ):  # first the edits that declare the state, because `global` has to precede the lines that use it
+    ):  # edits that declare state come first, because `global` has to precede the lines that use the variable
         found = _state_edits(keeper, [(states[name], initial) for name, initial in made.state]) + found
     return found
 
 
 def _numbers(template: Template, values: Mapping[str, float]) -> dict[str, str]:
-    """Return the code of each parameter's value; counts, whose grid is 1, are written as integers."""
+    """Return the code of each parameter's value. Counts (parameters with a grid of 1) are written as integers."""
     counts = {one.name for one in template.parameters if one.grid == 1.0}
     return {name: number(round(value) if name in counts else float(value)) for name, value in values.items()}
 
@@ -97,7 +97,7 @@ class _Place:
     condition: str
 
     def named(self, name: str, fill: Mapping[str, str]) -> tuple[list[str], str]:
-        """Return the lines that a form adds, and the expression that replaces the value; `name` holds the value."""
+        """Return the lines that a form adds, and the expression that replaces the value in the variable `name`."""
         fill = {**fill, "x": name}
         new = filled(self.form.template.expression, fill)
         lines = [filled(line, fill) for line in self.form.template.lines]
@@ -143,7 +143,7 @@ def _behind(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
 
 
 def _ahead(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
-    """Assign an unnamed value, as in `return a * b`, to a new name before the statement; change it there."""
+    """Assign an unnamed value, as in `return a * b`, to a new name before the statement, and change it there."""
     source, statement, node = place.source, place.statement, place.node
     if not _can_stand_before(source, statement) or not _always_evaluated(source, statement, node):
         raise RepairError(
@@ -250,7 +250,7 @@ def _keeper(source: Document, statement: ast.stmt) -> Keeper:
 
 
 def _first(body: Sequence[ast.stmt]) -> ast.stmt:
-    """Return the first statement after the docstring and the call of the base class. Raise RepairError."""
+    """Return the first statement after the docstring and the call of the base constructor. Raise RepairError."""
     for statement in body:
         value = statement.value if isinstance(statement, ast.Expr) else None
         docstring = isinstance(value, ast.Constant) and isinstance(value.value, str)
@@ -286,7 +286,7 @@ def _short(statement: ast.stmt, node: ast.expr) -> str:
 
 
 def _compared(code: str) -> tuple[str, str, str]:
-    """Return left side, operator and right side of a comparison; the operator is "" unless there are two operands."""
+    """Return the left side, operator and right side of a comparison; the operator is "" without two operands."""
     try:
         node = ast.parse(f"({code}\n)", mode="eval").body
     except SyntaxError:

@@ -1,4 +1,4 @@
-"""Subscriptions that a repair adds to a node, so that the guard can read a sensor that the node does not know."""
+"""Subscriptions that a repair adds to a node so that a guard can read a sensor to which it does not subscribe yet."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tarl_lint.model import SiteId
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
-# public attributes of rclpy.node.Node; overwriting one would break the node
+# public attributes of rclpy.node.Node; a new attribute with one of these names would break the node
 _NODE_ATTRIBUTES = {
     "client", "clients", "context", "default_callback_group", "executor", "guards", "handle", "publishers", "services",
     "subscriptions", "timers", "waitables",
@@ -41,7 +41,7 @@ class Subscription:
 
 
 class Subscriptions:
-    """The subscriptions added by one rewrite of a node, collected while its guards are written."""
+    """The subscriptions that one rewrite of a node adds. They are collected while the guards are written."""
 
     def __init__(self, analysis: Analysis, topics: Mapping[str, str]) -> None:
         self._analysis = analysis
@@ -112,7 +112,7 @@ class Subscriptions:
         raise RepairError(_unreachable(topic, source, place, seen))
 
     def _registration(self, each: Subscription, callback: str, imports: list[Import]) -> tuple[str, str]:
-        """Return the call that subscribes and the name of the message type in it; append the needed imports."""
+        """Return the call that subscribes, and the name of the message type in this call; append the needed imports."""
         source = each.anchor.source
         package, *_, name = each.type.split("/")
         kind = imported(source, f"{package}.msg", name)
@@ -148,7 +148,7 @@ class Subscriptions:
         return self._fresh(each.store, base, each.anchor.source)
 
     def _fresh(self, store: Store, base: str, *elsewhere: Document) -> str:
-        """Return a name that is unused in the modules that store and import it, and reserve it there."""
+        """Return a name that is unused in the modules that store or import it, and reserve the name there."""
         attribute = store.owner is not None
         known = [self._names(store.source, attribute)]
         if not attribute:
@@ -166,7 +166,7 @@ class Subscriptions:
         return self._taken[key]
 
     def _attributes(self, source: Document) -> set[str]:
-        """Return every attribute that a class may have: all attributes of analysed classes and of rclpy nodes."""
+        """Return all attributes that a class may have: those of all analysed classes and of rclpy nodes."""
         names = set(_NODE_ATTRIBUTES)
         for path in self._analysis.sources:
             with suppress(RepairError):  # a file that cannot be parsed contributes no names
@@ -178,7 +178,7 @@ class Subscriptions:
 
 
 def _store(anchor: Anchor, source: Document, place: ast.AST) -> Store:
-    """Store values on the instance if the subscription and the use are in methods of one class, else in the module."""
+    """Return where to store values: on the instance if subscription and use are in one class, else in the module."""
     there, here = source.method(anchor.statement), source.method(place)
     same = there is not None and here is not None and there[0] is here[0]
     return Store(source, here[0], here[2]) if same and here else Store(source)

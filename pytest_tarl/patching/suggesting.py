@@ -23,7 +23,7 @@ _TOLD = ("designed", "drifted", "drifted and repaired", "designed and repaired")
 
 
 def sarif(patch: Patch) -> str:
-    """Return SARIF 2.1.0 with one result, whose fix is the patch; paths are those of the patch."""
+    """Return SARIF 2.1.0 with one result. The fix of this result is the patch, with the same paths."""
     rule = {
         "id": RULE,
         "name": "RepairFound",
@@ -55,7 +55,7 @@ def sarif(patch: Patch) -> str:
 
 
 def markdown(patch: Patch) -> str:
-    """Return the evidence, then for each change a line that locates it and a `suggestion` block."""
+    """Return Markdown: the evidence, then for each change a line that locates it and a `suggestion` block."""
     parts = [_evidence(patch)]
     for path, first, last, text in _suggestions(patch):
         lines = f"line {last}" if first == last else f"lines {first} to {last}"
@@ -95,7 +95,10 @@ def _escaped(text: str) -> str:
 
 
 def _suggestions(patch: Patch) -> Iterator[tuple[str, int, int, str]]:
-    """Yield (path, first line, last line, new text), lines counted from 1; a pure insertion also replaces a line."""
+    """Yield (path, first line, last line, new text) for each change.
+
+    Lines are counted from 1. A pure insertion is yielded as the replacement of a neighbouring line.
+    """
     for file in patch.files:
         encoding = _encoding(patch, file)
         around = {hunk.start + at: line for hunk in file.hunks for at, line in enumerate(hunk.old)}
@@ -137,7 +140,7 @@ def _artifact(file: FilePatch) -> dict[str, str]:
 
 
 def _main(patch: Patch) -> list[tuple[FilePatch, Replacement]]:
-    """Return the last change that removes lines; imports and subscriptions come earlier and only add lines."""
+    """Return the last change that removes lines. Imports and subscriptions come earlier and only add lines."""
     taking = [(file, one) for file in patch.files for one in file.replacements if one.old]
     return (taking or [(file, one) for file in patch.files for one in file.replacements])[-1:]
 

@@ -34,12 +34,12 @@ KINDS = (
     "constant",
 )
 CONSTANT = "constant"  # a constant that follows a sensor or a variable
-PAIR = "pair"  # two expressions that differ in their axis
-FIELD = "field"  # a field of a published message that several statements build
+PAIR = "pair"  # two expressions that differ only in their axis
+FIELD = "field"  # a field of a published message, if several statements build the field
 SENT_BY_SENSOR = "sent by sensor"  # a published value
 OF_SENSORS = ("sensor", SENT_BY_SENSOR)  # kinds that are tried with each numeric sensor
 SCALES = (  # units of a parameter's default
-    "",  # parameters with this scale start with their default as it is
+    "",  # parameters with this scale start with their default, unscaled
     "typical",  # the usual size of the value in the designed world
     "larger",  # the larger of the value's usual sizes in the designed and in the drifted world
     "sensor",  # 1 divided by the sensor's usual size in the drifted world
@@ -49,10 +49,10 @@ SCALES = (  # units of a parameter's default
 )
 FIXED = "designed"  # the search does not change parameters with this scale
 STRONGER = ("larger", "smaller")
-# values of `without`: the kind of constant that the expression must not have at its top level, because the search can
+# values of `without`: the expression must not have this kind of constant at its top level, because the search can
 # change that constant instead
 WITHOUT = ("", "factor", "term")
-# placeholders of comparisons: the operator, its form with or without equality, its reverse
+# placeholders of comparisons: the operator, the operator with or without equality, and the reversed operator
 OPERATORS = ("op", "closed", "back")
 _KEYS = {
     "summary",
@@ -73,14 +73,15 @@ _NEGATIVE = re.compile(r"-([0-9][0-9.e+-]*)")
 LEADING = {
     "*": TERM,
     "+": ARITHMETIC,
-}  # operator → lowest precedence of its first operand without parentheses
+}  # operator → lowest precedence that its first operand may have without parentheses
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter to search, with its start value; `stronger` says whether larger or smaller values have more effect.
+    """A parameter to search, with its start value.
 
-    With a `grid`, only multiples of it are tried. A `signed` parameter may change its sign.
+    `stronger` says whether larger or smaller values have more effect. If there is a `grid`, only multiples of it are
+    tried. A `signed` parameter may change its sign.
     """
 
     name: str
@@ -93,7 +94,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """The replacement of an expression, the lines before it, and the state that both keep between calls."""
+    """The replacement of an expression, the lines to add before it, and the state that they keep between calls."""
 
     name: str
     summary: str
@@ -105,16 +106,16 @@ class Template:
     parameters: tuple[Parameter, ...] = ()
     without: str = ""
     symptoms: tuple[str, ...] = ()  # symptoms that indicate the template (see `pytest_tarl.symptoms`)
-    inside: bool = False  # for sensors: whether to change what a clamp limits, if the value has a clamp
+    inside: bool = False  # for sensors: whether to change the value inside a clamp, if there is one
 
     @property
     def from_first(self) -> bool:
-        """Return whether the state starts from the first value, so that a value that never varies stays the same."""
+        """Return whether the state starts from the first value. Then a value that never varies is not changed."""
         return any(initial in ("None", "[]") for _, initial in self.state)
 
     @property
     def from_zero(self) -> bool:
-        """Return whether the result is a state that starts from 0, as if the value had been 0 before."""
+        """Return whether the result is a state that starts from 0, as if all earlier values had been 0."""
         return any(initial == "0.0" and self.expression == f"{{{name}}}" for name, initial in self.state)
 
     def uses(self, placeholder: str) -> int:
@@ -189,7 +190,7 @@ def contents(path: Path) -> Mapping[str, Any]:
 
 
 def filled(text: str, values: Mapping[str, str]) -> str:
-    """Return a text with its placeholders replaced, in parentheses where the surrounding expression needs them."""
+    """Replace the placeholders in a text; add parentheses where the surrounding expression needs them."""
 
     def put(match: re.Match[str]) -> str:
         code = values[match[1]]
@@ -204,7 +205,7 @@ def filled(text: str, values: Mapping[str, str]) -> str:
 
 
 def _subtracted(values: Mapping[str, str], match: re.Match[str]) -> str:
-    """Return `- 0.2` for an added placeholder, or its product, of the value -0.2, else the unchanged text."""
+    """Write a sum with a negative number as a difference: `- 0.2` instead of `+ -0.2`, also in front of products."""
     negative = _NEGATIVE.fullmatch(values.get(match[1], ""))
     return f"- {negative[1]}" if negative else match[0]
 

@@ -1,7 +1,7 @@
-"""Before a patch is written, check that the file loses nothing except the lines that the repair changes.
+"""Check, before a patch is written, that the file loses nothing except the lines that the repair changes.
 
-This check does not rely on the positions that the edits use: it parses both texts into concrete syntax trees, which
-include comments.
+The check does not rely on the positions of the edits. It parses both texts into concrete syntax trees, which include
+comments.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def nothing_lost(path: str, original: str, patched: str, changed: Collection[int
     ]
     kept = (text for _, text in _pieces(after, after))
     for piece in wanted:
-        # `in` advances the iterator up to the piece, so the pieces must occur in the same order
+        # `in` advances the iterator up to the piece that it finds, so the pieces must occur in the same order
         if piece not in kept:
             raise RepairError(f"The repair of {path} would remove `{piece}`, so no patch is written.")
 
