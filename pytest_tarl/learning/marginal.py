@@ -11,7 +11,7 @@ import numpy as np
 from pytest_tarl.learning.tables import END, START, Floats, Ints, ListSample, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-# two worlds have no common cells, for this module, if at most this share of the deployed steps is in recorded cells
+# two worlds count as having no cells in common if at most this share of the deployed steps lies in recorded cells
 FEW = 0.05
 ENOUGH = 0.5  # sensors are left out until at least this share of the steps is in recorded cells
 

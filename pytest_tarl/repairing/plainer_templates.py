@@ -21,7 +21,7 @@ REPLACED = ("value", "number")  # kinds of templates that a factor on the same e
 
 
 def factors(order: Order, candidate: Candidate) -> Iterator[Candidate]:
-    """If a candidate keeps state at an expression, yield candidates with a factor at this expression instead."""
+    """Yield candidates that multiply an expression by a factor, in place of a candidate that stores state there."""
     found = {one.form and replace(one.form, parameter="") for one in candidate.mutations}
     form = found.pop() if len(found) == 1 else None
     gain = next((one for one in templates(order.root) if one.name == GAIN), None)

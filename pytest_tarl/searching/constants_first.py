@@ -57,7 +57,7 @@ class Search(Protocol):
     refused: set[tuple[Unit, Guard]]
 
     def ran_on(self, unit: Unit, guard: Guard, factor: float) -> int:
-        """Return the index of the pair on whose seed a change ran first."""
+        """Return the index of the mission pair whose seed the first mission of a change used."""
 
 
 def constants_first(

@@ -34,7 +34,7 @@ class Search(Protocol):
         """Try a factor; yield the candidate if it is confirmed."""
 
     def ran_on(self, unit: Unit, guard: Guard, factor: float) -> int:
-        """Return the index of the pair on whose seed a change ran first."""
+        """Return the index of the mission pair whose seed the first mission of a change used."""
 
 
 @dataclass(frozen=True, slots=True)

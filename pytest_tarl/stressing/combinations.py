@@ -187,7 +187,7 @@ def _apart(found: Sequence[Failure], evaluator: Evaluator) -> list[Failure]:
 class Combined:
     """The search in several directions: `begin` runs before the single directions are examined, `end` afterwards.
 
-    If no near drift fails with nominal options, each other option gets a search of its own.
+    If no drift near the nominal one fails while all options are nominal, each other option is searched separately.
     """
 
     def __init__(self, evaluator: Evaluator, together: Together) -> None:

@@ -34,7 +34,7 @@ def leave(ctx: Interpreter, escape: Escape, frame: Frame, states: dict[int, Delt
 
 
 def _state(ctx: Interpreter, depth: int, states: dict[int, Delta]) -> Delta:
-    """Return the state that an exception passes on; if the exception leaves an `__init__`, without the new object.
+    """Return the state that an exception passes on. It lacks the new object if the exception leaves an `__init__`.
 
     Nothing refers to this object, unless its `__init__` has stored it elsewhere before.
     """

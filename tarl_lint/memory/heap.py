@@ -160,7 +160,7 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
 
 
 def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return an unset field of a library object, which is part of the object; BOTTOM for summary and pseudo-fields."""
+    """Return what an unset field of a library object holds: a part of the object, or BOTTOM for pseudo-fields."""
     if name == ANY or name.startswith("<"):
         return BOTTOM
     if obj.name == NAMESPACE:

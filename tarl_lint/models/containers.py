@@ -179,7 +179,7 @@ def _append_subscriber(ctx: Interpreter, base: Value, subscriber: Value, frame: 
     """Append a subscriber at its own index.
 
     The index matters, since a synchroniser passes one message for each subscriber, in this order. If an earlier
-    `append` was conditional, this subscriber may also have the index of that one, or a later index.
+    `append` was conditional, its subscriber may be missing; then this subscriber has that index, or a later one.
     """
     known = sizes.unpacked(ctx, base)
     if known is None or len(known) >= sizes.MAX_KNOWN or any(v.pts & subscriber.pts for v in known):

@@ -155,7 +155,7 @@ def _in_turn(modules: Iterable[str], imports: Mapping[str, Sequence[Named]]) -> 
 
 
 def _imports(module: M, index: Index[M]) -> Iterator[M]:
-    """Yield the modules of the set that a module imports anywhere."""
+    """Yield each module of the set that the given module imports, also inside functions."""
     if "import" not in module.text:
         return
     for name in dict.fromkeys(_names(module)):

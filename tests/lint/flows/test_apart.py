@@ -69,7 +69,7 @@ def test_two_uses_of_one_topic_are_one_source(tmp_path):
      ("set([('left', double), ('right', half)])", {("left",), ("right",)})],
     ids=["in order", "in any order"],
 )  # fmt: skip
-def test_a_table_has_a_source_for_each_row_that_is_visited_alone(tmp_path, wanted, topics):
+def test_each_row_of_a_table_is_a_source_of_its_own_if_the_loop_is_unrolled(tmp_path, wanted, topics):
     node = (
         "import rospy\nfrom std_msgs.msg import Float64\n"
         "more, less = rospy.Publisher('more', Float64), rospy.Publisher('less', Float64)\n"

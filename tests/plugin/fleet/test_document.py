@@ -104,7 +104,7 @@ def test_a_robot_has_the_onset_of_the_bound_with_the_most_evidence() -> None:
     assert alone["bound_since"] is None
 
 
-def test_drifted_and_worse_robots_and_groups_are_named_separately() -> None:
+def test_the_page_lists_drifted_robots_and_robots_with_less_reward_separately() -> None:
     one, two, three = (robot(name) for name in ("a", "b", "c"))
     groups = tuple(group(name) for name in ("a", "b", "c"))
     found = written(

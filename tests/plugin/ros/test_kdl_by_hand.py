@@ -294,7 +294,7 @@ def test_denavit_and_hartenberg_parameters_are_applied_in_their_order() -> None:
     assert Frame.DH_Craig1989(a, alpha, d, theta) == tilt * along * turn * up
 
 
-def test_a_frame_is_made_of_a_rotation_a_vector_both_or_a_frame() -> None:
+def test_a_frame_can_be_made_from_a_rotation_or_a_vector_or_from_both_or_from_another_frame() -> None:
     assert Frame() == Frame.Identity() == Frame(Rotation(), Vector())
     assert Frame(TURN).p == Vector()
     assert Rotation() == Frame(A).M

@@ -300,7 +300,7 @@ def test_multiplexers_are_called_by_their_services(start: Start) -> None:
     assert ros.namespace["found"] == "/odom"
 
 
-def test_signal_handlers_may_be_chosen_and_are_never_installed(start: Start) -> None:
+def test_a_node_may_choose_signal_handlers_although_none_is_installed(start: Start) -> None:
     ros = start("""
         import signal
         import rclpy
