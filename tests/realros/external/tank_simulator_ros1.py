@@ -40,12 +40,23 @@ class Tank:
                 os._exit(3)
         self.publish()
 
+    def show(self):
+        """Publish the initial state, so that a program that connects later has it, too.
+
+        The lock keeps the check and the message together: another thread could otherwise run a step between them, and
+        the state after this step would be published twice.
+        """
+        with self.lock:
+            if not self.touched:
+                self.publish()
+
     def publish(self):
         self.clock_end.publish(Clock(rospy.Time(0, 0) + rospy.Duration.from_sec(DT * self.steps)))
         self.level_end.publish(Float64(self.level))
 
     def on_step(self, _):
-        self.touched = True
+        with self.lock:
+            self.touched = True
         self.advance()
         return SelfTestResponse()
 
@@ -63,5 +74,5 @@ while not rospy.is_shutdown():
     threading.Event().wait(0.01)
     if "OWN_TIME" in os.environ:
         tank.advance()
-    elif not tank.touched:
-        tank.publish()
+    else:
+        tank.show()
