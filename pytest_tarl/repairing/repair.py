@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial as partial_call
 
 from pytest_tarl.learning import localize
 from pytest_tarl.learning.judgements import with_worlds
@@ -130,20 +131,26 @@ def _search(
         trials.reserve, trials.worth = round(RESERVE * (purse.episodes - purse.spent)), mutants.order.goal
     first = found.accepted is None
     early = Early(mutants.order, _chief(searched), trials)
-    strategy = strategies.strategy(
+    strategy_with = partial_call(
+        strategies.strategy,
         mutants,
         method,
         searched,
         trials,
-        early.candidates if share < 1.0 else lambda _: iter(()),
-        early.measured,
-        early.before_extreme if share < 1.0 else lambda: iter(()),
-        lambda one: following(mutants.order, one) if share < 1.0 else iter(()),
-        early.reached,
-        early.entered,
-        lambda used: proportional(mutants.order, used) if share < 1.0 else iter(()),
-        early.due if share < 1.0 else lambda _: False,
+        measured=early.measured,
+        reached=early.reached,
+        entered=early.entered,
     )
+    if share < 1.0:
+        strategy = strategy_with(
+            interlude=early.candidates,
+            due=early.due,
+            corrections=early.before_extreme,
+            following=lambda one: following(mutants.order, one),
+            proportional=lambda used: proportional(mutants.order, used),
+        )
+    else:
+        strategy = strategy_with()
     try:
         if found.accepted is None:
             found.accepted = examiner.first(strategy.candidates(), trials)
