@@ -11,12 +11,11 @@ from collections.abc import Iterable
 from math import sqrt
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.searching.refining import OUTWARD
+from pytest_tarl.searching.refining import FINEST, OUTWARD
 from pytest_tarl.searching.search import Candidate, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
 MOVES = 3  # maximum number of times that the value of a constant is moved further
-CLOSE = 1.1  # no factor is tried between a factor and a neighbour if their ratio is below this
 
 
 def better_factor(
@@ -47,4 +46,4 @@ def _neighbours(factor: float, tried: Iterable[float]) -> list[float]:
     above = min((one for one in others if one > factor), default=factor * OUTWARD)
     below = max((one for one in others if one < factor), default=factor / OUTWARD)
     outward = (above, below) if factor > 1.0 else (below, above)
-    return [one for one in outward if max(one / factor, factor / one) >= CLOSE]
+    return [one for one in outward if max(one / factor, factor / one) >= FINEST]

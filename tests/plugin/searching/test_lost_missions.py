@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from pytest_tarl.patching.mutate import mutations
@@ -25,9 +23,9 @@ class World:
     def __init__(self, easy: tuple[float, float], hard: tuple[float, float]) -> None:
         self.ranges = dict.fromkeys(range(4), easy) | {HARD: hard}
         self.ran: list[tuple[float, int]] = []
-        self.trials = Trials(self.run, 100)
-        self.trials = replace(
-            self.trials,
+        self.trials = Trials(
+            self.run,
+            100,
             loses=lambda candidate: self.trials(candidate, HARD).total < GOAL.near,
             lost_missions=lambda: [HARD],
         )
