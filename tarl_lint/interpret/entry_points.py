@@ -17,26 +17,44 @@ from tarl_lint.models import parts
 from tarl_lint.models.ros import subscriptions
 
 
-def start_programs(ctx: Interpreter) -> None:
-    """Run the main functions and instantiate the node classes that nothing in the files calls."""
-    for program in list(ctx.programs.values()):
-        if ctx.modules[program.path].installed:
-            continue
-        module = ctx.module_objects[program.name]
+def start_functions(ctx: Interpreter) -> None:
+    """Run the main functions that nothing in the files calls, and the functions that a decorator hands over."""
+    for program, module in _analysed(ctx):
+        starting = ctx.modules[program.path].matches(STARTING)
+        named = ctx.modules[program.path].started
+        for statement in definitions(program.body):
+            if not isinstance(statement, ir.Define):
+                continue
+            function = statement.function
+            if function.name in named or ((starting or function.name == "main") and starts_node(function)):
+                _main_function(ctx, statement, module)
+    _handed_over(ctx)
+
+
+def start_classes(ctx: Interpreter) -> None:
+    """Instantiate plugins, and the node classes that nothing in the files instantiates.
+
+    The main functions must have run before, because they instantiate node classes with arguments that are unknown here.
+    """
+    for program, module in _analysed(ctx):
         starting = ctx.modules[program.path].matches(STARTING)
         named = ctx.modules[program.path].started
         for statement in definitions(program.body):
             if isinstance(statement, ir.Define):
-                function = statement.function
-                if function.name in named or (
-                    (starting or function.name == "main") and starts_node(function)
-                ):
-                    _main_function(ctx, statement, module)
-            elif statement.name in named:
+                continue
+            if statement.name in named:
                 _plugin(ctx, statement, module)
             else:
                 _node_class(ctx, statement, program, starting)
-    _handed_over(ctx)
+
+
+def _analysed(ctx: Interpreter) -> list[tuple[ir.Program, Obj]]:
+    """Return the programs of the analysed files with their modules, without installed packages."""
+    return [
+        (program, ctx.module_objects[program.name])
+        for program in ctx.programs.values()
+        if not ctx.modules[program.path].installed
+    ]
 
 
 def _handed_over(ctx: Interpreter) -> None:

@@ -78,7 +78,9 @@ class Linker(Interpreter):
         self._settle()
         for _ in range(3):
             before = len(self.roots)
-            entry_points.start_programs(self)
+            entry_points.start_functions(self)
+            self._settle()
+            entry_points.start_classes(self)
             self._settle()
             entry_points.start_hooks(self)
             self._settle()

@@ -6,6 +6,9 @@ from textwrap import dedent
 
 import pytest
 
+from tarl_lint import engine
+from tarl_lint.read.source import Module, parse
+from tarl_lint.settings.config import Config
 from tests.lint.models.marked import differing
 
 HEAD = """\
@@ -287,3 +290,50 @@ def test_a_library_may_return_the_instance_of_a_class_that_it_looks_up(look, mar
         App()
     """
     assert differing(HEAD + dedent(text)) == {}
+
+
+MADE_IN_MAIN = {
+    "shop/stage.py": """\
+class Stage:
+    def __init__(self):
+        self.closed = 0.0
+        self.noise = 0.0
+""",
+    "shop/director.py": """\
+from rclpy.node import Node
+from std_msgs.msg import Float64
+
+class Director(Node):
+    def __init__(self, stage):
+        super().__init__("director")
+        self.stage = stage
+        self.out = self.create_publisher(Float64, "out", 1)
+        self.create_subscription(Float64, "noise", self.on_noise, 1)
+        self.create_subscription(Float64, "close", self.on_close, 1)
+
+    def on_noise(self, msg):
+        self.stage.noise = msg.data
+        self.out.publish(Float64(data=self.stage.noise))
+
+    def on_close(self, msg):
+        self.stage.closed = msg.data
+""",
+    "shop/show.py": """\
+import rclpy
+from shop.director import Director
+from shop.stage import Stage
+
+def main():
+    rclpy.init()
+    rclpy.spin(Director(Stage()))
+""",
+}
+
+
+def test_a_class_that_a_main_function_instantiates_is_not_instantiated_with_unknown_arguments() -> None:
+    modules = [
+        parse(path, text.encode(), path.removesuffix(".py").replace("/", "."))
+        for path, text in MADE_IN_MAIN.items()
+    ]
+    found = engine.analyse([one for one in modules if isinstance(one, Module)], Config())
+    assert [(flow.source.topics, flow.kind) for flow in found] == [(("noise",), "explicit")]
