@@ -223,6 +223,15 @@ def guard(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> int
     return node
 
 
+def into_chosen(ctx: Interpreter, base: Value, value: Value, slot: Hashable, frame: Frame) -> Value:
+    """Return a value as it is stored into one of several objects; what chooses the object decides their content."""
+    if len(base.pts) == 1 or not base.deps:
+        return value
+    node = ctx.node(frame, ("into", slot), "assign")
+    ctx.graph.depend(node, (guard(ctx, base.deps, frame, ("into", slot)),))
+    return ctx.carry(value, node)
+
+
 def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] | None:
     """Fold an operator over constants."""
     if name == "text":

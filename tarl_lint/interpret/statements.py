@@ -16,6 +16,7 @@ from tarl_lint.interpret import (
     expressions,
     literals,
     nullness,
+    operators,
     tags,
 )
 from tarl_lint.interpret.budget import READS_PER_STATEMENT
@@ -113,7 +114,9 @@ def assign(ctx: Interpreter, target: ir.Expr, value: Value, frame: Frame) -> Non
         if not base.pts:
             assign_fallback(ctx, target.base, value, frame)
         elif not descriptors.write(ctx, base, target.name, value, frame, target.pos):
-            updates.write_field(ctx, base, target.name, value)
+            updates.write_field(
+                ctx, base, target.name, operators.into_chosen(ctx, base, value, target.pos, frame)
+            )
     elif isinstance(target, ir.Item):
         _assign_item(ctx, target, value, frame)
     elif isinstance(target, ir.SequenceDisplay):
@@ -142,7 +145,7 @@ def _assign_item(ctx: Interpreter, target: ir.Item, value: Value, frame: Frame) 
     if (whole := _indexed(ctx, target.base, frame)) is not None:
         updates.add_element(ctx, whole, Value(ctx.use(value)))  # the table gets a copy
     elif base.pts:
-        updates.write_item(ctx, base, index, value)
+        updates.write_item(ctx, base, index, operators.into_chosen(ctx, base, value, target.pos, frame))
     else:
         assign_fallback(ctx, target.base, value, frame)
 

@@ -262,10 +262,15 @@ def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: F
 def through_statement(
     ctx: Interpreter, value: Value, frame: Frame, call: ir.Call, number: Hashable = 0
 ) -> Value:
-    """Pass a value through a node of the calling statement, because a call stores the value."""
+    """Pass a value through a node of the calling statement, because a call stores the value.
+
+    What decides whether this object is the receiver, or whether the call is reached at all, decides its content.
+    """
     if frame.statement is None:
         return value
-    return ctx.carry(value, ctx.node(frame, ("stored", call.slot, number), "call"))
+    node = ctx.node(frame, ("stored", call.slot, number), "call")
+    ctx.graph.depend(node, [decision for decision, _ in ctx.guards])
+    return ctx.carry(value, node)
 
 
 def _read_get(ctx: Interpreter, it: Invocation) -> Value:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 
-from tarl_lint.interpret import call_contexts, calls, descriptors, expressions
+from tarl_lint.interpret import call_contexts, calls, descriptors, expressions, operators
 from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
@@ -175,6 +175,7 @@ def set_attribute(ctx: Interpreter, it: Invocation) -> Value:
     plain = it.arguments[0]
     if len(plain) == 3:
         value = containers.through_statement(ctx, plain[2], it.frame, it.call)
+        value = operators.into_chosen(ctx, plain[0], value, it.call.slot, it.frame)
         if ctx.thorough and value.deps != plain[2].deps:
             ctx.graph.copies |= value.deps
         for field in plain[1].texts():
