@@ -39,6 +39,29 @@ def test_polishing_leaves_the_best_factors_and_factors_that_always_fail_unchange
     assert polished((6.0, 1.5), earned, range(8), 17.0) == (6.0, 1.5)
 
 
+def on_a_ridge(factors: Factors, _: int) -> float | None:
+    """Two factors compensate each other: missions fail unless their product is near 1, and earn most at (2, 0.5)."""
+    one, other = map(math.log, factors)
+    away, apart = abs(one + other), one - other - 2.0 * math.log(2.0)
+    return None if away > 0.1 else 10.0 - apart**2 - 1.2 * away
+
+
+def test_factors_that_compensate_each_other_move_together() -> None:
+    stuck = (1.458, 0.6858)  # one factor after the other leads from `begin` to this point, and no further
+    begin, moves = (1.25, 0.8), (1.08, 1 / 1.08)
+    beside = [(stuck[0] * by, stuck[1]) for by in moves] + [(stuck[0], stuck[1] * by) for by in moves]
+    assert all((on_a_ridge(one, 0) or 0.0) < (on_a_ridge(stuck, 0) or 0.0) for one in beside)
+    assert polished(begin, on_a_ridge, range(8), 10.0, (1.08,)) == pytest.approx((2.0, 0.5), rel=0.02)
+
+
+def test_factors_that_compensate_each_other_stay_on_a_plateau() -> None:
+    def flat(factors: Factors, seed: int) -> float | None:
+        total = on_a_ridge(factors, seed)
+        return None if total is None else min(total, 9.9) + 1e-4 * factors[0]
+
+    assert polished((1.25, 0.8), flat, range(8), 10.0, (1.08,))[0] < 1.9
+
+
 def test_adjusting_ends_as_soon_as_the_mean_is_enough() -> None:
     ran: list[Factors] = []
 
