@@ -129,6 +129,13 @@ def _rank(place: Place, keys: Sequence[str] | None) -> int:
     return 2 if place.path.endswith(".cfg") else int(keys is None or len(keys) < NAMED)
 
 
+def uses_of(
+    analysis: Analysis, parameter: ParameterInFile, operands: Sequence[Operand]
+) -> tuple[Operand, ...]:
+    """Return the operands that stand for a parameter in a file by themselves."""
+    return tuple(one for one in operands if parameter.setting in _keys(analysis, one))
+
+
 def reads_one(analysis: Analysis, operand: Operand) -> bool:
     """Return whether an operand is the call that reads one parameter."""
     return bool(_key_of_call(analysis, operand))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pytest_tarl import seeds
 from pytest_tarl.model import Guard
-from pytest_tarl.repairing.file_parameters import file_parameters, reads_one
+from pytest_tarl.repairing.file_parameters import file_parameters, reads_one, uses_of
 from pytest_tarl.repairing.labels import quantities
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.name_scopes import name_scope
@@ -28,6 +28,7 @@ from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import Candidate, Trials
 from pytest_tarl.searching.strategy import Strategy
 from pytest_tarl.searching.sweep import Sweep
+from pytest_tarl.searching.units import sets_up
 from tarl_lint.api import Analysis
 from tarl_lint.model import Operand, SiteId
 
@@ -138,12 +139,17 @@ def _with_parameters(order: Order, operands: Sequence[Operand]) -> list[Operand]
     """Return parameters in files for which no operand stands, then the operands.
 
     If a call reads one of these parameters, the call is left out. It is kept if a repair may need a condition, because
-    conditions are written at uses.
+    conditions are written at uses. If a statement that is in no data flow uses the parameter while the node runs, this
+    use takes the place of the parameter: a condition can be written there, and the statement is a possible place for
+    the repair.
     """
     inside = file_parameters(order, operands)
     calls = {one.span for one in inside} if inside and order.permanent else set()
     kept = [one for one in operands if one.span not in calls or not reads_one(order.analysis, one)]
-    return [*inside, *kept]
+    aside = quantities(order.analysis, _aside(order.analysis)) if inside else []
+    aside = [one for one in aside if not sets_up(one)]
+    used = [uses_of(order.analysis, one, aside) or (one,) for one in inside]
+    return [*dict.fromkeys(use for uses in used for use in uses), *kept]
 
 
 def _given_to_several(
@@ -169,11 +175,15 @@ def aside_operands(order: Order, ranked: Sequence[Operand]) -> tuple[Operand, ..
 
     The operands in `ranked`, which the slices rank, are left out.
     """
-    analysis = order.analysis
     known = set(ranked)
-    found = (o for step in (*analysis.timing, *analysis.deciding) for o in analysis.operands(step.site))
-    new = dict.fromkeys(one for one in found if one not in known)
-    return tuple(sorted(quantities(analysis, new), key=writing))
+    new = [one for one in _aside(order.analysis) if one not in known]
+    return tuple(sorted(quantities(order.analysis, new), key=writing))
+
+
+def _aside(analysis: Analysis) -> list[Operand]:
+    """Return the operands of statements that decide when or what the nodes publish, but that are in no data flow."""
+    steps = (*analysis.timing, *analysis.deciding)
+    return list(dict.fromkeys(o for step in steps for o in analysis.operands(step.site)))
 
 
 def evidence(order: Order) -> candidates.Evidence:

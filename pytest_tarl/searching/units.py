@@ -124,7 +124,12 @@ def _same_constant(unit: Unit, other: Unit, scope: Scope) -> bool:
 
 def runs_once(unit: Unit) -> bool:
     """Return whether all operands of a unit are in code that runs once: at module level or in a constructor."""
-    return all(one.site.qualname.rpartition(".")[2] in SET_UP for one in unit.operands)
+    return all(map(sets_up, unit.operands))
+
+
+def sets_up(operand: Operand) -> bool:
+    """Return whether an operand is at module level or in a constructor."""
+    return operand.site.qualname.rpartition(".")[2] in SET_UP
 
 
 def best_effects(

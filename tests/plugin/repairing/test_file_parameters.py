@@ -17,7 +17,7 @@ from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.repairing.file_parameters import files_of_packages, places_in_force
 from pytest_tarl.repairing.placing import Placing
 from pytest_tarl.repairing.scales import charts
-from pytest_tarl.repairing.strategies import operands
+from pytest_tarl.repairing.strategies import aside_operands, operands
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, effective_value
 from pytest_tarl.sensors import Sensor
@@ -272,3 +272,60 @@ def test_a_default_that_is_written_as_a_string_keeps_its_quotes(tmp_path: Path) 
 def test_the_default_of_a_parameter_that_is_an_operand_is_not_added(tmp_path: Path) -> None:
     named = {"first": 'self.gain = rospy.get_param("~gain_left", 1.0)', "use": "self.gain"}
     assert in_files(order_of(tmp_path, named, {})) == {}
+
+
+BESIDE = """\
+import rospy
+from geometry_msgs.msg import Vector3
+from std_msgs.msg import Float64
+
+
+def clamp(value, low, high):
+    return max(low, min(high, value))
+
+
+class Blower:
+    def __init__(self):
+        self.pressure = {read}
+        self.stretch = 1.0
+        self.out = rospy.Publisher("/out", Vector3, queue_size=1)
+        rospy.Subscriber("/in", Float64, self.on_value)
+
+    def on_value(self, msg):
+        command = Vector3()
+        command.x = clamp(self.pressure, 1.5, 10.0)
+        command.y = clamp(20.0 * msg.data, 6.0, 40.0)
+        self.out.publish(command)
+
+
+if __name__ == "__main__":
+    rospy.init_node("keeper")
+    Blower()
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("read", "value", "given"),
+    [
+        ('rospy.get_param("~gain_left", 4.0)', 4.0, READ),
+        ('rospy.get_param("~gain_left", 4.0)', 4.0, {}),
+        ('rospy.get_param("~gain_left")', None, READ),
+    ],
+)
+def test_a_parameter_that_is_published_unchanged_is_changed_where_it_is_used(
+    read: str, value: float | None, given: Mapping[str, float], tmp_path: Path
+) -> None:
+    order = order_of(tmp_path, FORMS["loop"], given)
+    (tmp_path / "keeper.py").write_text(BESIDE.replace("{read}", read))
+    order.analysis = analyse([Path("keeper.py")], root=tmp_path)
+    assert "gain_left" not in in_files(order)
+    every = operands(order)
+    (one,) = [each for each in every if each.code == "self.pressure"]
+    assert one.value == value
+    assert one not in aside_operands(order, every)
+    mutation = mutations(one, 2.5)
+    assert mutation is not None
+    guard = Guard((Conjunct(Sensor("wet", topic="/wet", field="data"), 1.0, 1.0),))
+    (text,) = rewrite(order.analysis, [mutation], guard, {"/wet": "std_msgs/msg/Bool"}).values()
+    assert "        if self.wet:\n            command.x = clamp(2.5 * self.pressure, 1.5, 10.0)\n" in text
