@@ -132,6 +132,8 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
         return operand.setting
     source = document(span.path, analysis.sources[span.path])
     node = _converted(source.at(span))
+    if (key := entry_key(node)) and operand.value is None:
+        return key  # an entry of a parameter that is a table
     around = [node, *source.ancestors(node)] if node is not None else []
     entry = next((each for each in around if isinstance(each, ast.Tuple | ast.List)), None)
     for each in around:
@@ -143,6 +145,15 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
             return _entry_of_parameter(each)
         if isinstance(each, ast.stmt):
             break
+    return ""
+
+
+def entry_key(node: ast.expr | None) -> str:
+    """Return the key with which an expression reads an entry: "gain" of `table["gain"]` or `table.get("gain")`."""
+    if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Load):
+        return next(iter(strings([node.slice])), "")
+    if isinstance(node, ast.Call) and called(node) == ENTRY and len(node.args) == 1:
+        return next(iter(strings(node.args)), "")
     return ""
 
 

@@ -46,8 +46,18 @@ def file_parameters(order: Order, operands: Sequence[Operand]) -> list[Parameter
     """Return the parameters that no operand stands for by itself. Those that a data flow names come first."""
     analysis = order.analysis
     calls = {key: one for one in operands if (key := _key_of_call(analysis, one))}
-    known = {key for one in operands if one not in calls.values() for key in _keys(analysis, one)}
-    values = [one for one in _values(order, operands) if one[0] not in known]
+    known = {
+        (key, one.value is not None)
+        for one in operands
+        if one not in calls.values()
+        for key in _keys(analysis, one)
+    }
+    # a factor on a use changes neither a zero nor a boolean: an operand of unknown value does not stand for these
+    values = [
+        one
+        for one in _values(order, operands)
+        if (one[0], True) not in known and ((one[0], False) not in known or not _scales(one[1].value))
+    ]
     if not values or order.options.edit == USE:
         return []
     named = dict(_named(analysis))
@@ -58,6 +68,11 @@ def file_parameters(order: Order, operands: Sequence[Operand]) -> list[Parameter
             written = Span(place.path, place.line, place.start, place.line, place.end)  # offsets as columns
             found.append(ParameterInFile(*use, key, place.value, written, key, (), place, size))
     return found
+
+
+def _scales(value: Number) -> bool:
+    """Return whether a factor changes a number as intended."""
+    return bool(value) and not isinstance(value, bool)
 
 
 def _values(order: Order, operands: Sequence[Operand]) -> Iterator[tuple[str, Place, float]]:

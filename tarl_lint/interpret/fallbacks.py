@@ -1,4 +1,4 @@
-"""Defaults of entries in tables of parameters: the default of `rospy.get_param("~", {}).get("gain", 0.3)` is 0.3."""
+"""Entries in tables of parameters: `rospy.get_param("~pid")["gain"]`, and with a default `table.get("gain", 0.3)`."""
 
 from __future__ import annotations
 
@@ -16,19 +16,44 @@ CONVERSIONS: Final = frozenset(["float", "int"])
 def of_entry(ctx: Interpreter, expr: ir.Expr, value: Value) -> ir.Const | None:
     """Return the default in `table.get("gain", 0.3)` if the default is a number and `table` is a parameter's value."""
     default = _default(expr)
-    if default is None or value.pts or not value.deps:
-        return None
-    question = partial(_of_parameters, ctx.graph)
-    ctx.graph.reads.ask(question, value.deps)
-    return default if question(value.deps) else None
+    return default if default is not None and _all_of_parameters(ctx.graph, value) else None
+
+
+def entry(graph: Graph, expr: ir.Expr, value: Value) -> ir.Pos | None:
+    """Return the place of `table["gain"]` or `table.get("gain")` in an expression if a parameter is the table.
+
+    Such an entry is a constant of its own: one parameter may be a table of many constants.
+    """
+    expr = _unconverted(expr)
+    key: ir.Expr | None = None
+    if isinstance(expr, ir.Item):
+        key = expr.index
+    elif isinstance(expr, ir.Call) and isinstance(expr.function, ir.Attribute) and len(expr.arguments) == 1:
+        key = expr.arguments[0] if expr.function.name == "get" else None
+    named = isinstance(key, ir.Const) and isinstance(key.value, str)
+    return expr.pos if named and _all_of_parameters(graph, value) else None
+
+
+def _all_of_parameters(graph: Graph, value: Value) -> bool:
+    if value.pts or not value.deps:
+        return False
+    question = partial(_of_parameters, graph)
+    graph.reads.ask(question, value.deps)
+    return question(value.deps)
+
+
+def _unconverted(expr: ir.Expr) -> ir.Expr:
+    """Return the argument of a conversion to a number, or the expression itself."""
+    while isinstance(expr, ir.Call) and isinstance(expr.function, ir.Name):
+        if expr.function.name not in CONVERSIONS or len(expr.arguments) != 1:
+            break
+        expr = expr.arguments[0]
+    return expr
 
 
 def _default(expr: ir.Expr) -> ir.Const | None:
     """Return the number in `table.get("gain", 0.3)` or `float(table.get("gain", 0.3))`."""
-    while isinstance(expr, ir.Call) and isinstance(expr.function, ir.Name):
-        if expr.function.name not in CONVERSIONS or len(expr.arguments) != 1:
-            return None
-        expr = expr.arguments[0]
+    expr = _unconverted(expr)
     if not isinstance(expr, ir.Call) or not isinstance(expr.function, ir.Attribute):
         return None
     if expr.function.name != "get" or len(expr.arguments) != 2:

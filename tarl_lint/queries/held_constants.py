@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from tarl_lint.interpret import fallbacks
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, reachable_data
@@ -50,6 +51,8 @@ class Origins:
         if not value.deps:
             return frozenset()
         found = self._trace(value.deps, set())
+        if found and (pos := fallbacks.entry(self.graph, expr, value)) is not None:
+            return frozenset([Origin(None, "", pos)])
         return frozenset(found) if found is not None else frozenset()
 
     def _loaded(self, value: Value) -> frozenset[Origin]:

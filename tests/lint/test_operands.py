@@ -35,6 +35,12 @@ NODE = """
             self.tilt = entries.get("tilt", 0.35)
             self.swing = float(entries.get("swing", -3))
             self.title = entries.get("title", "arm")
+            pid = rospy.get_param("~pid")
+            self.p = pid["p"]
+            self.i = float(pid["i"])
+            self.d = int(pid.get("d"))
+            self.table = rospy.get_param("~table")
+            self.reach = rospy.get_param("~arms")["left"]["reach"]
             self.wrist = Arm(rospy.get_param("~wrist", {}).get("k", 0.15))
             self.preset = PRESETS[rospy.get_param("~preset", "indoor")]
             self.declare_parameter("mode", "outdoor")
@@ -68,6 +74,10 @@ NODE = """
         ("msg.data * self.tilt", [("self.tilt", 0.35)]),
         ("msg.data * self.swing", [("self.swing", -3)]),
         ("msg.data * self.wrist.k", [("self.wrist.k", 0.15)]),
+        ("msg.data * self.p + self.i", [("self.p", None), ("self.i", None)]),
+        ("msg.data * self.d", [("self.d", None)]),
+        ("msg.data * self.table['far']", [("self.table['far']", None)]),
+        ("msg.data * self.reach", [("self.reach", None)]),
         ("[self.title, self.preset['label'], msg.data]", []),
         ("msg.data * self.preset['p']", [("self.preset['p']", None)]),
         ("msg.data * self.mode", [("self.mode", None)]),
@@ -94,6 +104,26 @@ def test_operands_are_the_constants_that_a_site_uses(tmp_path, expression, opera
         line = analysis.sources[operand.span.path].split("\n")[operand.span.line - 1]
         assert line[operand.span.column - 1 : operand.span.end_column - 1] == operand.code
         assert operand.literal == (operand.code[-1].isdigit() or operand.code == "True")
+
+
+@pytest.mark.parametrize(
+    ("expression", "definition"),
+    [
+        ("self.p", 'pid["p"]'),
+        ("self.i", 'pid["i"]'),
+        ("self.d", 'pid.get("d")'),
+        ("self.reach", 'rospy.get_param("~arms")["left"]["reach"]'),
+        ("self.table['far']", "self.table['far']"),
+        ("self.free", 'rospy.get_param("~free")'),
+    ],
+)
+def test_an_entry_of_a_parameter_is_a_constant_of_its_own(tmp_path, expression, definition):
+    analysis = analysed(tmp_path, node=NODE.replace("{expression}", f"msg.data * {expression}"))
+    step = next(s for s in analysis.sites if s.code.startswith("v = "))
+    (operand,) = analysis.operands(step.site)
+    span = operand.definition
+    line = analysis.sources[span.path].split("\n")[span.line - 1]
+    assert line[span.column - 1 : span.end_column - 1] == definition
 
 
 def test_a_named_constant_refers_to_its_definition(tmp_path):

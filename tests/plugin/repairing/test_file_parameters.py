@@ -11,7 +11,7 @@ import pytest
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.definitions import ParameterInFile
+from pytest_tarl.patching.definitions import ParameterInFile, configured, parameter
 from pytest_tarl.patching.mutate import located, mutations
 from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.repairing.file_parameters import files_of_packages, places_in_force
@@ -182,6 +182,33 @@ def test_named_parameters_and_those_that_no_file_sets_are_not_added(tmp_path: Pa
     )  # the test passes another value
     assert in_files(order_of(tmp_path, loop, {})) == {}
     assert in_files(order_of(tmp_path, loop, edit="use")) == {}
+
+
+GROUPED = {
+    "first": (
+        'gains = rospy.get_param("~gains")\n        self.left = float(gains["gain_left"])\n'
+        '        self.right = gains["gain_right"]\n        self.offset = gains["offset_left"]'
+    ),
+    "use": "self.left",
+    "added": "self.right + self.offset",
+}
+IN_A_GROUP = {name.replace("keeper/", "keeper/gains/"): value for name, value in READ.items()}
+
+
+def test_an_entry_of_a_parameter_is_one_constant_at_its_use_and_in_the_file(tmp_path: Path) -> None:
+    order = order_of(tmp_path, GROUPED, IN_A_GROUP, permanent=False)
+    (tmp_path / "config/params.yaml").write_text(
+        text := "keeper:\n  gains: {gain_left: 2.0, gain_right: 3.0, offset_left: 0.0, offset_right: 0.25}\n"
+    )
+    # a factor does not change a zero, so the offset is changed in the file only
+    assert set(in_files(order)) == {"offset_left", "offset_right"}
+    every = {one.code: one for one in operands(order)}
+    assert {"self.left", "self.right", "self.offset"} <= set(every)
+    one = every["self.right"]
+    assert parameter(order.analysis, one) == "gain_right"
+    places = configured("gain_right", files_of_packages(order))
+    (place,) = [place for place in places if place.path.endswith("params.yaml")]
+    assert text[place.start : place.end] == "3.0"
 
 
 def test_a_repair_that_may_need_a_condition_keeps_the_call_as_well(tmp_path: Path) -> None:
