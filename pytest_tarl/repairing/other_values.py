@@ -5,6 +5,7 @@ Each method is a generator that yields the next candidate to examine and receive
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import replace
 from math import sqrt
@@ -12,7 +13,7 @@ from math import sqrt
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import STRONG, WEAK, Between, common_factor, stronger
-from pytest_tarl.repairing.centring import in_place, moved, neighbours
+from pytest_tarl.repairing.centring import ASIDE, in_place, moved, neighbours
 from pytest_tarl.repairing.following import following
 from pytest_tarl.repairing.ledger import Ledger, Tried, operands
 from pytest_tarl.repairing.missed import Lost, Missed
@@ -32,6 +33,8 @@ MOVES = 3  # maximum number of moves in one direction with one ratio
 BETTER = 0.1  # a neighbour is better if it earns more by at least this share of the margin
 KNOWN = 3  # number of known seeds on which a smaller change must reach the goal
 UNGUARDED = 3  # maximum number of values of a candidate that are tried without its condition
+# while a neighbour acts exactly like a refused value, its ratio to the refused value is raised to these powers
+PLATEAU = (1, 2, 4, 8)
 CLOSE = 1.3  # maximum ratio of two rejected values between which good values may lie
 
 OtherValues = Generator[Candidate, Tried, None]
@@ -148,8 +151,8 @@ class Others:
         """Propose a value nearer to the original value if `costly` may lose too much in the designed world.
 
         A smaller change does less harm in the designed world. Bisect for the smallest change with which missions
-        succeed on the known seeds (the hardest seeds run first). Propose the middle of the good values. Raise
-        BudgetSpentError.
+        succeed on the known seeds (the hardest seeds run first) and that passes the missions that other refused
+        candidates lost. Propose the middle of the good values. Raise BudgetSpentError.
         """
         place = (operands(costly), costly.guard)
         if place in self._nearer:
@@ -165,11 +168,12 @@ class Others:
             yield good[len(good) // 2]
 
     def _holds(self, candidate: Candidate, trials: Trials) -> bool:
-        """Return whether a candidate reaches the goal on the known seeds that most candidates failed."""
+        """Return whether a candidate reaches the goal on the seeds that most candidates failed and in lost missions."""
         goal = self.mutants.order.goal
         hardest = sorted(goal.pairs, key=lambda pair: -trials.misses[pair.seed])[:KNOWN]
         try:
-            return all(trials.reaches(candidate, pair.seed, goal) for pair in hardest)
+            reaches = all(trials.reaches(candidate, pair.seed, goal) for pair in hardest)
+            return reaches and not self.missed.again(candidate, trials, goal)
         except RepairError:
             return False
 
@@ -186,14 +190,34 @@ class Others:
 
         A neighbour is proposed only if it loses no reward in these missions. If another close value was rejected as
         well, the value halfway between both comes first. A neighbour may be close to a rejected value, because the
-        missions show that it is better. Raise BudgetSpentError.
+        missions show that it is better. If no neighbour is better, but one acts exactly like the refused value, values
+        farther away follow (see `_off_plateau`). Raise BudgetSpentError.
         """
         while refused := next((one for one in self.missed.few if one not in self._mended), None):
             self._mended.add(refused)
-            for other in (*self._between(refused), *neighbours(refused, self.mutants.mutate)):
+            near = (*self._between(refused), *neighbours(refused, self.mutants.mutate))
+            for other in itertools.chain(near, self._off_plateau(refused, trials)):
                 if not self.ledger.examined(other) and self._mends(other, refused, trials):
                     self.chosen.add(other)
                     yield other
+                    break
+
+    def _off_plateau(self, refused: Candidate, trials: Trials) -> Iterator[Candidate]:
+        """Yield the first value in each direction that leaves a plateau of values that all act alike.
+
+        For instance, a node that looks at the time twice a second waits equally long for all times from 0.51 to 1 s.
+        """
+        seed, _ = self.missed.few[refused][0]
+        for ratio in ASIDE[:2]:
+            for power in PLATEAU:
+                other = moved(refused, ratio**power, self.mutants.mutate)
+                try:
+                    alike = other is not None and trials(other, seed).acts_like(trials(refused, seed))
+                except RepairError:
+                    break
+                if other is not None and not alike:
+                    yield in_place(other)
+                if not alike:
                     break
 
     def recentred(self, refused: Candidate, trials: Trials) -> OtherValues:

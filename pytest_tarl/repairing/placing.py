@@ -21,7 +21,6 @@ from pytest_tarl.patching.definitions import (
 from pytest_tarl.patching.mutate import Mutation, located, redefinition
 from pytest_tarl.patching.named_numbers import named_numbers
 from pytest_tarl.repairing.mutants import Mutants
-from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
@@ -164,7 +163,7 @@ class Placing:
                 for some in (places, kept)
             )
             try:
-                return all(_same_mission(trials(whole, seed), trials(part, seed)) for seed in seeds)
+                return all(trials(whole, seed).acts_like(trials(part, seed)) for seed in seeds)
             except RepairError:
                 return False
 
@@ -221,11 +220,6 @@ class Placing:
                 f"{place.name} at {place.path}:{place.line} is also used by {', '.join(others[:MOST_NAMED])}{more}; "
                 "this run repeated the recorded tests that use it"
             )
-
-
-def _same_mission(one: Outcome, other: Outcome) -> bool:
-    """Return whether two episodes of one seed earned the same and (if this is known) published the same messages."""
-    return one.total == other.total and one.outputs == other.outputs
 
 
 def _stays(mutation: Mutation) -> bool:

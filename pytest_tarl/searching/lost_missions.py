@@ -3,47 +3,88 @@
 On easy missions, many values earn enough, so these missions do not show in which direction the value should change. The
 missions in which rejected changes lost reward (lost missions) do show the direction: the next value is one with which
 the first of these missions earns more.
+
+If a node looks at the time twice a second, all waiting times from 0.51 to 1 s act alike. Such values form a plateau:
+with each of them, the lost mission is exactly the same. The search then steps on until it has left the plateau.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from math import sqrt
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.searching.refining import FINEST, OUTWARD
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.refining import FINEST, OUTWARD, beside
 from pytest_tarl.searching.search import Candidate, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
 MOVES = 3  # maximum number of times that the value of a constant is moved further
+STEPS = 2  # maximum number of steps in one direction while the lost mission stays exactly the same
 
 
 def better_factor(
-    unit: Unit, candidate: Candidate, factor: float, tried: Iterable[float], mutate: Mutate, trials: Trials
+    unit: Unit, candidate: Candidate, factor: float, tried: Collection[float], mutate: Mutate, trials: Trials
 ) -> float | None:
     """Return a factor between `factor` and one of its neighbours if it earns more in a lost mission, else None.
 
-    `candidate` is the unit with `factor`, and `tried` are the factors that were tried. Raise BudgetSpentError.
+    On a plateau, the factor may also lie beyond a neighbour. `candidate` is the unit with `factor`, and `tried` are the
+    factors that were tried. Raise BudgetSpentError.
     """
     seeds = trials.lost_missions()
     if not seeds or factor <= 0.0:
         return None
-    lost = trials(candidate, seeds[0]).total
-    for neighbour in _neighbours(factor, tried):
-        between = sqrt(factor * neighbour)
-        mutations = unit.mutations(mutate, between)
-        try:
-            if mutations and trials(Candidate(mutations, candidate.guard), seeds[0]).total > lost:
-                return between
-        except RepairError:
-            continue
+    mission = _Mission(unit, candidate.guard, mutate, trials, seeds[0])
+    lost = trials(candidate, seeds[0])
+    for upwards in _directions(factor, tried):
+        for at in _steps(factor, tried, upwards):
+            outcome = mission(at)
+            if outcome is not None and outcome.total > lost.total:
+                return at
+            if outcome is None or not outcome.acts_like(lost):
+                break
     return None
 
 
-def _neighbours(factor: float, tried: Iterable[float]) -> list[float]:
-    """Return the nearest tried factors on both sides. The one farther from 1 comes first; close ones are left out."""
-    others = [one for one in tried if one > 0.0]
-    above = min((one for one in others if one > factor), default=factor * OUTWARD)
-    below = max((one for one in others if one < factor), default=factor / OUTWARD)
-    outward = (above, below) if factor > 1.0 else (below, above)
-    return [one for one in outward if max(one / factor, factor / one) >= FINEST]
+@dataclass(frozen=True)
+class _Mission:
+    """The lost mission with one unit changed."""
+
+    unit: Unit
+    guard: Guard
+    mutate: Mutate
+    trials: Trials
+    seed: int
+
+    def __call__(self, factor: float) -> Outcome | None:
+        """Return the outcome with a factor, or None if the change cannot be written. Raise BudgetSpentError."""
+        mutations = self.unit.mutations(self.mutate, factor)
+        try:
+            return self.trials(Candidate(mutations, self.guard), self.seed) if mutations else None
+        except RepairError:
+            return None
+
+
+def _directions(factor: float, tried: Collection[float]) -> list[bool]:
+    """Return whether to go upwards, for each direction, away from 1 first. Leave it out if its nearest factor is close.
+
+    If no factor was tried in a direction, the nearest one is `OUTWARD` times larger or smaller.
+    """
+    below, above = beside(factor, tried, OUTWARD)
+    apart = {True: above / factor, False: factor / below}
+    return [upwards for upwards in (factor > 1.0, factor <= 1.0) if apart[upwards] >= FINEST]
+
+
+def _steps(factor: float, tried: Collection[float], upwards: bool) -> Iterator[float]:
+    """Yield factors in one direction, each halfway from the last one to the nearest tried factor.
+
+    If the nearest factor is close, the step starts there.
+    """
+    for _ in range(STEPS):
+        nearest = beside(factor, tried, OUTWARD)[upwards]
+        while max(nearest / factor, factor / nearest) < FINEST:
+            factor, nearest = nearest, beside(nearest, tried, OUTWARD)[upwards]
+        factor = sqrt(factor * nearest)
+        yield factor

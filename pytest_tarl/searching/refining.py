@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
-from math import sqrt
+from math import inf, sqrt
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # pairs (larger step, smaller step that must not have reduced the reward)
 # if the outermost factor is the best, the next factor is this many times larger (or smaller)
@@ -40,11 +40,18 @@ def between_neighbours(by_factor: Mapping[float, float]) -> float:
 def _beside_peak(by_factor: Mapping[float, float]) -> tuple[float, float] | None:
     """Return the two factors beside the best factor, or None if there are not two or the best gains nothing."""
     factor = max(by_factor, key=by_factor.__getitem__)
-    ordered = sorted(one for one in by_factor if one > 0.0)
-    if factor not in ordered[1:-1] or by_factor[factor] <= 0.0:
-        return None
-    place = ordered.index(factor)
-    return ordered[place - 1], ordered[place + 1]
+    below, above = beside(factor, by_factor) if factor > 0.0 else (0.0, inf)
+    return (below, above) if below > 0.0 and above < inf and by_factor[factor] > 0.0 else None
+
+
+def beside(factor: float, tried: Iterable[float], outward: float = inf) -> tuple[float, float]:
+    """Return the nearest positive tried factors below and above a positive factor.
+
+    If no such factor was tried, return the one that is `outward` times smaller or larger (by default, 0 or infinity).
+    """
+    others = [one for one in tried if one > 0.0]
+    below = max((one for one in others if one < factor), default=factor / outward)
+    return below, min((one for one in others if one > factor), default=factor * outward)
 
 
 def amid(by_factor: Mapping[float, float], slack: float) -> list[float]:
@@ -79,9 +86,7 @@ def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:
     factor = abs(factor)
     if gains[factor] <= 0:
         return []
-    ordered = [min(gains) / OUTWARD**2, *sorted(gains), max(gains) * OUTWARD**2]
-    place = ordered.index(factor)
-    neighbours = (ordered[place - 1], ordered[place + 1])
+    neighbours = beside(factor, gains, OUTWARD**2)
     flat = all(one in gains and gains[one] == gains[factor] for one in neighbours)
     if flat and gains[factor] < ALMOST * wanted and neighbours[1] <= FLAT * neighbours[0]:
         return []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -26,17 +27,20 @@ def period(factor: float) -> Candidate:
     return Candidate(PERIOD.mutations(mutations, factor), ALWAYS)
 
 
-def proposed(best: float, *rejected: tuple[float, int]) -> tuple[list[float], int]:
-    """Return the values proposed beside rejected ones, and the number of episodes that ran."""
+def proposed(best: float, *rejected: tuple[float, int], grid: float = 1e-6) -> tuple[list[float], int]:
+    """Return the values proposed beside rejected ones, and the number of episodes that ran.
+
+    The node acts alike with all values between two multiples of `grid`.
+    """
     ledger, missed = Ledger(), Missed()
     for factor, seed in rejected:
         ledger.enter(Tried(period(factor), "fails too often", (9.0,), fresh=True, tested=True))
         missed.few[period(factor)] = [(seed, 9.0)]
 
     def run(candidate: Candidate, seed: int) -> Outcome:
-        value = float(candidate.mutations[0].value)
+        value = math.ceil(float(candidate.mutations[0].value) / grid) * grid
         failed = value < best / 1.02 if seed == SHORT else value > best * 1.02
-        return Outcome(0.0 if failed else 10.0, not failed)
+        return Outcome(0.1 * value if failed else 10.0, not failed)
 
     mutants: Any = SimpleNamespace(mutate=mutations, order=SimpleNamespace(goal=GOAL))
     trials = Trials(run, 100)
@@ -53,6 +57,23 @@ def test_a_value_close_to_two_rejected_values_is_proposed_if_it_restores_their_m
 def test_a_value_that_loses_the_same_missions_is_not_proposed() -> None:
     found, _ = proposed(5.0, (1.144, SHORT), (1.24, SHORT))
     assert found == []
+
+
+@pytest.mark.parametrize(
+    ("best", "rejected", "ran", "found"),
+    [
+        (0.5, (0.79, LONG), 8, [0.324]),  # 0.51 to 1 act alike: 0.79, 0.99, 0.63, 0.88, 0.7 and 0.506
+        (0.5, (0.9, LONG), 7, [0.369]),
+        (1.5, (0.6, SHORT), 7, [1.465]),
+        (0.1, (0.79, LONG), 8, []),  # the next plateau, up to 0.5, fails as well
+    ],
+)
+def test_values_that_act_like_a_rejected_value_are_left_behind(
+    best: float, rejected: tuple[float, int], ran: int, found: list[float]
+) -> None:
+    values, spent = proposed(best, rejected, grid=0.5)
+    assert values == pytest.approx(found, abs=0.001)
+    assert spent == ran
 
 
 def test_a_rejected_value_is_never_proposed_again() -> None:

@@ -60,8 +60,11 @@ def test_failed_missions_do_not_move_the_value() -> None:
     assert recentred(1.94, failing=True) == []
 
 
-def nearer(window: tuple[float, float]) -> list[float]:
-    """Return the factors proposed after a test of factor 2.2 whose missions pass but cost too much as designed."""
+def nearer(window: tuple[float, float], lost: tuple[tuple[int, float], ...] = ()) -> list[float]:
+    """Return the factors proposed after a test of factor 2.2 whose missions pass but cost too much as designed.
+
+    `lost` are missions that other refused candidates lost.
+    """
     candidate = Candidate((Mutation(LITERAL, 4.4),), ALWAYS)
     seen = tuple(Outcome(10.0, True) for _ in range(60))
     missed = Missed()
@@ -74,9 +77,10 @@ def nearer(window: tuple[float, float]) -> list[float]:
         REFERENCE,
     )
     assert (missed.costly, set(missed.spread)) == ({candidate}, set())
+    missed.seeds += lost
 
     def run(one: Candidate, seed: int) -> Outcome:
-        low = window[0] if seed == 2 else 1.0  # the other missions tell nothing
+        low = window[0] if seed == (lost[0][0] if lost else 2) else 1.0  # the other missions tell nothing
         good = low < (factor(one.mutations[0]) or 1.0) < window[1]
         return Outcome(10.0 if good else 0.0, good)
 
@@ -89,7 +93,7 @@ def nearer(window: tuple[float, float]) -> list[float]:
     assert set(proposed) == others.chosen
     found = [factor(one.mutations[0]) or 1.0 for one in proposed]
     assert list(others.nearer(candidate, trials)) == []  # once
-    assert trials.spent <= 12
+    assert trials.spent <= 12 + 4 * len(lost)
     return found
 
 
@@ -105,6 +109,11 @@ def test_a_value_that_costs_too_much_in_the_designed_world_is_reduced_while_it_s
 def test_of_several_smaller_values_that_succeed_the_middle_one_is_proposed(low: float, share: float) -> None:
     # the bisection tries 2.2**0.5 and 2.2**0.25 first, and then goes on below or between them
     assert nearer((low, 3.0)) == pytest.approx([2.2**share], rel=1e-3)
+
+
+def test_a_smaller_value_also_earns_enough_in_missions_that_other_candidates_lost() -> None:
+    (by,) = nearer((1.6, 3.0), lost=((99, 9.0),))
+    assert 1.6 < by < 2.2
 
 
 def test_nothing_is_proposed_if_no_smaller_value_succeeds() -> None:

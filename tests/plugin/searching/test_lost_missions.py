@@ -83,3 +83,34 @@ def test_a_constant_is_moved_on_a_few_times_while_the_lost_mission_earns_more() 
     moved = [factor for factor, seed in world.ran if seed == HARD]
     assert moved == [1.5, 2.27, 3.45, 5.23]
     assert len(moved) == 1 + MOVES
+
+
+@pytest.mark.parametrize(
+    ("first", "hard", "tried", "ran", "found"),
+    [
+        (0.4, (0.05, 0.2), [2.2], [0.26, 0.17], 0.17),  # downwards: 0.4 and 0.26 act like 0.5
+        (0.3, (0.05, 0.2), [0.05], [0.12], 0.12),
+        (0.49, (0.05, 0.2), [0.05, 0.42], [0.45, 0.14], 0.14),  # 0.42 is close to 0.45
+        (0.49, (0.05, 0.1), [0.33, 0.42], [0.45, 0.37, 0.74], None),
+        (0.3, (0.7, 1.2), [0.24, 0.8], [0.27, 0.25, 0.49, 0.63], 0.63),  # back over the plateau
+        (1.1, (2.6, 9.0), [1.0], [1.67, 2.53], 2.53),
+    ],
+)
+def test_a_value_on_a_plateau_leaves_it(first, hard, tried, ran, found) -> None:
+    world = World((0.01, 99.0), hard)
+    inner = world.run
+
+    def coarse(candidate: Candidate, seed: int) -> Outcome:
+        """Run a node that acts only at multiples of 0.25, 0.5, 1.5 …"""
+        factor = float(candidate.mutations[0].value)
+        outcome = inner(candidate, seed)
+        low, high = world.ranges[seed]
+        level = next(level for level in (0.2, 0.5, 1.0, 2.0, 4.0, 8.0, 99.0) if factor <= level)
+        return Outcome(10.0 - 5.0 * max(low - level, level - high, 0.0), outcome.passed)
+
+    trials = Trials(coarse, 100, lost_missions=lambda: [HARD])
+    (unit,) = world.attempts().units
+    candidate = Candidate(unit.mutations(mutations, first), ALWAYS)
+    better = better_factor(unit, candidate, first, [*tried, first], mutations, trials)
+    assert better == (None if found is None else pytest.approx(found, abs=0.01))
+    assert [factor for factor, _ in world.ran] == pytest.approx([first, *ran], abs=0.01)
