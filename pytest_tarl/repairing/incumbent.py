@@ -30,8 +30,9 @@ class Watch:
 
     def gain(self, candidate: Candidate) -> float:
         """Return a candidate's gain per episode, relative to unmutated runs with the same seeds."""
-        usual = self.order.goal.online
-        return fmean(run.total - self.without.get(seed, usual) for seed, run in self.seen[candidate].items())
+        goal = self.order.goal
+        known = self.seen[candidate].items()
+        return fmean(goal.gain(run, self.without.get(seed, goal.online)) for seed, run in known)
 
     def best_so_far(self, refused: Refused) -> Refused:
         """Return `refused` if it has a candidate, or else the best candidate of the search with its figures."""

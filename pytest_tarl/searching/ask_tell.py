@@ -127,7 +127,7 @@ class Asking:
         """For each site, return the best gain that each of its operands has among the confirmed candidates."""
         best: dict[tuple[str, str], OperandEffect] = {}
         for candidate in self._found:
-            gain = self.trials.gain(candidate, self.goal.pairs)
+            gain = self.trials.gain(candidate, self.goal)
             for mutation in candidate.mutations:
                 key = (str(mutation.operand.site), mutation.operand.code)
                 if key not in best or gain > best[key].effect:
@@ -191,7 +191,7 @@ class Asking:
             outcome = self.trials(candidate, pair.seed)
         except RepairError:
             return min(one.total for one in self.goal.pairs) - pair.total, False
-        return outcome.total - pair.total, self.goal.reached(outcome, pair.seed)
+        return self.goal.gain(outcome, pair.total), self.goal.reached(outcome, pair.seed)
 
     def _least(self, candidate: Candidate, pair: Pair) -> Candidate:
         """Drop unneeded mutations one by one, because optimisers tend to move every constant a little."""

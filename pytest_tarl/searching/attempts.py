@@ -281,7 +281,7 @@ class Attempts:
 
     def _learn(self, unit: Unit, candidate: Candidate, factor: float) -> None:
         pairs = self.goal.pairs
-        gain, moved = self.trials.gain(candidate, pairs, self.goal), self.trials.moved(candidate, pairs)
+        gain, moved = self.trials.gain(candidate, self.goal), self.trials.moved(candidate, pairs)
         hollow = gain < PARTLY * self.goal.wanted and self.trials.fails_sooner(candidate, self.goal)
         self.gains.enter((unit, candidate.guard), factor, gain, moved, hollow=hollow)
         self._acting.ran(unit, candidate)

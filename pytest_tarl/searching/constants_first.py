@@ -124,7 +124,7 @@ def _on_one_seed(
                 outcome = trials(candidate, pair.seed)
             except RepairError:
                 return
-            gains[step] = outcome.total - pair.total
+            gains[step] = goal.gain(outcome, pair.total)
             if goal.reached(outcome, pair.seed) and confirmed(candidate, trials, goal, at):
                 yield candidate
                 return

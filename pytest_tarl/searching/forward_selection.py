@@ -203,7 +203,7 @@ class ForwardSelection:
             return None
         if near and candidate not in self.settled.tried:
             yield from self._settling(joint, candidate)
-        return self.trials.gain(candidate, self.goal.pairs, self.goal)
+        return self.trials.gain(candidate, self.goal)
 
     def climbed(self, base: Joint, unit: Unit) -> Iterator[Candidate]:
         """Add a unit and move it in small steps up or down while the gain increases."""
@@ -246,10 +246,7 @@ class ForwardSelection:
                 if one == fewer and len(least.parts) == 1:
                     yield from self.preferred(one, *least.parts[0])
                 yield one
-                if (
-                    self.trials.harms(one)
-                    or self.trials.gain(one, self.goal.pairs) > AMPLE * self.goal.wanted
-                ):
+                if self.trials.harms(one) or self.trials.gain(one, self.goal) > AMPLE * self.goal.wanted:
                     # the combination was refused although it earns enough, so refining it does not help
                     return
                 break
@@ -260,7 +257,7 @@ class ForwardSelection:
         units = frozenset(unit for unit, _ in joint.parts)
         candidate, pairs = joint.candidate(self.mutate), self.goal.pairs
         ran = self.trials.ran(candidate, pairs)
-        gained = self.trials.gain(candidate, pairs) >= ALMOST * self.goal.wanted
+        gained = self.trials.gain(candidate, self.goal) >= ALMOST * self.goal.wanted
         enough = len(ran) >= KNOWN and not any(map(self.goal.lost, ran))
         if units in self.settled.polished or len(units) < 2 or not (gained and enough):
             return
@@ -304,7 +301,7 @@ class ForwardSelection:
         base = Joint(((unit, factor),), guard)
         begin, pairs = base.candidate(self.mutate), self.goal.pairs
         ran = self.trials.totals_of(begin, pairs)
-        if len(ran) < KNOWN or self.trials.gain(begin, pairs) < MUCH * self.goal.wanted:
+        if len(ran) < KNOWN or self.trials.gain(begin, self.goal) < MUCH * self.goal.wanted:
             return factor
 
         def earned(factors: Factors, seed: int) -> float | None:

@@ -38,7 +38,7 @@ class Halving:
         self.guards = guards
         self.goal = goal
         self.slack = SLACK * goal.wanted
-        self.race = Race(mutate, trials, goal.pairs)
+        self.race = Race(mutate, trials, goal)
         self._confirmed: set[Candidate] = set()
 
     def candidates(self) -> Iterator[Candidate]:

@@ -85,7 +85,7 @@ def _hardest(base: Joint, selection: ForwardSelection) -> Pair | None:
             trials(candidate, pair.seed)
     except RepairError:
         return None
-    if trials.gain(candidate, goal.pairs) < GAINED * goal.wanted:
+    if trials.gain(candidate, goal) < GAINED * goal.wanted:
         return None
     ran = [(pair, one) for pair in goal.pairs for one in trials.ran(candidate, [pair])]
     short = [(pair, one) for pair, one in ran if not goal.reached(one, pair.seed)]

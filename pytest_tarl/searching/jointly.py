@@ -195,7 +195,7 @@ class Jointly:
         except RepairError:
             return None
         refused = REFUSED if candidate in self.selection.settled.tried else 0.0
-        return self._valued(self.trials.gain(candidate, pairs, self.goal), away) - refused
+        return self._valued(self.trials.gain(candidate, self.goal), away) - refused
 
     def _valued(self, gain: float, away: float) -> float:
         return float(np.clip(gain / (self.goal.wanted or 1.0), -1.0, 1.0)) - min(away, WORST)

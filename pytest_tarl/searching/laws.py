@@ -59,7 +59,7 @@ def _gain(law: Candidate, power: float, selection: ForwardSelection) -> float | 
     """Return the gain of a law on the first seed, or None if it cannot be written."""
     pair = selection.goal.pairs[0]
     try:
-        return selection.trials(_with_power(law, power), pair.seed).total - pair.total
+        return selection.goal.gain(selection.trials(_with_power(law, power), pair.seed), pair.total)
     except RepairError:
         return None
 

@@ -10,7 +10,7 @@ from statistics import fmean
 from pytest_tarl.errors import RepairError
 from pytest_tarl.learning.bounds import mean_of
 from pytest_tarl.model import Guard
-from pytest_tarl.searching.search import Candidate, Mutate, Pair, Trials
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
 # confidence of the approximate interval that decides which arms run next; it does not decide what is accepted
@@ -39,15 +39,15 @@ class Arm:
 class Race:
     """Run arms on common seeds and store their gains."""
 
-    def __init__(self, mutate: Mutate, trials: Trials, pairs: Sequence[Pair]) -> None:
+    def __init__(self, mutate: Mutate, trials: Trials, goal: Goal) -> None:
         self.mutate = mutate
         self.trials = trials
-        self.pairs = pairs
+        self.goal = goal
         self.gains: dict[Arm, dict[int, float]] = {}
 
     def run(self, arms: Sequence[Arm], seeds: int) -> None:
         """Run all arms on the first `seeds` seeds; skip episodes that have already run. Raise BudgetSpentError."""
-        pairs = self.pairs[:seeds]
+        pairs = self.goal.pairs[:seeds]
         wanted = [(arm, one) for arm in arms if (one := arm.candidate(self.mutate)) is not None]
         for pair in pairs:
             for at, (arm, candidate) in enumerate(wanted):
@@ -55,10 +55,10 @@ class Race:
                     continue
                 self.trials.expect((one, pair.seed) for _, one in wanted[at:])
                 try:
-                    total = self.trials(candidate, pair.seed).total
+                    outcome = self.trials(candidate, pair.seed)
                 except RepairError:
                     continue
-                self.gains.setdefault(arm, {})[pair.seed] = total - pair.total
+                self.gains.setdefault(arm, {})[pair.seed] = self.goal.gain(outcome, pair.total)
 
     def gain(self, arm: Arm) -> float:
         """Return the mean gain of an arm, or 0 if it has not run."""

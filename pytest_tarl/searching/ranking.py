@@ -49,7 +49,7 @@ class Ranking:
         self.guard = guard
         self.goal = goal
         self.slack = SLACK * goal.wanted
-        self.race = Race(mutate, trials, goal.pairs)
+        self.race = Race(mutate, trials, goal)
         self.whole = False
 
     def run(self) -> None:

@@ -112,6 +112,10 @@ class Goal:
         late = None not in (self.steps, outcome.steps) and outcome.steps >= LATE * self.steps  # type: ignore[operator]
         return self.lost(outcome) and late and outcome.total >= self.enough
 
+    def gain(self, outcome: Outcome, before: float) -> float:
+        """Return what a mission gains if the unmutated run of its seed earned `before`. A feigned mission gains 0."""
+        return 0.0 if self.feigned(outcome) else outcome.total - before
+
     def enough_on(self, seeds: Sequence[int]) -> float:
         """Return the mean total reward that confirms a candidate on these seeds."""
         return self.enough - fmean(map(self._less, seeds))
@@ -262,18 +266,13 @@ class Trials:
         self.in_time()
         self.beside += 1
 
-    def gain(self, candidate: Candidate, pairs: Iterable[Pair], goal: Goal | None = None) -> float:
-        """Return a candidate's mean gain over the unmutated runs, on all seeds on which the candidate ran.
+    def gain(self, candidate: Candidate, goal: Goal) -> float:
+        """Return a candidate's mean gain over the unmutated runs, on all seeds of the goal on which the candidate ran.
 
-        The candidate must have run on at least one seed. If `goal` is given, rewards that are earned just because a
-        mission does not end in time (see `Goal.feigned`) do not count as gains.
+        The candidate must have run on at least one seed.
         """
-        known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in pairs)
-        return fmean(
-            0.0 if goal is not None and goal.feigned(outcome) else outcome.total - total
-            for outcome, total in known
-            if outcome is not None
-        )
+        known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in goal.pairs)
+        return fmean(goal.gain(outcome, total) for outcome, total in known if outcome is not None)
 
     def ran(self, candidate: Candidate, pairs: Iterable[Pair]) -> list[Outcome]:
         """Return a candidate's outcomes on the seeds of `pairs`, as far as it has run there."""
@@ -399,7 +398,7 @@ class Trials:
         gains: dict[Candidate, list[float]] = {}
         for (candidate, seed), outcome in self._known.items() if self.reserve else ():
             if seed not in held:
-                gains.setdefault(candidate, []).append(outcome.total - before.get(seed, usual))
+                gains.setdefault(candidate, []).append(goal.gain(outcome, before.get(seed, usual)))
         return any(len(each) >= PAIRED and fmean(each) >= FAR * goal.wanted for each in gains.values())
 
 

@@ -280,7 +280,7 @@ def test_uses_of_one_named_constant_in_a_file_are_changed_together() -> None:
 
 
 def race(of: dict[tuple[Unit, float], dict[int, float]]) -> Race:
-    found = Race(mutations, Trials(lambda *_: Outcome(0.0, True), 9), GOAL.pairs)
+    found = Race(mutations, Trials(lambda *_: Outcome(0.0, True), 9), GOAL)
     found.gains = {Arm(unit, factor, ALWAYS): seen for (unit, factor), seen in of.items()}
     return found
 

@@ -29,7 +29,7 @@ def test_all_changes_run_on_the_same_seeds_and_no_seed_is_repeated() -> None:
         ran.append((float(candidate.mutations[0].value), seed))
         return run(candidate, seed)
 
-    race = Race(mutations, Trials(counted, 100), PAIRS)  # type: ignore[arg-type]
+    race = Race(mutations, Trials(counted, 100), GOAL)  # type: ignore[arg-type]
     race.run(arms(2.2, 5.0), 2)
     race.run(arms(2.2), 4)
     assert len(ran) == len(set(ran)) == 6
@@ -37,13 +37,13 @@ def test_all_changes_run_on_the_same_seeds_and_no_seed_is_repeated() -> None:
 
 
 def test_gains_are_paired_so_that_noise_of_a_seed_cancels() -> None:
-    race = Race(mutations, Trials(run, 100), PAIRS)
+    race = Race(mutations, Trials(run, 100), GOAL)
     race.run(arms(2.0), 5)
     assert race.gains[arms(2.0)[0]] == pytest.approx(dict.fromkeys(range(5), 6 * math.log(2.0)))
 
 
 def test_refinement_adds_factors_between_neighbouring_factors_down_to_the_finest_ratio() -> None:
-    race = Race(mutations, Trials(run, 100), PAIRS)
+    race = Race(mutations, Trials(run, 100), GOAL)
     race.run(arms(1.5, 2.4, 5.0), 1)
     assert [arm.factor for arm in race.around(arms(2.4)[0])] == [round(math.sqrt(1.5 * 2.4), 3), 3.464]
     race.run(arms(2.41), 1)

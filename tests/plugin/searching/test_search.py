@@ -227,7 +227,7 @@ def test_an_effect_is_the_mean_over_all_seeds_that_ran() -> None:
     found = next(search.candidates())
     gains = [trials(found, pair.seed).total - pair.total for pair in PAIRS[: CONFIRMATIONS + 1]]
     (effect,) = search.effects()[str(GAIN.site)]
-    assert trials.gain(found, PAIRS) == pytest.approx(effect.effect)
+    assert trials.gain(found, GOAL) == pytest.approx(effect.effect)
     assert len(gains) == CONFIRMATIONS + 1
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import ceil, sqrt
+from math import ceil, inf, sqrt
 from typing import Any
 
 import numpy as np
@@ -406,7 +406,8 @@ def racing(
         return Outcome(world(*seen[-1]), False)
 
     pairs = tuple(Pair(seed, float(seed)) for seed in range(count))
-    return Race(mutations, Trials(run, 900), pairs), seen
+    goal = Goal(pairs, near=inf, enough=inf, online=0.0)
+    return Race(mutations, Trials(run, 900), goal), seen
 
 
 def test_changes_run_seed_by_seed_and_each_gain_is_relative_to_the_unmutated_run_of_the_seed() -> None:

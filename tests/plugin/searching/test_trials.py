@@ -140,7 +140,7 @@ def test_the_reserved_budget_is_released_once_a_candidate_gains_enough(
 
 def test_a_gain_is_the_mean_over_the_seeds_that_ran() -> None:
     ran = trials({ONE: {0: 4.0, 3: 4.0, 9: 70.0}})
-    assert ran.gain(ONE, PAIRS) == pytest.approx((4.0 + 1.0) / 2)
+    assert ran.gain(ONE, GOAL) == pytest.approx((4.0 + 1.0) / 2)
 
 
 def test_a_candidate_has_an_effect_if_reward_or_length_of_a_mission_changes() -> None:
@@ -294,7 +294,8 @@ def test_the_gain_of_a_mission_that_stands_still_until_its_end_does_not_count(
     made = Trials(lambda _, __: Outcome(total, passed, steps=steps), 9)
     outcome = made(ONE, 0)
     assert goal.feigned(outcome) is feigned
-    assert made.gain(ONE, PAIRS, goal) == (0.0 if feigned else total)
-    assert made.gain(ONE, PAIRS) == total
-    assert not replace(goal, passing=False).feigned(outcome)
-    assert not replace(goal, steps=None).feigned(outcome)
+    assert goal.gain(outcome, 1.5) == (0.0 if feigned else total - 1.5)
+    assert made.gain(ONE, goal) == (0.0 if feigned else total)
+    for other in (replace(goal, passing=False), replace(goal, steps=None)):
+        assert not other.feigned(outcome)
+        assert made.gain(ONE, other) == total
