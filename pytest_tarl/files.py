@@ -1,4 +1,4 @@
-"""Write files atomically."""
+"""Read regular files, check in advance that files can be written, and explain why they cannot."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ import errno
 import os
 import re
 import stat
-import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
+
+from tarl_lint.files import open_beside
 
 FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))  # Windows does not define EDQUOT
 # size in bytes of the file that is written to check whether a disk is full; most file systems allocate at least this
@@ -52,13 +53,13 @@ def check_writable(path: Path) -> None:
     made = [folder for folder in path.parents if not folder.exists()]  # innermost first
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        handle, beside = open_beside(path)
         try:
             # most file systems can create an empty file although the disk or the quota is full
             with os.fdopen(handle, "wb") as file:
                 file.write(bytes(BLOCK))
         finally:
-            Path(name).unlink()
+            beside.unlink()
     finally:
         for folder in made:
             with suppress(OSError):  # the folder was not created, or another run uses it
@@ -100,23 +101,3 @@ def read_regular(path: Path) -> bytes:
             return file.read()
     finally:
         os.close(handle)
-
-
-def write_atomically(path: Path, content: bytes) -> None:
-    """Write a temporary file beside `path` and rename it, making folders as needed. Raise OSError on failure.
-
-    Write directly to a device or a pipe, because a rename would replace it by a file.
-    """
-    if path.exists() and not path.is_file():
-        path.write_bytes(content)
-        return
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        Path(name).chmod(0o644)
-        Path(name).replace(path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise

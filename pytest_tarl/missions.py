@@ -16,7 +16,7 @@ from pytest_tarl.comparing import run_online
 from pytest_tarl.design import AS_WRITTEN, fixture_path
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import FixtureError, SettingsError
-from pytest_tarl.files import slug, write_atomically
+from pytest_tarl.files import slug
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.item_episode import Instruments
 from pytest_tarl.learning import fixture as fixtures
@@ -39,6 +39,7 @@ from pytest_tarl.stressing.search import Request
 from pytest_tarl.stressing.statements import source
 from pytest_tarl.unrecorded_nodes import silent_files
 from tarl_lint.api import Analysis
+from tarl_lint.files import write_atomically
 
 EARLIER = "# Commit only the recorded utility.\n*\n!.gitignore\n!utility/\n!utility/**\nutility/.*\n"
 IGNORED = (
@@ -314,7 +315,7 @@ class Mission:
         # if the folder is not writable, the error is reported when the other files are written
         with suppress(OSError, UnicodeDecodeError):
             if not ignore.exists() or ignore.read_text("utf-8") == EARLIER:
-                write_atomically(ignore, IGNORED.encode())
+                write_atomically(ignore, IGNORED.encode(), parents=True)
 
 
 def _changeable(analysis: Analysis) -> set[str]:

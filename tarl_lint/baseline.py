@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from tarl_lint.errors import BaselineError
-from tarl_lint.files import shown, write_whole
+from tarl_lint.files import shown, write_atomically
 from tarl_lint.fingerprints import Fingerprint, OfFlow, OfHazard
 from tarl_lint.model import Finding
 
@@ -177,7 +177,7 @@ def _words(entry: Accepted, fields: Mapping[str, str]) -> dict[str, Any]:
 def save(path: Path, baseline: Baseline) -> None:
     """Write a baseline atomically. Raises BaselineError if the file cannot be written."""
     try:
-        write_whole(path, dumps(baseline))
+        write_atomically(path, dumps(baseline).encode("utf-8", "surrogateescape"))
     except OSError as error:
         raise BaselineError(
             f"The baseline {shown(path)} cannot be written: {error.strerror}. Name another with --baseline."

@@ -14,7 +14,7 @@ from typing import Final, TextIO, TypeVar
 
 from tarl_lint import baseline, report
 from tarl_lint.errors import LintError, OutputError, UsageError
-from tarl_lint.files import shown, write_whole
+from tarl_lint.files import shown, write_atomically
 from tarl_lint.options import DRAWN, options, parser
 from tarl_lint.report import paint, summary
 from tarl_lint.report.line import Line, View, plain
@@ -223,7 +223,7 @@ def _write_file(path: Path, lines: Iterable[Line]) -> None:
     text = io.StringIO()
     paint.write(lines, text, colour=False)
     try:
-        write_whole(path, text.getvalue())
+        write_atomically(path, text.getvalue().encode("utf-8", "surrogateescape"))
     except OSError as error:
         raise OutputError(f"The report cannot be written to {path.as_posix()}: {error.strerror}.") from None
 

@@ -6,27 +6,35 @@ import os
 from pathlib import Path
 
 
-def write_whole(path: Path, text: str) -> None:
+def write_atomically(path: Path, content: bytes, *, parents: bool = False) -> None:
     """Write a file under another name and then rename it, so that readers never see a partial file.
 
-    A device or pipe is written to directly and never replaced.
+    With `parents`, make the missing folders above it. An existing file keeps its mode. A device or pipe is written to
+    directly and never replaced. Raise OSError on failure.
     """
     # if the path is a symbolic link, write to its target instead of replacing the link
-    target = path.resolve()
+    target = Path(os.path.realpath(path))
     if target.exists() and not target.is_file():
-        target.write_text(text, encoding="utf-8", errors="surrogateescape", newline="\n")
+        target.write_bytes(content)
         return
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.{os.urandom(4).hex()}")
-    descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+    if parents:
+        target.parent.mkdir(parents=True, exist_ok=True)
+    descriptor, temporary = open_beside(target)
     try:
-        with os.fdopen(descriptor, "w", encoding="utf-8", errors="surrogateescape", newline="\n") as file:
-            file.write(text)
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(content)
         if target.exists():
             temporary.chmod(target.stat().st_mode & 0o777)
         temporary.replace(target)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def open_beside(path: Path) -> tuple[int, Path]:
+    """Create a hidden file with a random name in the folder of `path`. Return its descriptor and its path."""
+    beside = path.with_name(f".{path.name}.{os.getpid()}.{os.urandom(4).hex()}")
+    return os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666), beside
 
 
 def shown(path: Path) -> str:

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from pytest_tarl import processors
 from pytest_tarl.commands.parser import Parser
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.files import advice_on, write_atomically
+from pytest_tarl.files import advice_on
 from pytest_tarl.printable import printable, printable_line
+from tarl_lint.files import write_atomically
 
 if TYPE_CHECKING:
     from pytest_tarl.workers.replays import Replays
@@ -255,6 +256,6 @@ def _day(text: str | None) -> date | None:
 
 def _write(path: Path, text: str) -> None:
     try:
-        write_atomically(path, text.encode())
+        write_atomically(path, text.encode(), parents=True)
     except OSError as problem:
         raise SettingsError(f"{path} cannot be written ({problem.strerror}): {advice_on(problem)}") from None

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import FleetError
-from pytest_tarl.files import advice_on, write_atomically
+from pytest_tarl.files import advice_on
 from pytest_tarl.fleet import decomposition_words, repair_words, words
 from pytest_tarl.fleet.groups import Group
 from pytest_tarl.fleet.question import Answer
@@ -25,6 +25,7 @@ from pytest_tarl.report import html
 from pytest_tarl.report.json_result import finite
 from pytest_tarl.report.regions import Vocabulary
 from pytest_tarl.sensors import Cell
+from tarl_lint.files import write_atomically
 
 # maximum number of groups on the map; groups that differ are chosen first, then those with the lowest reward
 MOST_GROUPS = 2000
@@ -37,7 +38,7 @@ def write(answer: Answer, path: Path) -> None:
     """Write the page. Raise TarlError if jinja2 is missing or the file cannot be written."""
     text = render(answer)
     try:
-        write_atomically(path, text.encode())
+        write_atomically(path, text.encode(), parents=True)
     except OSError as problem:
         raise FleetError(
             f"The page {path} cannot be written ({problem.strerror or problem}): {advice_on(problem)}"

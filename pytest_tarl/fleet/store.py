@@ -10,7 +10,8 @@ import fsspec
 
 from pytest_tarl.errors import FleetError
 from pytest_tarl.extras import install_command
-from pytest_tarl.files import advice_on, write_atomically
+from pytest_tarl.files import advice_on
+from tarl_lint.files import write_atomically
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Store:
         """Write a file atomically, so readers never see a part of it. Raise FleetError if that fails."""
         try:
             if self.protocol == "file":
-                write_atomically(Path(self.root) / path, content)
+                write_atomically(Path(self.root) / path, content, parents=True)
             else:
                 self.fs.pipe_file(f"{self.root}/{path}", content)
         except Exception as problem:

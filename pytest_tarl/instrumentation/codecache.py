@@ -11,11 +11,12 @@ import hashlib
 import marshal
 import os
 import sys
-import tempfile
 from collections.abc import Iterable
 from importlib.util import MAGIC_NUMBER
 from pathlib import Path
 from types import CodeType
+
+from tarl_lint.files import write_atomically
 
 FORMAT = b"tarl-code-1\n"
 KEPT = 8  # maximum number of entries per source file; each set of recorded statements needs its own entry
@@ -77,15 +78,7 @@ def _read(entry: Path) -> CodeType | None:
 
 def _write(entry: Path, code: CodeType) -> None:
     payload = marshal.dumps(code)
-    entry.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(prefix=f".{entry.stem}-", dir=entry.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(_header(payload) + payload)
-        Path(temporary).replace(entry)
-    except OSError:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    write_atomically(entry, _header(payload) + payload, parents=True)
     _forget_old(entry)
 
 

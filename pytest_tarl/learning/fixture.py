@@ -24,7 +24,7 @@ from zipfile import ZipFile
 import numpy as np
 
 from pytest_tarl.errors import FixtureError
-from pytest_tarl.files import advice_on, check_writable, read_regular, write_atomically
+from pytest_tarl.files import advice_on, check_writable, read_regular
 from pytest_tarl.formulas.signals import Signal
 from pytest_tarl.learning.archive import DamagedError, TooLargeError, numbers, read_arrays
 from pytest_tarl.learning.packing import (
@@ -40,6 +40,7 @@ from pytest_tarl.learning.soundness import check
 from pytest_tarl.learning.tables import Floats, Judgements, Sample
 from pytest_tarl.model import Bound, Guarantee, SitePlace, TaintList
 from pytest_tarl.sensors import Sensor
+from tarl_lint.files import write_atomically
 
 FORMAT_VERSION = 2
 HEADER = "header"
@@ -103,7 +104,7 @@ def save(fixture: Fixture, path: Path) -> None:
     arrays: dict[str, Any] = {HEADER: text, **columns}
     np.savez_compressed(buffer, **arrays)  # pass no options: numpy before 2.1 stores them as arrays
     try:
-        write_atomically(path, buffer.getvalue())
+        write_atomically(path, buffer.getvalue(), parents=True)
     except OSError as problem:
         raise _unwritable(path, problem) from problem
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import MonitorError
-from pytest_tarl.files import write_atomically
 from pytest_tarl.monitoring.status import Evidence, Moment, Status
 from pytest_tarl.monitoring.watch import Watch
 from pytest_tarl.report.regions import Vocabulary
+from tarl_lint.files import write_atomically
 
 FORMAT_VERSION = 1  # 1: first version
 
@@ -20,7 +20,7 @@ def write(document: dict[str, Any], path: Path) -> None:
     """Write a document atomically. Raise MonitorError if the file cannot be written."""
     try:
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
-        write_atomically(path, f"{text}\n".encode())
+        write_atomically(path, f"{text}\n".encode(), parents=True)
     except OSError as problem:
         raise MonitorError(
             f"{path} cannot be written ({problem.strerror}): name another file with --json."

@@ -24,13 +24,14 @@ from zipfile import BadZipFile
 import numpy as np
 
 from pytest_tarl.errors import MonitorError
-from pytest_tarl.files import read_regular, write_atomically
+from pytest_tarl.files import read_regular
 from pytest_tarl.learning.archive import read_arrays
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.monitoring.mission import Progress
 from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.monitor import Counts, Monitor, begun
 from pytest_tarl.monitoring.restarts import Processes
+from tarl_lint.files import write_atomically
 
 FORMAT = 2
 HEADER = "header"
@@ -66,7 +67,7 @@ def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: st
     arrays: dict[str, Any] = {HEADER: text, **columns}
     np.savez_compressed(buffer, **arrays)  # pass no options: numpy before 2.1 stores them as arrays
     try:
-        write_atomically(path, buffer.getvalue())
+        write_atomically(path, buffer.getvalue(), parents=True)
     except OSError as problem:
         raise MonitorError(
             f"The state {path} cannot be written ({problem.strerror}): name another file with --state."

@@ -14,7 +14,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.files import advice_on, slug, write_atomically
+from pytest_tarl.files import advice_on, slug
+from tarl_lint.files import write_atomically
 
 Opcode = tuple[str, int, int, int, int]
 CONTEXT = 3  # number of unchanged lines around a change
@@ -68,7 +69,7 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
     name = f"{slug(test)}-{slug(drift or 'online')}"
     path = folder / f"{name}-{digest}.patch"
     try:
-        write_atomically(path, content)
+        write_atomically(path, content, parents=True)
     except OSError as problem:
         raise RepairError(
             f"The patch {path} cannot be written ({problem.strerror}): {advice_on(problem)}"
@@ -86,7 +87,7 @@ def write_partial(diff: str, folder: Path, test: str, drift: str | None) -> Path
     content = b"".join(QUOTE + line for line in split_lines(diff.encode("utf-8", "surrogateescape")))
     path = folder / f"{slug(test)}-{slug(drift or 'online')}{PARTIAL}"
     try:
-        write_atomically(path, content)
+        write_atomically(path, content, parents=True)
     except OSError as problem:
         raise RepairError(f"{path} cannot be written ({problem.strerror}): {advice_on(problem)}") from problem
     return path

@@ -11,7 +11,6 @@ from pathlib import Path
 from statistics import fmean
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Attempt, Comparison, Edit, Guarantee, Partial, Repair
 from pytest_tarl.patching import patch
 from pytest_tarl.patching.merge import CONSTANT
@@ -30,6 +29,7 @@ from pytest_tarl.repairing.template_forms import form_words
 from pytest_tarl.report import amounts, guarantees, next_commands, repair_words, words
 from pytest_tarl.searching.search import Candidate, effective_value
 from tarl_lint import __version__
+from tarl_lint.files import write_atomically
 
 
 def delivered(
@@ -65,7 +65,7 @@ def _written(order: Order, diff: str) -> str:
     except RepairError:
         return ""
     with suppress(OSError):
-        write_atomically(written.with_suffix(".sarif"), sarif(read(written)).encode())
+        write_atomically(written.with_suffix(".sarif"), sarif(read(written)).encode(), parents=True)
     return written.relative_to(order.root).as_posix()
 
 

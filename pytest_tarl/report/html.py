@@ -15,11 +15,12 @@ from typing import Any
 
 from pytest_tarl.errors import TarlError
 from pytest_tarl.extras import install_command
-from pytest_tarl.files import advice_on, write_atomically
+from pytest_tarl.files import advice_on
 from pytest_tarl.model import Comparison, ListComparison
 from pytest_tarl.report import amounts, formulas, guarantees, next_commands, repair_words, sizes, words
 from pytest_tarl.report.figures import MOST_ROWS, plane, reward_curves, utility_figure
 from pytest_tarl.report.slices import chart
+from tarl_lint.files import write_atomically
 
 NEEDED = ("jinja2", "plotly", "pygments")
 _RANGE = re.compile(r"(?<=\d)-(?=\d)")
@@ -35,7 +36,7 @@ def write(comparison: Comparison, path: Path, *, title: str | None = None) -> No
     """
     text = render(comparison, title=title)
     try:
-        write_atomically(path, text.encode())
+        write_atomically(path, text.encode(), parents=True)
     except OSError as error:
         raise TarlError(
             f"The report {path} cannot be written ({error.strerror or error}): {advice_on(error)}"

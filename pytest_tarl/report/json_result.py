@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import TarlError
-from pytest_tarl.files import advice_on, write_atomically
+from pytest_tarl.files import advice_on
 from pytest_tarl.model import (
     Attempt,
     Bound,
@@ -27,6 +27,7 @@ from pytest_tarl.report.amounts import atr, expected
 from pytest_tarl.report.regions import boxes
 from pytest_tarl.report.sizes import rows as size_rows
 from pytest_tarl.sensors import Cell, Sensor
+from tarl_lint.files import write_atomically
 
 FORMAT_VERSION = 1  # 1: first version
 COUNTED = ("offline", "online", "search", "acceptance")
@@ -41,7 +42,7 @@ def write(comparison: Comparison, path: Path, episodes: Mapping[str, int]) -> No
     """
     text = json.dumps(document(comparison, episodes), indent=1, ensure_ascii=False, allow_nan=False)
     try:
-        write_atomically(path, f"{text}\n".encode())
+        write_atomically(path, f"{text}\n".encode(), parents=True)
     except OSError as error:
         raise TarlError(
             f"The result {path} cannot be written ({error.strerror or error}): {advice_on(error)}"

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytest_tarl.extras import missing_sobol
-from pytest_tarl.files import slug, unwritten, write_atomically
+from pytest_tarl.files import slug, unwritten
 from pytest_tarl.stressing import json_result, kept, margins, page, words
 from pytest_tarl.stressing.findings import Stress
 from pytest_tarl.stressing.guarantee import guarantee
 from pytest_tarl.stressing.map_figure import map_figure
 from pytest_tarl.stressing.search import Request, stress
 from pytest_tarl.stressing.sobol_indices import affordable
+from tarl_lint.files import write_atomically
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ def _page(root: Path, name: str) -> Path:
 
 
 def _as_text(content: str) -> Callable[[Path], None]:
-    return lambda path: write_atomically(path, content.encode())
+    return lambda path: write_atomically(path, content.encode(), parents=True)
 
 
 def _replayed(request: Request, memory: kept.Kept) -> tuple[str, ...]:
@@ -101,12 +102,12 @@ def _written(found: Stress, root: Path, name: str, memory: kept.Kept) -> list[st
     jobs = _documents(found, root, name)
     if found.ended in ("", "budget"):
         jobs[folder / "margins" / f"{name}.json"] = lambda path: write_atomically(
-            path, margins.text(margins.margins(found)).encode()
+            path, margins.text(margins.margins(found)).encode(), parents=True
         )
     drawn = map_figure(found)
     if drawn:
         jobs[folder / "report" / f"{name}-stress-map.svg"] = lambda path: write_atomically(
-            path, drawn.encode()
+            path, drawn.encode(), parents=True
         )
     # an incomplete run that found no failure must not delete the failures of earlier runs
     if not found.ended or found.failures:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from tarl_lint import __version__
-from tarl_lint.files import write_whole
+from tarl_lint.files import write_atomically
 from tarl_lint.model import Cut, Finding, Flow, Sink, SiteId, Source, Span, Step
 from tarl_lint.read.source import Script, SourceError
 from tarl_lint.read.watched import Reading
@@ -138,8 +138,8 @@ class Cache:
             self._file.parent.mkdir(parents=True, exist_ok=True)
             ignore = self._file.parent / ".gitignore"
             if not ignore.exists():
-                write_whole(ignore, "*\n")
-            write_whole(self._file, f"{digest([text])}\n{text}")
+                write_atomically(ignore, b"*\n")
+            write_atomically(self._file, f"{digest([text])}\n{text}".encode("ascii"))
         except OSError:
             self._file = None  # the directory is not writable: continue without a stored cache
 

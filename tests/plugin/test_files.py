@@ -1,52 +1,11 @@
-"""Reports and recordings are written atomically; pipes and devices are not replaced by files."""
+"""A check whether a file can be written leaves nothing behind."""
 
 import errno
 import os
-import stat
-import threading
 
 import pytest
 
-from pytest_tarl.files import check_writable, write_atomically
-
-
-def test_a_file_is_replaced_atomically(tmp_path):
-    target = tmp_path / "new" / "report.html"
-    write_atomically(target, b"old")
-    write_atomically(target, b"new")
-    assert target.read_bytes() == b"new"
-    assert [p.name for p in target.parent.iterdir()] == ["report.html"]
-
-
-def test_a_pipe_or_device_is_written_to_and_not_replaced(tmp_path):
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    read: list[bytes] = []
-    reader = threading.Thread(target=lambda: read.append(pipe.read_bytes()))
-    reader.start()
-    write_atomically(pipe, b"report")
-    reader.join(timeout=20)
-    assert read == [b"report"]
-    assert stat.S_ISFIFO(pipe.stat().st_mode)
-    assert [p.name for p in tmp_path.iterdir()] == ["pipe"]
-
-
-def test_an_interrupt_is_passed_on_before_and_after_the_rename(tmp_path, monkeypatch):
-    rename = type(tmp_path).replace
-    target = tmp_path / "report.html"
-
-    def interrupted(path, new):
-        if before:
-            raise KeyboardInterrupt
-        rename(path, new)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(type(tmp_path), "replace", interrupted)
-    for before, content in ((True, b""), (False, b"new")):
-        with pytest.raises(KeyboardInterrupt):
-            write_atomically(target, b"new")
-        assert (target.read_bytes() if target.exists() else b"") == content
-        assert [path.name for path in tmp_path.iterdir()] == ["report.html"] * (not before)
+from pytest_tarl.files import check_writable
 
 
 @pytest.mark.parametrize("there", ["", "a", "a/b"])

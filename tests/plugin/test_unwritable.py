@@ -7,14 +7,13 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
 from pytest_tarl import files
+from tarl_lint.files import open_beside
 from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
 
 ADVICE = {
@@ -40,14 +39,14 @@ def recorded(tank: pytest.Pytester) -> pytest.Pytester:
 
 def deny(monkeypatch: pytest.MonkeyPatch, number: int, *kept: str) -> None:
     """Make everything below `.tarl` read-only, except the kept folders."""
-    make = tempfile.mkstemp
 
-    def full(**more: Any) -> tuple[int, str]:
-        if ".tarl" in more["dir"].parts and more["dir"].name not in kept:
-            raise OSError(number, os.strerror(number), str(more["dir"]))
-        return make(**more)
+    def full(path: Path) -> tuple[int, Path]:
+        if ".tarl" in path.parent.parts and path.parent.name not in kept:
+            raise OSError(number, os.strerror(number), str(path.parent))
+        return open_beside(path)
 
-    monkeypatch.setattr(files.tempfile, "mkstemp", full)
+    monkeypatch.setattr("pytest_tarl.files.open_beside", full)
+    monkeypatch.setattr("tarl_lint.files.open_beside", full)
 
 
 def cases(path: Path) -> dict[str, ElementTree.Element]:

@@ -222,7 +222,7 @@ def test_a_patch_that_cannot_be_written_is_shown_in_the_report(
     monkeypatch.setattr(delivering, "read", lambda path: path)
     monkeypatch.setattr(delivering, "sarif", str)
 
-    def sarif_written(path: Path, data: bytes) -> None:
+    def sarif_written(path: Path, data: bytes, *, parents: bool) -> None:
         written.append(path)
         raise OSError  # without the file for editors, the patch is still there
 

@@ -122,10 +122,11 @@ def test_one_line_names_the_files_that_could_not_be_written(
     memory = kept.Kept(tmp_path / ".tarl" / "stress" / "failing", KEY)
     assert _written(found, tmp_path, "x", memory) == ["report     .tarl/report/x-stress.html"]
 
-    def full(**_: Any) -> None:
+    def full(path: Path) -> None:
         raise OSError(number, os.strerror(number))
 
-    monkeypatch.setattr("pytest_tarl.files.tempfile.mkstemp", full)
+    monkeypatch.setattr("pytest_tarl.files.open_beside", full)
+    monkeypatch.setattr("tarl_lint.files.open_beside", full)
     (line,) = _written(found, tmp_path, "x", memory)
     assert line.startswith(
         "not written: .tarl/stress/x.json, .tarl/report/x-stress.html, "
