@@ -27,10 +27,10 @@ import yaml
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_read import is_ros2_xml, read_launch
 from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.name_resolution import joined
 from tarl_lint.workspace.parameter_yaml import of_node
 from tarl_lint.workspace.read import read
 from tarl_lint.workspace.ros_arguments import ros1, ros2
-from tarl_lint.workspace.ros_names import joined
 
 ORACLES = Path(__file__).parent / "launch_oracles"
 COMMAND = "<what a command prints>"

@@ -16,7 +16,7 @@ from tarl_lint import baseline, report
 from tarl_lint.errors import LintError, OutputError, UsageError
 from tarl_lint.files import shown, write_atomically
 from tarl_lint.options import DRAWN, options, parser
-from tarl_lint.report import paint, summary
+from tarl_lint.report import closing_lines, paint
 from tarl_lint.report.line import Line, View, plain
 from tarl_lint.run import runner
 from tarl_lint.run.progress import Tell, silent
@@ -115,7 +115,7 @@ def _launched(typed: Namespace) -> int:
     if typed.write_baseline:
         path, written = command.accepted(found, config, gone)
         baseline.save(path, written)
-        _print([((f"{shown(path)}: {summary.numbers(written)} accepted.", "strong"),)])
+        _print([((f"{shown(path)}: {closing_lines.numbers(written)} accepted.", "strong"),)])
         return 0
     result = as_result(found, config, gone)
     _show(typed, result, lambda view: command.rendered(typed.format, found, asked, view, result))
@@ -182,7 +182,11 @@ def _show(typed: Namespace, result: Result, render: Callable[[View], Iterable[Li
         view = _view(typed, sys.stdout)
         _print(render(view))
     if typed.format not in report.FOR_PEOPLE:
-        for line in (*summary.vanished(result, view), *summary.unused(result), *summary.unmatched(result)):
+        for line in (
+            *closing_lines.vanished(result, view),
+            *closing_lines.unused(result),
+            *closing_lines.unmatched(result),
+        ):
             print(paint.harmless(plain(line)), file=sys.stderr)
 
 
@@ -236,6 +240,6 @@ def _accept(result: Result, config: Config) -> Iterator[Line]:
     parts = [f"{len(result.new)} new", f"{sum(e.count for e in result.vanished)} removed"]
     if kept := sum(e.count for e in result.kept):
         parts.append(f"{kept} kept from files that this run did not analyse")
-    yield ((f"{shown(path)}: {summary.numbers(written)} accepted ({', '.join(parts)}).", "strong"),)
+    yield ((f"{shown(path)}: {closing_lines.numbers(written)} accepted ({', '.join(parts)}).", "strong"),)
     if result.errors:
-        yield from summary.not_analysed(result)
+        yield from closing_lines.not_analysed(result)

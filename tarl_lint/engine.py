@@ -17,7 +17,7 @@ from tarl_lint.model import RULES, Cut, Finding, Flow
 from tarl_lint.node_names import node_name
 from tarl_lint.parameter_names import ParameterName
 from tarl_lint.prefilter.by_words import groups, relevant
-from tarl_lint.prefilter.one_sided import Rule, one_sided
+from tarl_lint.prefilter.one_sided_groups import Rule, one_sided
 from tarl_lint.read.source import Module
 from tarl_lint.read.watched import Reading, watched
 from tarl_lint.rules import tarl101, tarl102, tarl103

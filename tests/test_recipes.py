@@ -30,7 +30,7 @@ from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency
 from tarl_lint.memory.values import Value, pointer
 from tarl_lint.models import library_functions
-from tarl_lint.prefilter.one_sided import Side
+from tarl_lint.prefilter.one_sided_groups import Side
 from tarl_lint.read.source import Module, parse
 from tarl_lint.report.line import View
 from tarl_lint.run import runner

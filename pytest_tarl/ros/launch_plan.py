@@ -25,8 +25,8 @@ from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file, un
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_read import read_launch
 from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.name_resolution import joined, remapped
 from tarl_lint.workspace.node_programs import Program, program
-from tarl_lint.workspace.ros_names import joined, remapped
 
 SHOWN = 3  # maximum number of a launch file's problems in one note
 _ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w-]+)\)")

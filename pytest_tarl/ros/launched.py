@@ -20,10 +20,10 @@ from tarl_lint.workspace.launch_lookup import TEST
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_parameters import ON_ROBOT, Stated, leaves, stated
 from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.name_resolution import joined
 from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import NoYamlError
 from tarl_lint.workspace.ros_arguments import plain
-from tarl_lint.workspace.ros_names import joined
 
 WITH_TEXTS: list[Callable[[], None]] = []  # functions that clear the caches of launch and parameter files
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from tarl_lint.errors import UsageError
 from tarl_lint.files import shown
 from tarl_lint.read import gitignore
-from tarl_lint.read.declared import Declarations
+from tarl_lint.read.declared_entry_points import Declarations
 from tarl_lint.read.gitignore import Ignore
 from tarl_lint.read.layout import Layout
 from tarl_lint.settings.config import Config, Stdin, repository_root

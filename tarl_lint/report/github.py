@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from tarl_lint.model import Finding, Flow, Span
-from tarl_lint.report import summary
+from tarl_lint.report import closing_lines
 from tarl_lint.report.flows import describe, publish_calls, subscription
 from tarl_lint.report.grading import Level, level
 from tarl_lint.report.line import Line, View
@@ -26,9 +26,9 @@ def report(result: Result, view: View) -> Iterator[Line]:
         for own, span, title, text in noted:
             if own == grade:
                 yield ((_command(own, span, title, text), ""),)
-    yield from summary.vanished(result, view)
-    yield from summary.unmatched(result)
-    yield from summary.closing(result)
+    yield from closing_lines.vanished(result, view)
+    yield from closing_lines.unmatched(result)
+    yield from closing_lines.closing(result)
 
 
 _Note = tuple[Level, Span, str, str]
@@ -61,7 +61,7 @@ def _hazards(result: Result) -> Iterator[_Note]:
 def _unused(result: Result) -> Iterator[_Note]:
     for comment in result.unused:
         span = Span(comment.path, comment.line, comment.column, comment.line, comment.column)
-        text = summary.in_vain(comment)
+        text = closing_lines.in_vain(comment)
         yield "note", span, "tarl-lint", text[:1].upper() + text[1:]
 
 

@@ -8,7 +8,7 @@ from typing import Any, Final, TypeVar
 
 from tarl_lint import __version__
 from tarl_lint.model import Finding, Flow, Sink, Source, Span, Step
-from tarl_lint.report import summary
+from tarl_lint.report import closing_lines
 from tarl_lint.report.json import incomplete
 from tarl_lint.report.line import Line, View, plain
 from tarl_lint.run.runner import Result
@@ -50,7 +50,7 @@ def document(result: Result) -> dict[str, Any]:
         "format": FORMAT_VERSION,
         "tool": {"name": "tarl-lint", "version": __version__},
         "files": result.statistics.files,
-        "notes": [plain(line) for line in summary.not_analysed(result)],
+        "notes": [plain(line) for line in closing_lines.not_analysed(result)],
         "errors": [{"path": e.path, "line": e.line, "message": e.message} for e in result.errors],
         **incomplete(result),
         **_outside(result),

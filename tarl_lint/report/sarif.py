@@ -13,7 +13,7 @@ from tarl_lint.documentation import rule_page, site
 from tarl_lint.files import shown
 from tarl_lint.model import OFF_BY_DEFAULT, Dependence, Finding, Flow, Sink, Source, Span, Step
 from tarl_lint.read.source import SourceError
-from tarl_lint.report import summary
+from tarl_lint.report import closing_lines
 from tarl_lint.report.grading import level, of_error, own_level, told_apart
 from tarl_lint.report.line import Line, View, plain
 from tarl_lint.report.upload_limits import EVERYTHING, Cut, cuts, taken
@@ -94,7 +94,7 @@ def _left_out(count: int) -> list[dict[str, Any]]:
         return []
     return [
         _notification(
-            "left-out", f"{summary.many(count, 'finding')} omitted: servers limit the size of a report."
+            "left-out", f"{closing_lines.many(count, 'finding')} omitted: servers limit the size of a report."
         )
     ]
 
@@ -103,7 +103,7 @@ def _shortened(findings: Sequence[Finding], most: int) -> list[dict[str, Any]]:
     count = sum(_is_cut(f.flow, most) for f in findings if f.flow)
     if not count:
         return []
-    shown = summary.many(count, "flow")
+    shown = closing_lines.many(count, "flow")
     text = f"{shown} reduced to the shortest chain of statements: servers limit the size of a report."
     return [_notification("shortened", text)]
 
@@ -139,7 +139,7 @@ def _rule(code: str) -> dict[str, Any]:
 
 
 def _notifications(result: Result) -> list[dict[str, Any]]:
-    return [_notification("not-analysed", plain(line)) for line in summary.not_analysed(result)]
+    return [_notification("not-analysed", plain(line)) for line in closing_lines.not_analysed(result)]
 
 
 def _incomplete(result: Result) -> list[dict[str, Any]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from tarl_lint.model import Finding
-from tarl_lint.report import summary
+from tarl_lint.report import closing_lines
 from tarl_lint.report.line import Line, Style, View, location, one_line
 from tarl_lint.run.runner import UNREADABLE, Result
 
@@ -20,13 +20,13 @@ def report(result: Result, view: View) -> Iterator[Line]:
 
         yield from overview(flows, view)
     yield from _findings(result, view)
-    yield from summary.vanished(result, view)
-    yield from summary.unused(result)
-    yield from summary.unmatched(result)
+    yield from closing_lines.vanished(result, view)
+    yield from closing_lines.unused(result)
+    yield from closing_lines.unmatched(result)
     if view.statistics:
-        yield from summary.statistics(result)
-    yield from summary.closing(result)
-    yield from summary.hints(result, view)
+        yield from closing_lines.statistics(result)
+    yield from closing_lines.closing(result)
+    yield from closing_lines.hints(result, view)
 
 
 def concise(result: Result, view: View) -> Iterator[Line]:
@@ -35,15 +35,15 @@ def concise(result: Result, view: View) -> Iterator[Line]:
     for finding in result.new:
         yield heading(finding)
     for line in (
-        *summary.unused(result),
-        *summary.unmatched(result),
-        *summary.vanished(result, view),
+        *closing_lines.unused(result),
+        *closing_lines.unmatched(result),
+        *closing_lines.vanished(result, view),
     ):
         if line:
             yield line
     if view.statistics:
-        yield from summary.statistics(result)
-    yield from summary.closing(result)
+        yield from closing_lines.statistics(result)
+    yield from closing_lines.closing(result)
 
 
 def errors(result: Result) -> Iterator[Line]:
@@ -60,11 +60,11 @@ def _findings(result: Result, view: View) -> Iterator[Line]:
     """Yield the findings of each package. Of many flows, yield only the first ones, and the number of the others."""
     if not result.new:
         return
-    from tarl_lint.report.packages import grouped
+    from tarl_lint.report.by_package import grouped
 
     groups = grouped(result.new)
     room = view.most_flows or len(result.new)
-    explained = not (view.show_paths or summary.is_single(result))
+    explained = not (view.show_paths or closing_lines.is_single(result))
     for group in groups:
         if len(groups) > 1:
             yield ((group.name, "strong"), (f": {group.counted}", ""))
@@ -72,7 +72,7 @@ def _findings(result: Result, view: View) -> Iterator[Line]:
         flows = [f for f in group.findings if f.flow]
         yield from _flows(flows[:room], result, view)
         if left := len(flows[room:]):
-            yield ((f"    and {summary.many(left, 'further flow')}", "quiet"),)
+            yield ((f"    and {closing_lines.many(left, 'further flow')}", "quiet"),)
             yield ()
         room = max(0, room - len(flows))
         if flows and not explained:
@@ -95,7 +95,7 @@ def _flows(flows: Sequence[Finding], result: Result, view: View) -> Iterator[Lin
     from tarl_lint.report.flows import publish_call, publish_calls
     from tarl_lint.report.frame import lines_of
 
-    paths = view.show_paths or summary.is_single(result)
+    paths = view.show_paths or closing_lines.is_single(result)
     for group in publish_calls(flows):
         source = lines_of(result.texts.get(group[0][1].sink.span.path, ""))
         yield from publish_call(group, source, view, paths=paths)

@@ -36,7 +36,7 @@ from typing import Final
 
 from tarl_lint.evidence import Evidence
 from tarl_lint.model import Finding
-from tarl_lint.prefilter.one_sided import Side
+from tarl_lint.prefilter.one_sided_groups import Side
 from tarl_lint.rules.races.alternatives import never_both
 from tarl_lint.rules.races.guarded_names import always_or_never_guarded
 from tarl_lint.rules.races.locksets import MADE, Harm, Locking, Use, unguarded

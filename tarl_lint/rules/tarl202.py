@@ -27,7 +27,7 @@ from tarl_lint.evidence import Evidence
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding, Flow, Sink, Source, Span
 from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
-from tarl_lint.prefilter.one_sided import Side
+from tarl_lint.prefilter.one_sided_groups import Side
 from tarl_lint.rules.limits.unbounded import Magnitudes
 from tarl_lint.rules.wording import end
 

@@ -20,7 +20,7 @@ from tarl_lint.flows.apart import by_line, merged
 from tarl_lint.ir.nodes import Function
 from tarl_lint.model import Finding
 from tarl_lint.models.ros.endpoints import SourceRecord
-from tarl_lint.prefilter.one_sided import Side
+from tarl_lint.prefilter.one_sided_groups import Side
 from tarl_lint.rules.wording import end
 from tarl_lint.trees import walk
 

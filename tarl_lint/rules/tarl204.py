@@ -18,7 +18,7 @@ from tarl_lint.fingerprints import topic_text
 from tarl_lint.ir.nodes import Pos
 from tarl_lint.model import Finding
 from tarl_lint.models.ros.endpoints import Publisher
-from tarl_lint.prefilter.one_sided import Side
+from tarl_lint.prefilter.one_sided_groups import Side
 from tarl_lint.read.source import Module
 from tarl_lint.trees import last_name, walk
 

@@ -21,7 +21,7 @@ from typing import Final, get_args
 from tarl_lint.model import Finding
 from tarl_lint.system.hazards import at_node
 from tarl_lint.system.model import Instance, Role, System
-from tarl_lint.workspace.ros_names import resolved
+from tarl_lint.workspace.name_resolution import resolved
 
 CODE: Final = "TARL308"
 SUMMARY: Final = "a remapping matches no name that the node uses"

@@ -27,8 +27,8 @@ from typing import Final
 
 from tarl_lint.message_fields import BY_RELEASE, KNOWN_FIELDS
 from tarl_lint.model import Finding
-from tarl_lint.system.fields import lacking
 from tarl_lint.system.model import Interface, Misfit, System
+from tarl_lint.system.unknown_fields import lacking
 
 CODE: Final = "TARL309"
 SUMMARY: Final = "code uses a field that the message type does not have"

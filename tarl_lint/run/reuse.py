@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from tarl_lint.model import Finding, Flow, Sink, Source, Span, Step
-from tarl_lint.prefilter.one_sided import two_sided
+from tarl_lint.prefilter.one_sided_groups import two_sided
 from tarl_lint.read.moved_lines import moved_lines
 from tarl_lint.read.source import Script
 from tarl_lint.read.watched import Reading

@@ -20,6 +20,7 @@ from tarl_lint.system.binding import (
     with_names_in_code,
     with_prints,
 )
+from tarl_lint.system.called_services import PARTS, part
 from tarl_lint.system.cpp_sources import is_compiled, named_topics
 from tarl_lint.system.cpp_types import used_types
 from tarl_lint.system.gz_bridges import bridged, own_name
@@ -28,16 +29,15 @@ from tarl_lint.system.known_packages import identity, kinds, name_words, started
 from tarl_lint.system.known_programs import stated
 from tarl_lint.system.model import Hop, Instance, Interface, Role, Seen, System, full_name
 from tarl_lint.system.reconfigured import with_configured
-from tarl_lint.system.service_calls import PARTS, part
 from tarl_lint.system.topic_tools import passed_on
 from tarl_lint.workspace import hidden_packages
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.message_files import fields
 from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.name_resolution import resolved
 from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import YAML, NoYamlError, content
-from tarl_lint.workspace.ros_names import resolved
 
 UNKNOWN: Final = "?"
 # prefix of the name of a service; with this prefix, the name stands for a server whose code is not analysed

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from tarl_lint.files import shown
+from tarl_lint.report import closing_lines
 from tarl_lint.report import github as pull_request
-from tarl_lint.report import summary
 from tarl_lint.report.line import Line, View, one_line
 from tarl_lint.report.text import errors, heading
 from tarl_lint.run.runner import Result
 from tarl_lint.system.chain_lines import in_line
-from tarl_lint.system.chains import limited, shown_chains
+from tarl_lint.system.counts import statistics
+from tarl_lint.system.flow_chains import limited, shown_chains
 from tarl_lint.system.model import Chain, System
-from tarl_lint.system.statistics import statistics
 
 
 def concise(
@@ -24,10 +24,10 @@ def concise(
     yield from map(heading, result.new)
     found = [shown_chains(system.hops, origin, target, view.most_flows) for system in systems]
     yield from flows(systems, found, view)
-    yield from (line for line in summary.vanished(result, view) if line)
+    yield from (line for line in closing_lines.vanished(result, view) if line)
     if view.statistics:
         yield from statistics(systems, [one for one, _ in found], result)
-    yield from summary.closing(result)
+    yield from closing_lines.closing(result)
 
 
 def github(

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from tarl_lint.system.chains import chains
 from tarl_lint.system.compose import SERVER, UNKNOWN
+from tarl_lint.system.flow_chains import chains
 from tarl_lint.system.model import Chain, System
 
 BoxKind = Literal["topic", "node", "unread"]

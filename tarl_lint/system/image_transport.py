@@ -9,8 +9,8 @@ from tarl_lint.files import shown
 from tarl_lint.model import Span
 from tarl_lint.system.model import Endpoint, Instance
 from tarl_lint.workspace.launch_model import LaunchedNode
+from tarl_lint.workspace.name_resolution import resolved
 from tarl_lint.workspace.ros_arguments import plain
-from tarl_lint.workspace.ros_names import resolved
 
 # type of an endpoint that a C++ program creates with image_transport
 IMAGE: Final = "Image by image_transport"

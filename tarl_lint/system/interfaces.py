@@ -26,9 +26,9 @@ from tarl_lint.parameter_names import MARK, ParameterName
 from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
+from tarl_lint.system.called_services import CLIENTS, called_services
 from tarl_lint.system.composed_names import composed_names
 from tarl_lint.system.driven import driven
-from tarl_lint.system.fields import examined
 from tarl_lint.system.model import Endpoint, Interface, Qos, Role
 from tarl_lint.system.parameters import (
     configurations,
@@ -40,9 +40,9 @@ from tarl_lint.system.parameters import (
 )
 from tarl_lint.system.qos import of_call
 from tarl_lint.system.quiet_imports import closed
-from tarl_lint.system.service_calls import CLIENTS, called_services
 from tarl_lint.system.staleness import stale
 from tarl_lint.system.table_rows import separated
+from tarl_lint.system.unknown_fields import examined
 
 _OWN: Final = "__main__"
 _SERVED: Final[Mapping[str, Role]] = {"service": "serves", "action": "performs"}

@@ -9,9 +9,9 @@ from tarl_lint import __version__
 from tarl_lint.files import shown
 from tarl_lint.model import Finding
 from tarl_lint.report.json import extent, statement
-from tarl_lint.system.chains import chains
+from tarl_lint.system.flow_chains import chains
 from tarl_lint.system.model import Endpoint, Hop, Instance, System
-from tarl_lint.system.one_sided import OneSided, one_sided
+from tarl_lint.system.one_sided_names import OneSided, one_sided
 from tarl_lint.workspace.launch_model import Setting
 
 FORMAT_VERSION: Final = 1  # 1: first format

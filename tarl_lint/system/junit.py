@@ -9,7 +9,7 @@ from tarl_lint.report.junit import Case, cases, written
 from tarl_lint.report.line import ASCII, Line, View, plain
 from tarl_lint.run.runner import Result
 from tarl_lint.system.chain_lines import in_line, statements
-from tarl_lint.system.chains import chains
+from tarl_lint.system.flow_chains import chains
 from tarl_lint.system.model import Chain, System
 
 _VIEW = View(glyphs=ASCII, show_paths=True)

@@ -17,7 +17,7 @@ from tarl_lint.system.sensor_drivers import offered
 from tarl_lint.workspace.conditions import exclusive
 from tarl_lint.workspace.launch_model import LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem
-from tarl_lint.workspace.ros_names import joined, remapped
+from tarl_lint.workspace.name_resolution import joined, remapped
 
 Role = Literal[
     "publishes", "subscribes", "serves", "calls", "performs", "asks"

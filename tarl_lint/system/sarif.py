@@ -10,8 +10,8 @@ from tarl_lint.model import Span
 from tarl_lint.report.line import Line
 from tarl_lint.report.sarif import location, written
 from tarl_lint.run.runner import Result
-from tarl_lint.system.chains import chains
 from tarl_lint.system.drawing import drawing_of
+from tarl_lint.system.flow_chains import chains
 from tarl_lint.system.model import Chain, System, place_of
 
 CATEGORY: Final = "tarl-lint/launch"  # separates these results from the results of a run without launch files

@@ -6,17 +6,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from tarl_lint.files import shown
-from tarl_lint.report import summary
+from tarl_lint.report import closing_lines
+from tarl_lint.report.closing_lines import many
 from tarl_lint.report.line import Glyphs, Line, View
-from tarl_lint.report.summary import many
 from tarl_lint.report.text import errors, heading
 from tarl_lint.run.runner import Result
 from tarl_lint.system.chain_lines import in_line, statements
-from tarl_lint.system.chains import limited, shown_chains, slashed
+from tarl_lint.system.counts import statistics
 from tarl_lint.system.details import details
+from tarl_lint.system.flow_chains import limited, shown_chains, slashed
 from tarl_lint.system.model import Chain, Instance, Role, System
-from tarl_lint.system.one_sided import one_sided
-from tarl_lint.system.statistics import statistics
+from tarl_lint.system.one_sided_names import one_sided
 
 HEADINGS: Final = ("node", "program", "subscribes", "publishes")
 SHOWN: Final = 4  # maximum number of similar topics that a message suggests
@@ -60,11 +60,11 @@ def _closing(
     if not brief:
         yield from errors(result)
     elif result.errors:
-        yield from summary.not_analysed(result)
+        yield from closing_lines.not_analysed(result)
     if not result.reports_hazards:
         yield (("No rule about launch files (TARL3) is enabled.", "quiet"),)
-    yield from summary.silenced(result)
-    yield from summary.vanished(result, view)
+    yield from closing_lines.silenced(result)
+    yield from closing_lines.vanished(result, view)
 
 
 def _system(

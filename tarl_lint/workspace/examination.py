@@ -19,7 +19,7 @@ from tarl_lint.workspace.launch_model import LaunchedNode
 from tarl_lint.workspace.launch_read import read_launch
 from tarl_lint.workspace.model import Package, Problem, Workspace
 from tarl_lint.workspace.node_programs import program
-from tarl_lint.workspace.python.files import parsed
+from tarl_lint.workspace.python.source_files import parsed
 
 LARGEST: Final = 20_000_000  # maximum size of a file whose text is examined (bytes)
 _DECLARED: Final = re.compile(rb"<\?xml[^>]*\sencoding\s*=\s*[\"']([\w.-]+)")

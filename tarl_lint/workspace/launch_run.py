@@ -20,9 +20,9 @@ from tarl_lint.workspace.launch_model import Kind, LaunchedNode, Setting
 from tarl_lint.workspace.launch_node_values import anonymous, command, items_of, pairs, private, setting
 from tarl_lint.workspace.launch_values import Context, performed, symbolic, truth
 from tarl_lint.workspace.model import Problem
+from tarl_lint.workspace.name_resolution import joined, package_in
 from tarl_lint.workspace.python.evaluator import Library, Unknown
 from tarl_lint.workspace.ros_arguments import first_of_each
-from tarl_lint.workspace.ros_names import joined, package_in
 
 LARGEST: Final = 1_000_000  # maximum size of a YAML file (bytes)
 DEEPEST: Final = 20  # maximum nesting of includes

@@ -14,10 +14,10 @@ from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_py import module_file
 from tarl_lint.workspace.launch_xml import read_xml
 from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.name_resolution import joined
 from tarl_lint.workspace.python.evaluator import Unknown
 from tarl_lint.workspace.python.paths import FilePath
 from tarl_lint.workspace.ros_arguments import ros1
-from tarl_lint.workspace.ros_names import joined
 
 _PARENTS: Final = ("roslaunch.parent.ROSLaunchParent", "roslaunch.ROSLaunchParent")
 _NODES: Final = ("roslaunch.core.Node", "roslaunch.Node")

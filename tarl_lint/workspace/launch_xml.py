@@ -13,8 +13,8 @@ from tarl_lint.workspace.conditions import combined
 from tarl_lint.workspace.launch_documents import LINE, xml_root
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.name_resolution import joined, package_in
 from tarl_lint.workspace.ros_arguments import ros1
-from tarl_lint.workspace.ros_names import joined, package_in
 from tarl_lint.workspace.substitutions import Scope, SymbolicError, scalar
 
 DEEPEST: Final = 20  # maximum nesting of includes

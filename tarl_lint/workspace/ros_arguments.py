@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
-from tarl_lint.workspace.ros_names import resolved
+from tarl_lint.workspace.name_resolution import resolved
 
 # matches a name, which may contain `$(arg robot)`
 _NAME: Final = re.compile(r"[~/]?[A-Za-z$][\w$() ]*(/[\w$() ]+)*/?")

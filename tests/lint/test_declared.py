@@ -2,7 +2,7 @@
 
 import pytest
 
-from tarl_lint.read.declared import Declarations
+from tarl_lint.read.declared_entry_points import Declarations
 
 
 @pytest.mark.parametrize(

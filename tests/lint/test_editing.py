@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tarl_lint.editing import Result, Superseded, Workspace
-from tarl_lint.prefilter.one_sided import two_sided
+from tarl_lint.prefilter.one_sided_groups import two_sided
 from tarl_lint.read.moved_lines import moved_lines
 from tarl_lint.read.source import Module
 from tarl_lint.read.watched import Reading, watched

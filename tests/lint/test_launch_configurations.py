@@ -11,11 +11,11 @@ import pytest
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_parameters import stated
 from tarl_lint.workspace.launch_read import read_launch
+from tarl_lint.workspace.name_resolution import joined
 from tarl_lint.workspace.python.evaluator import constant
 from tarl_lint.workspace.python.operators import BITS
 from tarl_lint.workspace.python.values import Unknown
 from tarl_lint.workspace.read import read
-from tarl_lint.workspace.ros_names import joined
 
 HEAD = """
 from typing import List

@@ -9,8 +9,8 @@ import pytest
 
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_read import read_launch
+from tarl_lint.workspace.name_resolution import joined
 from tarl_lint.workspace.read import read
-from tarl_lint.workspace.ros_names import joined
 
 HEAD = """
 import os

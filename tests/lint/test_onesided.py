@@ -10,7 +10,7 @@ import tarl_lint
 from tarl_lint.engine import HAZARDS, findings, hazards
 from tarl_lint.flows.reachability import Tracer
 from tarl_lint.interpret.fixpoint import Linker
-from tarl_lint.prefilter.one_sided import one_sided
+from tarl_lint.prefilter.one_sided_groups import one_sided
 from tarl_lint.read.source import Module, parse
 from tarl_lint.rules import tarl101, tarl102
 from tarl_lint.run.deep_stack import with_deep_stack
@@ -179,7 +179,7 @@ NEW_RULE = '''
 from collections.abc import Iterator
 from tarl_lint.evidence import Evidence
 from tarl_lint.model import Finding
-from tarl_lint.prefilter.one_sided import Side
+from tarl_lint.prefilter.one_sided_groups import Side
 
 CODE = "TARL299"
 SUMMARY = "a source is subscribed to"

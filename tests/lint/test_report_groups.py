@@ -10,10 +10,10 @@ import pytest
 
 from tarl_lint.model import Finding, Flow, Sink, Source, Span
 from tarl_lint.report import github, gitlab, json2, sarif, settings, text
+from tarl_lint.report.by_package import TESTS_AND_EXAMPLES, grouped
 from tarl_lint.report.grading import level, of_error, own_level, told_apart
 from tarl_lint.report.line import ASCII, View, plain
 from tarl_lint.report.overview import _few, _wrapped, overview
-from tarl_lint.report.packages import TESTS_AND_EXAMPLES, grouped
 from tarl_lint.report.paint import glyphs_for, wants_colour, width_of, write
 from tarl_lint.settings.schema import Wrapper
 
@@ -284,7 +284,7 @@ def test_the_legend_follows_the_first_flows_if_chains_are_shown(monkeypatch):
     monkeypatch.setattr(text, "_legend", lambda _: [(("legend", ""),)])
 
     def told(view: View, *findings: Finding, single: bool = False) -> list[str]:
-        monkeypatch.setattr(text.summary, "is_single", lambda _: single)
+        monkeypatch.setattr(text.closing_lines, "is_single", lambda _: single)
         return [plain(line) for line in text._findings(result(new=findings), view)]
 
     one, two = (finding(f"{name}/x.py", name, flow=flow("/s", "/k")) for name in "ab")

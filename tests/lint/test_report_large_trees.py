@@ -13,12 +13,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tarl_lint.model import Finding
-from tarl_lint.report import packages, render, sarif, upload_limits
+from tarl_lint.report import by_package, render, sarif, upload_limits
 from tarl_lint.report.line import View, plain
 from tarl_lint.run.runner import Result, Statistics
 from tests.lint.reports import everything, text_of
 
-SCHEMA = json.loads((Path(packages.__file__).parent / "findings2.schema.json").read_text("utf-8"))
+SCHEMA = json.loads((Path(by_package.__file__).parent / "findings2.schema.json").read_text("utf-8"))
 
 
 def located(finding: Finding, path: str, package: str, line: int = 1) -> Finding:
@@ -62,7 +62,7 @@ def test_one_package_needs_no_heading(example):
 
 def test_a_tree_of_examples_is_shown_by_package(example):
     found = tuple(located(example.finding(), f"examples/{n}/a.py", n) for n in ("arm", "base"))
-    assert [group.name for group in packages.grouped(found)] == ["arm", "base"]
+    assert [group.name for group in by_package.grouped(found)] == ["arm", "base"]
 
 
 @given(
@@ -72,7 +72,7 @@ def test_no_finding_is_lost_by_grouping(paths: list[str]) -> None:
     from tarl_lint.model import Span
 
     found = [Finding("TARL203", Span(path, 1, 1, 1, 2), str(n)) for n, path in enumerate(paths)]
-    grouped = [finding for group in packages.grouped(found) for finding in group.findings]
+    grouped = [finding for group in by_package.grouped(found) for finding in group.findings]
     assert sorted(f.message for f in grouped) == sorted(f.message for f in found)
 
 

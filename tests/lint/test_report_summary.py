@@ -12,7 +12,7 @@ from tarl_lint.fingerprints import OfFlow, OfHazard
 from tarl_lint.model import Cut, Finding
 from tarl_lint.read.discover import Notes
 from tarl_lint.read.source import SourceError
-from tarl_lint.report import summary
+from tarl_lint.report import closing_lines
 from tarl_lint.report.line import View, plain
 from tarl_lint.run.runner import Result, Statistics
 from tarl_lint.suppress import Suppression
@@ -23,7 +23,7 @@ HAZARD = OfHazard("arm", "TARL203", "odom → x", "C.on")
 
 
 def closing(result: Result) -> list[str]:
-    return [plain(line) for line in summary.closing(result)]
+    return [plain(line) for line in closing_lines.closing(result)]
 
 
 def hazard(example, code: str = "TARL203", status: str = "new") -> Finding:
@@ -103,34 +103,34 @@ def test_silenced_findings_are_counted(example):
 def test_files_and_programs_that_were_not_analysed_are_named(notes, cut, errors, said):
     broken = (SourceError("x.py", 1, "Broken."),) * errors
     result = Result(statistics=Statistics(3, 9, notes, cut), errors=broken)
-    assert [plain(line) for line in summary.not_analysed(result)] == [f"Not analysed: {said}."]
+    assert [plain(line) for line in closing_lines.not_analysed(result)] == [f"Not analysed: {said}."]
 
 
 def test_a_long_list_of_incomplete_programs_is_abbreviated():
     cut = tuple(Cut(f"{number}.py") for number in range(21))
-    (line,) = summary.not_analysed(Result(statistics=Statistics(cut=cut)))
+    (line,) = closing_lines.not_analysed(Result(statistics=Statistics(cut=cut)))
     assert plain(line).endswith("19.py and 1 more).")
-    (line,) = summary.not_analysed(Result(statistics=Statistics(cut=cut[:20])))
+    (line,) = closing_lines.not_analysed(Result(statistics=Statistics(cut=cut[:20])))
     assert plain(line).endswith("18.py, 19.py).")
 
 
 def test_topics_with_computed_names_are_counted_once(example):
     unnamed = replace(example.flow(), source=replace(example.source(), topics=()))
     one = replace(example.finding(), flow=unnamed)
-    assert summary.unknown_topics(of(one, one, example.finding())) == 1
+    assert closing_lines.unknown_topics(of(one, one, example.finding())) == 1
     assert closing(of(one))[-1] == "Not analysed: the names of 1 topic computed at run time."
-    assert list(summary.not_analysed(of(example.finding()))) == []
+    assert list(closing_lines.not_analysed(of(example.finding()))) == []
 
 
 def test_classes_outside_the_files_and_packages_are_named():
     names = ("a.A", "a.B", "b.C", "c.D", "d.E", "e.F")
-    (line,) = summary._beyond(Result(ended=names[:1]))
+    (line,) = closing_lines._beyond(Result(ended=names[:1]))
     assert plain(line) == (
         'Not followed: data that is passed to classes outside the linted files, a.A (follow-installed = ["a"]).'
     )
-    (line,) = summary._beyond(Result(ended=names[:5]))
+    (line,) = closing_lines._beyond(Result(ended=names[:5]))
     assert ", a.A, a.B, b.C, c.D, d.E (" in plain(line)
-    first, last = summary._beyond(Result(followed=("a 1", "b"), ended=names))
+    first, last = closing_lines._beyond(Result(followed=("a 1", "b"), ended=names))
     assert plain(first) == "Followed into installed packages: a 1, b."
     assert ', a.A, a.B, b.C, c.D, d.E and 1 more (follow-installed = ["a", "b", "c", "d", "e"])' in plain(
         last
@@ -141,7 +141,7 @@ def test_the_next_command_is_named_only_after_new_findings(example):
     one, plain_view = example.finding(), View()
 
     def hints(result: Result, view: View = plain_view) -> list[str]:
-        return [plain(line).partition(" ")[0] for line in summary.hints(result, view)]
+        return [plain(line).partition(" ")[0] for line in closing_lines.hints(result, view)]
 
     assert hints(of(one)) == ["--write-baseline"]
     assert hints(of(one, one)) == ["--show-paths", "--write-baseline"]
@@ -154,7 +154,8 @@ def test_the_next_command_is_named_only_after_new_findings(example):
 def test_the_report_shows_a_single_new_flow_in_full(example):
     one, old = example.finding(), replace(example.finding(), status="accepted")
     assert [
-        summary.is_single(of(*some)) for some in ((), (one,), (one, one), (one, old), (one, hazard(example)))
+        closing_lines.is_single(of(*some))
+        for some in ((), (one,), (one, one), (one, old), (one, hazard(example)))
     ] == [
         False,
         True,
@@ -165,31 +166,35 @@ def test_the_report_shows_a_single_new_flow_in_full(example):
 
 
 def test_accepted_findings_are_described_in_words():
-    assert summary.in_words(Accepted(FLOW, 1, ()), "→") == (
+    assert closing_lines.in_words(Accepted(FLOW, 1, ()), "→") == (
         "odom → cmd_vel, explicit, received by on, published in run (arm)"
     )
     plain_flow = replace(FLOW, callback="", place="", kind="implicit")
-    assert summary.in_words(Accepted(plain_flow, 2, ()), "->") == "odom -> cmd_vel, implicit (arm), 2 times"
-    assert summary.in_words(Accepted(HAZARD, 1, ()), "->") == "TARL203 odom -> x in C.on (arm)"
     assert (
-        summary.in_words(Accepted(replace(HAZARD, place=""), 3, ()), "→") == "TARL203 odom → x (arm), 3 times"
+        closing_lines.in_words(Accepted(plain_flow, 2, ()), "->")
+        == "odom -> cmd_vel, implicit (arm), 2 times"
+    )
+    assert closing_lines.in_words(Accepted(HAZARD, 1, ()), "->") == "TARL203 odom -> x in C.on (arm)"
+    assert (
+        closing_lines.in_words(Accepted(replace(HAZARD, place=""), 3, ()), "→")
+        == "TARL203 odom → x (arm), 3 times"
     )
 
 
 def test_at_most_twenty_vanished_findings_are_named(example):
     gone = (Accepted(FLOW, 1, ()),) * 21
-    assert list(summary.vanished(Result(vanished=gone), View())) == []
-    assert list(summary.vanished(Result(baseline=BASE), View())) == []
-    lines = [plain(line) for line in summary.vanished(Result(vanished=gone, baseline=BASE), View())]
+    assert list(closing_lines.vanished(Result(vanished=gone), View())) == []
+    assert list(closing_lines.vanished(Result(baseline=BASE), View())) == []
+    lines = [plain(line) for line in closing_lines.vanished(Result(vanished=gone, baseline=BASE), View())]
     assert lines[0] == "Accepted but no longer found, in tarl-flows.json:"
     assert lines[-4:] == [lines[1], "  and 1 more", "  Run --write-baseline to remove them.", ""]
-    lines = [plain(line) for line in summary.vanished(Result(vanished=gone[1:], baseline=BASE), View())]
+    lines = [plain(line) for line in closing_lines.vanished(Result(vanished=gone[1:], baseline=BASE), View())]
     assert len(lines) == 23
 
 
 def test_a_baseline_is_counted_by_flows_and_hazards():
     def of_entries(*entries: Accepted) -> str:
-        return summary.numbers(Baseline(entries))
+        return closing_lines.numbers(Baseline(entries))
 
     flow, two = Accepted(FLOW, 1, ()), Accepted(HAZARD, 2, ())
     assert of_entries() == "0 flows"
@@ -209,13 +214,13 @@ def test_the_report_gives_the_reason_why_a_comment_silences_nothing(code, rules,
     comment = Suppression("a.py", 3, 5, code)
     if not rules:
         assert comment.rules == ()
-    assert summary.in_vain(comment) == reason
-    first, last = summary.unused(Result(unused=(comment,)))
+    assert closing_lines.in_vain(comment) == reason
+    first, last = closing_lines.unused(Result(unused=(comment,)))
     assert (plain(first), last) == (f"a.py:3:5 note: {reason}", ())
 
 
 def test_settings_without_effect_are_named():
-    assert [plain(line) for line in summary.unmatched(Result(unmatched=("No a.", "No b.")))] == [
+    assert [plain(line) for line in closing_lines.unmatched(Result(unmatched=("No a.", "No b.")))] == [
         "No a.",
         "No b.",
     ]
@@ -225,7 +230,7 @@ def test_statistics_count_findings_steps_and_topics(example):
     other = replace(example.finding("implicit", "scan"), status="accepted")
     short = replace(other.flow, steps=other.flow.steps[-1:])
     result = of(example.finding(), other, replace(other, flow=short), hazard(example), left_out=4)
-    rows = [plain(line).strip().split("  ", 1) for line in summary.statistics(result)]
+    rows = [plain(line).strip().split("  ", 1) for line in closing_lines.statistics(result)]
     assert rows == [
         ["1", "TARL101"],
         ["2", "TARL102"],
@@ -247,4 +252,4 @@ def test_statistics_count_findings_steps_and_topics(example):
         ["1", "scan"],
         [""],
     ]
-    assert len(list(summary.statistics(of()))) == 12, "without topics"
+    assert len(list(closing_lines.statistics(of()))) == 12, "without topics"

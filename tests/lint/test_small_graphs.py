@@ -11,8 +11,8 @@ from tarl_lint.flows.precedence import Precedence
 from tarl_lint.flows.shortest_path import ShortestPaths
 from tarl_lint.flows.topological_order import in_order
 from tarl_lint.model import Span
-from tarl_lint.system import chains as module
-from tarl_lint.system.chains import chains, slashed
+from tarl_lint.system import flow_chains as module
+from tarl_lint.system.flow_chains import chains, slashed
 from tarl_lint.system.model import Hop
 
 

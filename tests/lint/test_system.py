@@ -14,7 +14,7 @@ from tarl_lint.cli import main
 from tarl_lint.settings.config import Config
 from tarl_lint.system import command
 from tarl_lint.system import json as system_json
-from tarl_lint.system.chains import MOST, chains
+from tarl_lint.system.flow_chains import MOST, chains
 from tarl_lint.system.model import Hop
 
 EXAMPLE = Path(__file__).parents[2] / "examples/workspace"

@@ -13,8 +13,8 @@ from tarl_lint.ir.nodes import Pos
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import Obj
 from tarl_lint.rules.races.accesses import Access, How, accesses
+from tarl_lint.rules.races.function_threads import EXECUTOR, MAIN, Threads
 from tarl_lint.rules.races.held_locks import asked_before, in_loop, locks_around, tried_around
-from tarl_lint.rules.races.threads import EXECUTOR, MAIN, Threads
 from tarl_lint.trees import last_name
 
 MADE: Final = re.compile(r"\b(R?Lock|Condition|(Bounded)?Semaphore)\(")

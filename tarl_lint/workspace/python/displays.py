@@ -7,10 +7,10 @@ from collections import ChainMap
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
+from tarl_lint.workspace.python.assignment_targets import bind
 from tarl_lint.workspace.python.elements import Unique, items, settled
 from tarl_lint.workspace.python.evaluation import Evaluation, unknown
 from tarl_lint.workspace.python.operators import formatted
-from tarl_lint.workspace.python.targets import bind
 from tarl_lint.workspace.python.values import Library, OpaqueError, Scope, Several, Stream, Unknown
 
 

@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from pathlib import PurePosixPath
 from typing import Any, Final
 
+from tarl_lint.workspace.python.assignment_targets import bind
 from tarl_lint.workspace.python.attributes import attribute
 from tarl_lint.workspace.python.builtin_functions import BUILTINS
 from tarl_lint.workspace.python.displays import DISPLAYS, elements, key_of
@@ -26,7 +27,6 @@ from tarl_lint.workspace.python.methods import method
 from tarl_lint.workspace.python.objects import Class, Function, Interpreted, Method
 from tarl_lint.workspace.python.operators import COMPARE, UNARY, binary
 from tarl_lint.workspace.python.paths import FilePath
-from tarl_lint.workspace.python.targets import bind
 from tarl_lint.workspace.python.values import (
     Bound,
     Library,

@@ -12,12 +12,12 @@ from typing import Any, Final
 
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.python import classes
+from tarl_lint.workspace.python.assignment_targets import delete, read_target
 from tarl_lint.workspace.python.call_stack import OWN, CallStack
 from tarl_lint.workspace.python.elements import elements_if_known, items
 from tarl_lint.workspace.python.evaluation import call_of, unknown
 from tarl_lint.workspace.python.evaluator import FAILURES, Evaluator
 from tarl_lint.workspace.python.exceptions import raised, run_try, run_with
-from tarl_lint.workspace.python.files import parsed
 from tarl_lint.workspace.python.functions import decorated, lambda_of, made_function
 from tarl_lint.workspace.python.importing import Modules, bind_modules, bind_names, bind_outside
 from tarl_lint.workspace.python.instances import Made
@@ -26,7 +26,7 @@ from tarl_lint.workspace.python.match_patterns import fits
 from tarl_lint.workspace.python.objects import Above, Class, Function, Interpreted, Method
 from tarl_lint.workspace.python.operators import in_place
 from tarl_lint.workspace.python.reflection import reflection
-from tarl_lint.workspace.python.targets import delete, read_target
+from tarl_lint.workspace.python.source_files import parsed
 from tarl_lint.workspace.python.values import (
     Library,
     Namespace,

@@ -8,13 +8,13 @@ import functools
 from collections.abc import Callable
 from typing import Any, Final
 
+from tarl_lint.workspace.python.assignment_targets import set_attribute
 from tarl_lint.workspace.python.classes import AUTO, as_mapping, as_values, field_names, replaced
 from tarl_lint.workspace.python.elements import listed
 from tarl_lint.workspace.python.evaluation import call_of
 from tarl_lint.workspace.python.evaluator import Evaluator
 from tarl_lint.workspace.python.instances import Made
 from tarl_lint.workspace.python.objects import Class, Function
-from tarl_lint.workspace.python.targets import set_attribute
 from tarl_lint.workspace.python.values import Library, OpaqueError, Partial, Unknown
 
 _WITH_KNOWN_ATTRIBUTES: Final = (Made, Class, str, int, float, list, dict, type(None))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tarl_lint.read.declared import Declarations
+from tarl_lint.read.declared_entry_points import Declarations
 from tarl_lint.read.layout import Layout
 from tarl_lint.read.module_names import Index
 

@@ -10,8 +10,8 @@ import pytest
 from tarl_lint.evidence import Outline
 from tarl_lint.flows.statement_text import Texts
 from tarl_lint.read.source import Module
-from tarl_lint.system.fields import examined
-from tarl_lint.system.service_calls import called_services, part
+from tarl_lint.system.called_services import called_services, part
+from tarl_lint.system.unknown_fields import examined
 
 HEAD = """\
 from geometry_msgs.msg import Twist, Pose as P

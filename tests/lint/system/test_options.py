@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tarl_lint.interpret import fixpoint
-from tarl_lint.system.chains import chains, limited
+from tarl_lint.system.flow_chains import chains, limited
 from tarl_lint.system.model import Hop
 from tests.lint.test_system import MANIFEST, RELAY, flows, relay, run, write
 
@@ -201,7 +201,7 @@ def test_a_search_that_ends_early_says_so(monkeypatch):
     found, more = chains(hops, every=True)
     assert (len(found), more) == (300, False)
     assert limited(found, 0, more=more) == (found, "")
-    monkeypatch.setattr("tarl_lint.system.chains.STEPS", 10)
+    monkeypatch.setattr("tarl_lint.system.flow_chains.STEPS", 10)
     found, more = chains(hops, every=True)
     assert (len(found), more) == (10, True)
     assert limited(found, 0, more=more)[1] == "… and more: select them with --from and --to."

@@ -10,8 +10,8 @@ import pytest
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.launch_parameters import ON_ROBOT, leaves, stated
+from tarl_lint.workspace.name_resolution import joined, remapped, resolved
 from tarl_lint.workspace.parameter_yaml import content, dotted, is_wildcard, matches, of_node, sections
-from tarl_lint.workspace.ros_names import joined, remapped, resolved
 
 HERE = Path("a.yaml")
 

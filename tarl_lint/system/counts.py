@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
+from tarl_lint.report.closing_lines import counted, counts_of_findings
 from tarl_lint.report.line import Line
-from tarl_lint.report.summary import counted, counts_of_findings
 from tarl_lint.run.runner import Result
 from tarl_lint.system.model import Chain, System
-from tarl_lint.system.one_sided import one_sided
+from tarl_lint.system.one_sided_names import one_sided
 
 
 def statistics(

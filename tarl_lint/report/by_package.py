@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tarl_lint.model import Finding
-from tarl_lint.report import summary
+from tarl_lint.report import closing_lines
 
 TESTS_AND_EXAMPLES: Final = "Tests and examples"
 _ASIDE: Final = re.compile(
@@ -28,7 +28,7 @@ class Group:
         """Return the counts of a group: `12 flows, 1 hazard`."""
         flows = sum(f.flow is not None for f in self.findings)
         counts = ((flows, "flow"), (len(self.findings) - flows, "hazard"))
-        return ", ".join(summary.many(count, noun) for count, noun in counts if count)
+        return ", ".join(closing_lines.many(count, noun) for count, noun in counts if count)
 
 
 def grouped(findings: Sequence[Finding]) -> tuple[Group, ...]:
