@@ -68,19 +68,20 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
     if s.target is not None:
         registers = ctx.registrations.inside(s, s.nodes)
         way = "" if registers else ctx.registrations.publishes(s)
-        each = registers or way == "direct" or ctx.registrations.asks(s)
+        names = ctx.registrations.names_attributes(s)
+        each = registers or way == "direct" or names or ctx.registrations.asks(s)
         source = sizes.counted(ctx, s.source, frame, each=each)
         source = object_lists.without_empty(ctx, source)
         registers = registers or (
             ctx.registrations.calls_element(s, s.target, s.nodes) and rows.hold_classes(ctx, source)
         )
-        if elements := _told_apart(ctx, s, source, frame, each=registers or way != ""):
+        if elements := _told_apart(ctx, s, source, frame, each=registers or names or way != ""):
             return _turns(ctx, s, s.target, source, elements, frame)
         if registers and sizes.is_empty(ctx, source):
             if source.consts is not None:
                 return _loop_end(ctx, s, [{}], [], frame)
             source = Value(source.deps)  # an unknown list or an empty one, as in `names or []`
-        elements = rows.of(ctx, source) if registers or way else []
+        elements = rows.of(ctx, source) if registers or names or way else []
         if elements and len(elements) * frame.rows <= MAX_NESTED_ROWS:
             passes = 1 if registers else MAX_PASSES
             return _turns(ctx, s, s.target, source, elements, frame, passes)

@@ -169,6 +169,8 @@ def _execute(
         ctx.ops.note_origins(ctx, frame, parts)
     ctx.guards, guards = [], ctx.guards
     ctx.stack.append(frame)
+    if function.generator:
+        generators.begin(ctx, frame)
     ctx.ops.run(ctx, frame)
     ctx.stack.pop()
     ctx.guards = guards

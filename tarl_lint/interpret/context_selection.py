@@ -53,9 +53,7 @@ def make_frame(
         frame = _new_frame(ctx, closure, key, caller, call, owner)
         frame.shared = shares
         frame.base = (
-            shared_contexts.conditions(ctx, frame)
-            if shares
-            else ctx.branches(caller, caller.statement) | frozenset(ctx.guards)
+            shared_contexts.conditions(ctx, frame) if shares else ctx.calling(caller) | frozenset(ctx.guards)
         )
     return None if shares and frame in ctx.stack else frame
 

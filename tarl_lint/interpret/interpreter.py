@@ -238,6 +238,17 @@ class Interpreter:
             known = frame.closures[key] = self._conditions(frame, statement, turns)
         return known
 
+    def calling(self, frame: Frame) -> Branches:
+        """Return the conditions of the calls in the current statement of a function.
+
+        A `for` evaluates its iterable before it decides whether there is an element.
+        """
+        s = frame.statement
+        found = self.branches(frame, s)
+        if not isinstance(s, ir.Loop) or s.target is None:
+            return found
+        return found - {self.branch(frame, (s.id, way), inside(s, frame.turns)) for way in ("body", "done")}
+
     def _conditions(
         self, frame: Frame, statement: ir.Stmt, turns: Turns, but: ir.Loop | None = None
     ) -> Branches:

@@ -2,8 +2,8 @@
 
 A loop over such code is unrolled, so that each iteration has its own topics, callbacks and objects. A loop over
 code that adds states or behaviours to other ones is unrolled as well, and so is a loop whose element chooses the
-publisher. Functions and classes are distinguished only by their names. Code that calls one of two functions with
-the same name is assumed to call both, so some loops are unrolled without need.
+publisher or names an attribute. Functions and classes are distinguished only by their names. Code that calls one
+of two functions with the same name is assumed to call both, so some loops are unrolled without need.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ MACHINES = frozenset(["StateMachine", "Sequence", "Concurrence", "Container"])
 STATE_KEYWORDS = frozenset(["transitions", "remapping"])
 REGISTRATIONS = REGISTERING | MAKES | ADDS_PART
 SENDING = frozenset(["publish"])
+BY_NAME = frozenset(["getattr", "setattr"])  # functions whose second argument is the name of an attribute
 CONSTRUCTORS = frozenset(["__init__", "__new__", "__post_init__"])
 # endings of the names of base classes whose objects hold no data of their own
 VALUES = ("Error", "Exception", "Enum", "NamedTuple")
@@ -45,6 +46,7 @@ class Registrations:
         # loop or comprehension → whether it calls a variable of the loop
         self.calling: dict[Hashable, bool] = {}
         self.asking: dict[ir.Loop, bool] = {}  # cache of `asks`
+        self.naming: dict[ir.Loop, bool] = {}  # cache of `names_attributes`
         self.sending: dict[str, bool] = {}  # name → whether a call of it publishes
         self.rows: dict[ir.Loop, Literal["direct", "helper", ""]] = {}
 
@@ -74,6 +76,21 @@ class Registrations:
         if found is None:
             decides = any(isinstance(one, DECIDING) for one in walk(*loop.nodes))
             found = self.asking[loop] = decides and calls_method_of(loop.target, loop.nodes)
+        return found
+
+    def names_attributes(self, loop: ir.Loop) -> bool:
+        """Return whether a variable of a loop is the name of an attribute that the loop reads or stores."""
+        found = self.naming.get(loop)
+        if found is None:
+            names = _names(loop.target)
+            found = self.naming[loop] = any(
+                isinstance(one, ast.Call)
+                and isinstance(one.func, ast.Name)
+                and one.func.id in BY_NAME
+                and len(one.args) > 1
+                and _mentions(one.args[1], names)
+                for one in walk(*loop.nodes)
+            )
         return found
 
     def publishes(self, loop: ir.Loop) -> Literal["direct", "helper", ""]:

@@ -48,7 +48,7 @@ def enter(ctx: Interpreter, frame: Frame, caller: Frame, passed: Arguments) -> A
     Each parameter has one node for its data, so a further call adds an edge and changes no value.
     """
     ((called, _),) = conditions(ctx, frame)
-    above = ctx.branches(caller, caller.statement) | frozenset(ctx.guards)
+    above = ctx.calling(caller) | frozenset(ctx.guards)
     ctx.graph.depend(called, [decision for decision, _ in above if decision != called])
     plain = [_arriving(ctx, frame, number, value) for number, value in enumerate(passed[0])]
     named = {name: _arriving(ctx, frame, name, value) for name, value in passed[1].items()}

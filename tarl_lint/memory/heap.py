@@ -8,7 +8,7 @@ from functools import lru_cache
 from tarl_lint.catalog import ENDPOINT_METHODS, MEASURES, METHODS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import blackboards, function_attributes, properties, recency, userdata
+from tarl_lint.memory import blackboards, function_attributes, message_types, properties, recency, userdata
 from tarl_lint.memory.blackboards import CLIENT
 from tarl_lint.memory.function_attributes import FUNCTIONS, attribute_of
 from tarl_lint.memory.properties import PARTS
@@ -152,6 +152,8 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
         return _inherited(ctx, obj, obj.info, name)
     if kind == "class":
         return _class_field(ctx, obj, name)
+    if kind == "ext" and name in message_types.DESCRIPTIONS and message_types.type_of(ctx, obj):
+        return message_types.description(ctx, obj, name, MEMBERS)
     if kind == "ext":
         return pointer(recency.intern(ctx, "ext", f"{obj.name}.{name}", f"{obj.name}.{name}"))
     if kind == "module":
@@ -167,6 +169,8 @@ def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:
         return pointer(obj) if name == "__dict__" else content(ctx, obj)
     if name.startswith("[") and (held := content(ctx, obj)).pts:
         return held
+    if name in message_types.DESCRIPTIONS:
+        return message_types.description(ctx, obj, name, MEMBERS)
     if obj.kind == "lib" and obj.info is not BY_CLASS and name in MEASURES:
         return shape(ctx, obj) or Value(ctx.ops.deep(ctx, frozenset([obj])))
     ctx.store.reads.look(obj)

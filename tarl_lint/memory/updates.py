@@ -13,17 +13,37 @@ MAX_KEYS = 8
 
 def write_field(ctx: Interpreter, base: Value, name: str, value: Value) -> None:
     """Store into a field: a strong update if the pointer has one target, else weak updates."""
-    certain = len(base.pts) == 1
+    _write(ctx, base, name, value, certain=len(base.pts) == 1)
+
+
+def weaken_field(ctx: Interpreter, base: Value, name: str, value: Value) -> None:
+    """Store into a field that is one of several possible ones."""
+    _write(ctx, base, name, value, certain=False)
+
+
+def _write(ctx: Interpreter, base: Value, name: str, value: Value, *, certain: bool) -> None:
     for held in base.objects:
         if held.kind in ("bound", "ext", "method"):
             continue
         obj, field = heap.renamed(ctx, held, name) if held.kind in RENAMING else (held, name)
         for attributes in heap.replaced_attributes(ctx, obj):
             weaken(ctx, attributes, item_field(field), value)
+        if field == "__dict__":
+            _take_over(ctx, obj, value)
         if certain and recency.single(ctx, obj):
             ctx.store.put((obj, field), value)
         else:
             weaken(ctx, obj, field, value)
+
+
+def _take_over(ctx: Interpreter, obj: Obj, attributes: Value) -> None:
+    """Store the values of a new `__dict__` in attributes that the object has had before."""
+    ctx.store.reads.look(obj)
+    for name in [n for n in obj.fields if n.isidentifier() and not n.startswith("__")]:
+        for mapping in attributes.objects:
+            value = ctx.store.get((mapping, heap.attribute_of_item(mapping, name)))
+            if value is not None and mapping is not obj:
+                weaken(ctx, obj, name, heap.arrive(ctx, value, attributes.deps))
 
 
 def weaken(ctx: Interpreter, obj: Obj, name: str, value: Value) -> None:

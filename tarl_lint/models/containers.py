@@ -23,6 +23,7 @@ from tarl_lint.memory.values import (
     Obj,
     Value,
     const,
+    in_order,
     join,
     join_all,
     pointer,
@@ -303,6 +304,19 @@ def sent(ctx: Interpreter, generator: Obj, it: Invocation) -> None:
     waiting.may_be_empty(ctx, it, "StopIteration")
 
 
+def next_element(ctx: Interpreter, it: Invocation) -> Value:
+    """Return `next(iterator)` or `iterator.__next__()`; a generator that ends raises an exception without a default."""
+    plain = it.arguments[0] if it.base is BOTTOM else [it.base, *it.arguments[0]]
+    if not plain:
+        return UNKNOWN
+    generated = frozenset(o for o in plain[0].pts if o.name == heap.GENERATOR)
+    for one in in_order(generated):
+        generators.step(ctx, one)
+    if generated and len(plain) == 1:
+        waiting.may_be_empty(ctx, replace(it, base=Value(plain[0].deps, generated)), "StopIteration")
+    return iterators.next_element(ctx, replace(it, arguments=(plain, it.arguments[1])))
+
+
 def _take_out(ctx: Interpreter, it: Invocation) -> Value:
     """Remove an element and return it."""
     result, given = _read_get(ctx, it), it.arguments[0]
@@ -498,7 +512,7 @@ READERS: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(("pop", "popleft", "get_nowait", "popitem"), _take_out),
     **dict.fromkeys(("remove", "discard"), _removed),
     "reverse": _reversed,
-    "next": _read_get,
+    **dict.fromkeys(("next", "__next__"), next_element),
     **dict.fromkeys(("qsize", "empty", "full"), _read_length),
     "values": _read_values,
     "itervalues": _read_values,

@@ -14,6 +14,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap, recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY
+from tarl_lint.memory.message_types import MESSAGE_MODULE
 from tarl_lint.memory.values import (
     BOTTOM,
     BY_CLASS,
@@ -159,13 +160,14 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
 
 
 def _name_class(ctx: Interpreter, qualified: str, made: Value, arguments: Arguments) -> None:
-    """Store the class of an object if it matters: for settings on methods, arrays that are filled, ports, and files.
+    """Store the class of an object if it matters: for messages, settings on methods, arrays, ports, and files.
 
     For a server of markers, also store the first text among the arguments, which is the server's namespace.
     """
     markers = qualified in catalog.MARKER_SERVERS or qualified in catalog.MARKER_MENUS
     if not (
         markers
+        or MESSAGE_MODULE in qualified
         or qualified in (catalog.IMAGE_TRANSPORT, "sched.scheduler")
         or qualified in catalog.BUFFERS
         or (ctx.thorough and qualified in catalog.BROADCASTERS)
@@ -243,6 +245,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "copy.replace": records.replaced_record,
     **dict.fromkeys(("dataclasses.asdict", "attr.asdict", "attrs.asdict"), records.as_mapping),
     **dict.fromkeys(("dataclasses.astuple", "attr.astuple", "attrs.astuple"), records.as_sequence),
+    **dict.fromkeys(("dataclasses.fields", "attr.fields", "attrs.fields"), records.described_fields),
     **dict.fromkeys(("attr.evolve", "attrs.evolve"), records.replaced_record),
     **dict.fromkeys(("object.__new__", "type.__new__"), objects.blank_object),
     "object.__setattr__": reflection.set_attribute,
@@ -277,7 +280,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), heaps.pushed),
     "min": ordering.chosen_element,
     "max": ordering.chosen_element,
-    "next": iterators.next_element,
+    "next": containers.next_element,
     "asyncio.gather": futures.gathered_results,
     **dict.fromkeys(catalog.ADDS_STATE, smach.add_state),
     **dict.fromkeys(catalog.STATE_BY_CALLBACKS, state_callbacks.state_by_callbacks),

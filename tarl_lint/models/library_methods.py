@@ -10,7 +10,7 @@ from tarl_lint.interpret import call_contexts
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, instances, updates
+from tarl_lint.memory import heap, instances, message_types, updates
 from tarl_lint.memory.blackboards import CLIENT
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import (
@@ -76,17 +76,17 @@ def call_method(
         known = catalog.TRANSFORM
     if known is not None:
         return ctx.ops.ros_call(ctx, Invocation(name, base, arguments, frame, call, known))
-    if target is not None and (
-        part := _of_run_order(ctx, target, Invocation(name, base, arguments, frame, call))
-    ):
+    if target is not None and (part := _of_kind(ctx, target, Invocation(name, base, arguments, frame, call))):
         return part
     if name == "split" and ctx.exact and (parts := strings.pieces(ctx, base, arguments, frame, call)):
         return parts
     return _call_method(ctx, base, target, name, arguments, frame, call)
 
 
-def _of_run_order(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
-    """Call a method of a blackboard's client or a logger, or one that adds a part to a machine; None for others."""
+def _of_kind(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
+    """Call a method of a message, a blackboard's client or a logger, or one that adds a part; None for others."""
+    if it.name == "get_fields_and_field_types" and target.kind in message_types.KINDS:
+        return reflection.fields_and_types(ctx, it)
     if target.kind == CLIENT:
         return blackboards.call(ctx, target, it)
     if it.name == blackboards.ATTACHES and target.kind == "instance":

@@ -11,8 +11,6 @@ from tarl_lint.memory.userdata import MACHINE_FIELD
 from tarl_lint.memory.values import BOTTOM, BY_CLASS, UNKNOWN, Obj, Value, lineage, pointer
 from tarl_lint.models import command_line, containers, sizes
 
-MESSAGE_MODULE = ".msg."  # part of the name of every message class
-
 
 def blank_object(ctx: Interpreter, it: Invocation) -> Value:
     """Return the value of `object.__new__(cls)`."""

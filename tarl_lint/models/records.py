@@ -178,6 +178,22 @@ def as_sequence(ctx: Interpreter, it: Invocation) -> Value:
     return _listing(ctx, it, "sequence")
 
 
+def described_fields(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the fields of a dataclass as objects with names; a loop over them is executed element by element."""
+    given = it.arguments[0][0] if it.arguments[0] else UNKNOWN
+    classes = [o if o.kind == "class" else o.info for o in given.pts]
+    if len(classes) != 1 or not isinstance(cls := classes[0], Obj) or cls.kind != "class":
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    listed = recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot))
+    listed.name = heap.MEMBERS
+    for number, (owner, name) in enumerate(_fields(cls)):
+        one = recency.intern(ctx, "lib", ("field", owner.key, name), heap.NAMESPACE)
+        ctx.store.put((one, "name"), const(name))
+        ctx.store.put((one, "type"), UNKNOWN)
+        ctx.store.put((listed, item_field(number)), pointer(one))
+    return pointer(listed)
+
+
 def _listing(ctx: Interpreter, it: Invocation, kind: str) -> Value:
     given = it.base if it.base is not BOTTOM else it.arguments[0][0] if it.arguments[0] else UNKNOWN
     ours = {o: o.info for o in given.pts if o.kind == "instance" and isinstance(o.info, Obj)}

@@ -10,7 +10,7 @@ from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import function_attributes, heap, recency, updates
+from tarl_lint.memory import function_attributes, heap, message_types, recency, updates
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, const, join_all, lineage, pointer
 from tarl_lint.models import containers, type_queries
@@ -28,11 +28,13 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
             0
         ]  # `reduce(getattr, parts, message)` returns a part of the message; storing into it fills the message
     if not names and len(it.call.arguments) > 1:
-        return _method_by_beginning(ctx, it) or ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+        return _method_by_beginning(ctx, it) or _any_part(ctx, it)
     if len(plain) > 2 and names and all(type_queries.lacks(ctx, plain[0], name) for name in names):
         return plain[2]
     found = [
-        expressions.read_attribute(ctx, plain[0], _written(it, name, number), it.frame)
+        expressions.read_attribute(
+            ctx, plain[0], _written(it, message_types.field(ctx, plain[0], name), number), it.frame
+        )
         for number, name in enumerate(names)
     ]
     for default in plain[2:]:
@@ -42,6 +44,25 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
         ]
     both = join_all(found)
     return Value(both.deps | ctx.use(plain[1]), both.pts, both.consts) if len(names) > 1 else both
+
+
+def _any_part(ctx: Interpreter, it: Invocation) -> Value:
+    """Return an attribute of unknown name. A message also stands for its parts, so that stores into them are kept."""
+    found = ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    whole = frozenset(o for o in it.arguments[0][0].pts if message_types.MESSAGE_MODULE in o.whole.name)
+    return Value(found.deps, found.pts | whole, found.consts) if whole else found
+
+
+def fields_and_types(ctx: Interpreter, it: Invocation) -> Value:
+    """Return `msg.get_fields_and_field_types()` of ROS 2: a mapping of the names of the fields to their types."""
+    obj = recency.allocate(ctx, "mapping", it.frame, ("display", it.call.slot))
+    for message in it.base.objects:
+        names = message_types.field_names(ctx, message)
+        for name in names:
+            ctx.store.put((obj, item_field(name)), UNKNOWN)
+        if not names:
+            updates.add_element(ctx, pointer(obj), UNKNOWN)
+    return pointer(obj)
 
 
 def _written(it: Invocation, name: str, number: int = 0) -> ir.Attribute:
@@ -178,12 +199,16 @@ def set_attribute(ctx: Interpreter, it: Invocation) -> Value:
         value = operators.into_chosen(ctx, plain[0], value, it.call.slot, it.frame)
         if ctx.thorough and value.deps != plain[2].deps:
             ctx.graph.copies |= value.deps
-        for field in plain[1].texts():
+        names = plain[1].texts()
+        for field in (message_types.field(ctx, plain[0], name) for name in names):
             plainly = it.name == "object.__setattr__" or it.name == "__setattr__"
             if plainly or not descriptors.write(ctx, plain[0], field, value, it.frame, it.call.pos):
-                updates.write_field(ctx, plain[0], field, value)
-        if not plain[1].texts():
-            updates.add_element(ctx, plain[0], value)
+                (updates.write_field if len(names) == 1 else updates.weaken_field)(
+                    ctx, plain[0], field, value
+                )
+        if not names:
+            libraries = any(o.kind in message_types.KINDS for o in plain[0].pts)
+            updates.add_element(ctx, plain[0], Value(ctx.use(value), value.pts) if libraries else value)
             if it.name == "setattr":
                 descriptors.write_some(ctx, plain[0], value, it.frame, it.call.pos)
     return UNKNOWN

@@ -182,9 +182,15 @@ def absorb(ctx: Interpreter, obj: Obj, value: Value, expr: ir.Expr | None = None
         certain = frozenset(item_field(text) for text in texts)
     for source in value.objects:
         ctx.store.look(source)
+        attributes = source.kind == "instance" and heap.attribute_of_item(source, "name") == "name"
         for name in list(source.fields):
             stored = ctx.store.get((source, name))
-            if stored is not None and (name.startswith("[") or name in (ANY, KEYS, LENGTH)):
+            if stored is not None and attributes and name.isidentifier():
+                # `vars(source)` is represented by the object itself
+                updates.weaken(
+                    ctx, obj, heap.attribute_of_item(obj, name), heap.arrive(ctx, stored, value.deps)
+                )
+            elif stored is not None and (name.startswith("[") or name in (ANY, KEYS, LENGTH)):
                 field = heap.attribute_of_item(obj, name[2:-2]) if name.startswith("['") else name
                 arrived = heap.arrive(ctx, stored, value.deps)
                 if name in certain:

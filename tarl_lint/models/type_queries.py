@@ -8,6 +8,7 @@ from types import FunctionType, GeneratorType, MethodType
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import function_attributes, heap
+from tarl_lint.memory.message_types import MESSAGE_MODULE
 from tarl_lint.memory.values import (
     BOTTOM,
     NO_CONSTANTS,
@@ -17,12 +18,12 @@ from tarl_lint.memory.values import (
     Value,
     const,
     function_of,
+    join_all,
     lineage,
     pointer,
 )
 from tarl_lint.models import sizes
 
-MESSAGE_MODULE = ".msg."  # part of the name of every message class
 # kind of objects of Python's own and of ROS → names of their attributes
 BUILT_IN = {
     "sequence": frozenset(name for kind in (list, tuple, set, deque, GeneratorType) for name in dir(kind)),
@@ -85,10 +86,22 @@ def _opaque(cls: Obj) -> bool:
 
 
 def has_attribute(ctx: Interpreter, it: Invocation) -> Value:
-    """Return False if no possible object has such an attribute; else it is unknown."""
+    """Return False if no possible object has such an attribute.
+
+    Otherwise, the result depends on the conditions under which the program stores the attribute in its instances.
+    """
     given = it.arguments[0]
     names = given[1].texts() if len(given) == 2 else ()
-    return const(value=False) if names and all(lacks(ctx, given[0], name) for name in names) else UNKNOWN
+    if names and all(lacks(ctx, given[0], name) for name in names):
+        return const(value=False)
+    ours = [o for o in given[0].objects if o.kind == "instance"] if names else []
+    held = [ctx.store.get((obj, name)) for obj in ours for name in names]
+    stored = [value for value in held if value is not None]
+    if not stored:
+        return UNKNOWN
+    node = ctx.node(it.frame, ("has", it.call.slot), "condition")
+    ctx.graph.choice(join_all(stored).deps, node)
+    return Value(ctx.kept(node))
 
 
 def lacks(ctx: Interpreter, value: Value, name: str) -> bool:

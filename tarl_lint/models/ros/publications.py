@@ -13,7 +13,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame, Turns, inside
 from tarl_lint.memory.value_flow_graph import Place
-from tarl_lint.memory.values import UNKNOWN, Value, pointer
+from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, pointer
 from tarl_lint.models.ros.endpoints import Acceptance, DefaultName, Publisher, SinkRecord
 
 # values of a variable that holds a topic's name, while the variable is not set
@@ -31,7 +31,17 @@ def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
     info.nodes |= it.base.pts
     info.types.update(type_names(it.argument(it.fact.type)))
     info.whole_types.update(whole_type_names(it.argument(it.fact.type)))
-    return pointer(obj)
+    return pointer(obj, _named_by_data(ctx, it))
+
+
+def _named_by_data(ctx: Interpreter, it: Invocation) -> Nodes:
+    """Return the node that decides which topic a publisher gets, because data names the topic; empty without data."""
+    decides = NONE if ctx.thorough else ctx.use(it.argument(it.fact.topic))
+    if not decides:
+        return NONE
+    node = ctx.node(it.frame, ("topic", it.call.slot), "condition")
+    ctx.graph.depend(node, decides)
+    return ctx.kept(node)
 
 
 def image_publisher(ctx: Interpreter, it: Invocation) -> Value:
@@ -167,8 +177,10 @@ def under(
     turns = inside(statement, frame.turns if turns is None else turns)
     whole = ctx.control(frame)
     control = whole.iteration(turns[-1][0]) if turns else whole
+    # a `for` evaluates its iterable before it decides whether there is an element
+    own = statement.id if isinstance(statement, ir.Loop) and statement.target is not None else None
     for branch in control.direct.get(statement.id, ()):
-        if but is None or not but.has(branch[0]):
+        if branch[0] != own and (but is None or not but.has(branch[0])):
             decision, _ = ctx.branch(frame, branch, turns)
             ctx.graph.depend(node, (decision,))
             _reached(ctx, frame, whole.statements[branch[0]], node, turns)

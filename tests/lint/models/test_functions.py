@@ -243,6 +243,18 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME(Pair(msg.data))["near"])  # data
         out.publish(NAME(Pair(msg.data))["far"])  # clean
     """,
+    ("dataclasses.fields", "attr.fields", "attrs.fields"): """
+        @dataclasses.dataclass
+        class Pair:
+            near: float
+            far: float = 0.0
+        pair, kept = Pair(msg.data), {}
+        for field in NAME(Pair):
+            kept[field.name] = getattr(pair, field.name)
+        out.publish(kept["near"])  # data
+        out.publish(kept["far"])  # clean
+        out.publish(len(NAME(Pair)))  # clean
+    """,
     ("dataclasses.astuple", "attr.astuple", "attrs.astuple"): """
         @dataclasses.dataclass
         class Pair:

@@ -93,7 +93,7 @@ READ: dict[tuple[str, ...], str] = {
         other.NAME(0.0)
         out.publish(len(other))  # clean
     """,
-    ("next",): """
+    ("next", "__next__"): """
         kept, other = iter([msg.data]), iter([0.0])
         out.publish(kept.NAME())  # data
         out.publish(other.NAME())  # clean
