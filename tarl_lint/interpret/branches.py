@@ -112,6 +112,8 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
             break
         head = again
     frame.heads[(s.id, *frame.turn)] = head
+    if ctx.config.arrivals and s.target is None:
+        frame.blocked.update(dict.fromkeys(ctx.kept(ctx.condition(frame, s))))
     return _loop_end(ctx, s, done, table["break"], frame)
 
 

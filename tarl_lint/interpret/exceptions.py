@@ -71,9 +71,10 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
 
 
 def may_wait(ctx: Interpreter, decides: Nodes, frame: Frame) -> None:
-    """Make the rest of the function, or of a loop's iteration, depend on the event for which a call waits.
+    """Make the rest of the function, or of an iteration of a `while`, depend on the event for which a call waits.
 
-    The rest of the callers depends on the event, too. If the call is in a loop, statements after the loop do not.
+    The rest of the callers depends on the event, too. If the call is in a `while` with a condition, statements after
+    this loop do not, just as they do not depend on the condition.
     """
     statement = frame.statement
     if not decides or statement is None or frame.cls is not None:
@@ -81,7 +82,7 @@ def may_wait(ctx: Interpreter, decides: Nodes, frame: Frame) -> None:
     frame.function.may_leave(statement, BLOCKED)
     decision = ctx.condition(frame, statement)
     ctx.graph.depend(decision, decides)
-    if not frame.jumps or frame.function.generator:
+    if statement.id not in ctx.control(frame).kept_inside or frame.function.generator:
         frame.blocked[decision] = None
 
 

@@ -7,8 +7,8 @@ and from the calls that are known to raise.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from tarl_lint.ir import nodes as ir
@@ -22,9 +22,11 @@ Raising = Mapping[int, Iterable[str]]
 # maximum number of branches stored for a statement; further branches are found through the stored ones
 NEAR: Final = 100
 NOTHING_RAISES: Raising = {}
+NOTHING: Mapping[int, Set[Branch]] = {}
 NEXT: Final = -2  # number of a pseudo-statement: the beginning of the next iteration
 # names that are used like the names of exceptions, for statements that may wait for ever:
-BLOCKED: Final = "<blocked>"  # a call that waits; the rest of the function or iteration depends on it
+# a call that waits; the rest of the function, or of an iteration of the innermost `while`, depends on it
+BLOCKED: Final = "<blocked>"
 SUSPENDED: Final = "<suspended>"  # a `yield` that waits for `send`; the rest of the generator depends on it
 
 
@@ -43,6 +45,8 @@ class Control:
     statements: Mapping[int, ir.Stmt]
     raising: Raising
     types: ExceptionTypes
+    # numbers of the statements that wait in a `while` with a condition: what follows this loop does not depend on them
+    kept_inside: frozenset[int] = frozenset()
     # cache of `iteration`: number of a loop → the control dependence inside it
     iterations: dict[int, Iteration] = field(default_factory=dict)
 
@@ -77,6 +81,10 @@ class _Graph:
     types: ExceptionTypes = NO_CLASSES
     statements: dict[int, ir.Stmt] = field(default_factory=dict)
     waits: bool = False  # whether statements after a `while` depend on its condition
+    end: int = EXIT  # where the body goes on: EXIT, or NEXT for the body of a loop
+    # statement that waits in a loop → the loops around it, inner ones first, up to the first `while` with a condition
+    waiting: dict[int, tuple[ir.Loop, ...]] = field(default_factory=dict)
+    ending: frozenset[int] = frozenset()  # statements in loops that end the body by waiting for ever
     finals: list[tuple[ir.Try, int]] = field(
         default_factory=list
     )  # (`try`, number of the first statement of its `finally`), inner `try` statements first
@@ -99,6 +107,14 @@ class _Exits:
     handlers: tuple[
         tuple[Handled, int], ...
     ] = ()  # (what a handler catches, its first statement), inner ones first
+    # the loops around the statement, inner ones first, up to the first `while` with a condition
+    around: tuple[ir.Loop, ...] = ()
+
+    def inside(self, loop: ir.Loop, follow: int) -> _Exits:
+        """Return the targets of jumps in the body of a loop."""
+        return _Exits(
+            follow, loop.id, self.handlers, (loop,) if _has_condition(loop) else (loop, *self.around)
+        )
 
     def of(self, name: str, types: ExceptionTypes) -> list[int]:
         """Return where an exception may continue: at handlers, or outside the function."""
@@ -123,20 +139,67 @@ def control_dependence(
 
     With `waits`, statements after a `while` depend on its condition.
     """
-    graph = _Graph(raising=raising, types=types, waits=waits)
-    entry = _block(graph, body, EXIT, _Exits())
-    return _control(graph, entry)
+    return _dependence(body, _Graph(raising=raising, types=types, waits=waits))
+
+
+def _dependence(body: Sequence[ir.Stmt], graph: _Graph) -> Control:
+    entry = _built(graph, body)
+    return _control(graph, entry, _after_waits(graph, body) if graph.waiting else NOTHING)
+
+
+def _built(graph: _Graph, body: Sequence[ir.Stmt]) -> int:
+    """Add the body of a function or loop to a graph; return the number of its first statement."""
+    if graph.end != EXIT:
+        graph.link(graph.end, "", EXIT)
+    return _block(graph, body, graph.end, _Exits(on_continue=graph.end))
+
+
+def _after_waits(graph: _Graph, body: Sequence[ir.Stmt]) -> dict[int, set[Branch]]:
+    """Return the branches of statements that wait in loops, with the statements that depend on them.
+
+    These are the rest of the iteration of each loop around the statement, up to the first `while` with a condition,
+    and the rest of the body without such a `while`. An earlier iteration does not decide a later one.
+    """
+    found: dict[int, set[Branch]] = {}
+    loops = {loop.id: loop for around in graph.waiting.values() for loop in around}
+    for loop in (*loops.values(), None):
+        waiting = {
+            n: around for n, around in graph.waiting.items() if loop in (around if loop else _last(around))
+        }
+        if not waiting:
+            continue
+        end = graph.end if loop is None else NEXT
+        part = _Graph(raising=graph.raising, types=graph.types, end=end, ending=frozenset(waiting))
+        order = _reachable(part, [_built(part, body if loop is None else loop.body)])
+        closure = _closure(_direct(part, order, postdominators(part.edges, order)))
+        for number, around in waiting.items():
+            inner = (
+                around[-1] if loop is None else around[around.index(loop) - 1] if loop in around[1:] else None
+            )
+            within = {s.id for s in _all(inner.body)} | {inner.id} if inner is not None else set[int]()
+            for statement in closure.keys() - within:
+                ours = {branch for branch in closure[statement] if branch[0] == number}
+                if ours and statement != NEXT:
+                    found.setdefault(statement, set()).update(ours)
+    return found
+
+
+def _last(around: Sequence[ir.Loop]) -> tuple[None, ...]:
+    """Return (None,), which stands for the body itself, if no loop with a condition is among the given ones."""
+    return () if _has_condition(around[-1]) else (None,)
+
+
+def _has_condition(loop: ir.Loop) -> bool:
+    """Return whether a loop is a `while` with a condition; what follows it does not depend on what it waits for."""
+    return loop.target is None and not loop.endless
 
 
 def _iteration(loop: ir.Loop, raising: Raising, types: ExceptionTypes) -> Iteration:
-    graph = _Graph(raising=raising, types=types)
-    entry = _block(graph, loop.body, NEXT, _Exits(on_continue=NEXT))
-    graph.link(NEXT, "", EXIT)
-    control = _control(graph, entry)
+    control = _dependence(loop.body, _Graph(raising=raising, types=types, end=NEXT))
     return Iteration(control.direct, control.closure, control.always, control.closure.get(NEXT, frozenset()))
 
 
-def _control(graph: _Graph, entry: int) -> Control:
+def _control(graph: _Graph, entry: int, after: Mapping[int, Set[Branch]] = NOTHING) -> Control:
     order = _reachable(graph, [entry, *(begin for _, begin in graph.finals)])
     if not graph.finals and all(len(graph.edges[n]) < 2 for n in order):
         nothing = dict.fromkeys(order, frozenset[Branch]())
@@ -145,6 +208,9 @@ def _control(graph: _Graph, entry: int) -> Control:
         )
     nearest = postdominators(graph.edges, order)
     direct = _direct(graph, order, nearest)
+    for number, branches in after.items():
+        if number in direct:
+            direct[number] |= branches
     for attempt, _ in reversed(graph.finals):
         _run_anyway(attempt, direct)
     always = frozenset(passed(entry, EXIT, nearest))
@@ -154,7 +220,8 @@ def _control(graph: _Graph, entry: int) -> Control:
             always |= ours & {*passed(begin, EXIT, nearest)}
     closed = _closure(direct)
     far = frozenset(n for n, branches in closed.items() if len(branches) >= NEAR)
-    return Control(direct, closed, far, always, graph.statements, graph.raising, graph.types)
+    kept = frozenset(number for number, around in graph.waiting.items() if not _last(around))
+    return Control(direct, closed, far, always, graph.statements, graph.raising, graph.types, kept)
 
 
 def _block(graph: _Graph, body: Sequence[ir.Stmt], follow: int, exits: _Exits) -> int:
@@ -170,8 +237,7 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
         graph.link(s.id, "then", _block(graph, s.body, follow, exits))
         graph.link(s.id, "else", _block(graph, s.orelse, follow, exits))
     elif isinstance(s, ir.Loop):
-        inner = _Exits(follow, s.id, exits.handlers)
-        graph.link(s.id, "body", _block(graph, s.body, s.id, inner))
+        graph.link(s.id, "body", _block(graph, s.body, s.id, exits.inside(s, follow)))
         if not s.endless:
             graph.link(s.id, "done", _block(graph, s.orelse, follow, exits))
             if graph.waits and s.target is None:
@@ -196,8 +262,12 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
 
 
 def _raising(graph: _Graph, s: ir.Stmt, name: str, exits: _Exits) -> None:
-    if name == BLOCKED:
-        graph.link(s.id, "waits", exits.on_continue)
+    if name == BLOCKED and exits.around and not graph.waits:
+        graph.waiting[s.id] = exits.around
+        if s.id in graph.ending:
+            graph.link(s.id, "waits", graph.end)
+    elif name == BLOCKED:
+        graph.link(s.id, "waits", EXIT if graph.waits else graph.end)
     elif name == SUSPENDED:
         graph.link(s.id, "waits", EXIT)
     else:
@@ -209,7 +279,7 @@ def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
     after = _block(graph, s.final, follow, exits)
     handlers = [_block(graph, body, after, exits) for _, _, body in s.handlers]
     own = tuple((handled_by(types), entry) for (types, _, _), entry in zip(s.handlers, handlers, strict=True))
-    inner = _Exits(exits.on_break, exits.on_continue, (*own, *exits.handlers))
+    inner = replace(exits, handlers=(*own, *exits.handlers))
     orelse = _block(graph, s.orelse, after, exits)
     graph.link(s.id, "body", _block(graph, s.body, orelse, inner))
     if s.final:

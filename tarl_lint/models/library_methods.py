@@ -87,6 +87,8 @@ def _of_kind(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
     """Call a method of a message, a blackboard's client or a logger, or one that adds a part; None for others."""
     if it.name == "get_fields_and_field_types" and target.kind in message_types.KINDS:
         return reflection.fields_and_types(ctx, it)
+    if it.name == "wait_for":
+        return waiting.wait_for_condition(ctx, it)
     if target.kind == CLIENT:
         return blackboards.call(ctx, target, it)
     if it.name == blackboards.ATTACHES and target.kind == "instance":

@@ -9,11 +9,12 @@ from __future__ import annotations
 from typing import Final
 
 from tarl_lint.interpret import operators
+from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import NONE, Nodes, Obj, Value
+from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, const
 from tarl_lint.models import removal
 
 FLAG: Final = "<flag>"  # field of an event: whether it is set
@@ -49,6 +50,24 @@ def wait_for_flag(ctx: Interpreter, it: Invocation) -> None:
         node = ctx.node(it.frame, ("awaited", it.call.slot), "condition")
         ctx.graph.choice(NONE.union(*(v.deps for v in flags)), node)
         ctx.ops.may_wait(ctx, ctx.kept(node), it.frame)
+
+
+def wait_for_condition(ctx: Interpreter, it: Invocation) -> Value | None:
+    """Wait until a predicate holds, as in `condition.wait_for(lambda: self.ready)`; None for another method.
+
+    The result of the predicate decides what follows. With a time-out, the call returns this result.
+    """
+    plain, named = it.arguments
+    predicate = plain[0] if plain else named.get("predicate", BOTTOM)
+    if not any(o.kind in CALLABLE for o in predicate.pts) or not any(o.kind == "lib" for o in it.base.pts):
+        return None
+    ctx.ops.wait(ctx, it.frame)
+    found = ctx.ops.call_value(ctx, predicate, ([], {}), it.frame, it.call.inner_bare())
+    decides = operators.truth(ctx, found, it.frame, ("awaited", it.call.slot))
+    if len(plain) < 2 and "timeout" not in named:
+        ctx.ops.may_wait(ctx, decides, it.frame)
+        return const(value=True)
+    return Value(decides)
 
 
 def _got(ctx: Interpreter, containers: frozenset[Obj], it: Invocation) -> Nodes:

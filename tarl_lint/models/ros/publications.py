@@ -10,6 +10,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.interpret.run_order import Part
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import BLOCKED
 from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame, Turns, inside
 from tarl_lint.memory.value_flow_graph import Place
@@ -115,6 +116,9 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
     ctx.graph.depend(node, [n for n, _ in ctx.guards])
     if frame.statement is not None:
         under(ctx, frame, frame.statement, node)
+        if BLOCKED in frame.function.raising.get(frame.statement.id, ()):
+            # the arguments were evaluated before, as in `publish(queue.get())`
+            ctx.graph.depend(node, (ctx.condition(frame, frame.statement),))
     record.nodes.add(node)
     return UNKNOWN
 

@@ -17,6 +17,26 @@ out = rospy.Publisher("out", Float64, queue_size=1)
 """
 # bodies of a node; each line that publishes has two marks: without the setting, and with `arrivals`
 ARRIVALS = """\
+### a wait in a called function, and in a loop of one
+level, last = 0.0, None
+def on(msg):
+    global level, last
+    level, last = msg.data, msg
+def wait_for(ready):
+    while not ready() and not rospy.is_shutdown():
+        rospy.sleep(0.1)
+def step(event):
+    out.publish(0.0)  # clean clean
+    wait_for(lambda: last is not None)
+    out.publish(1.0)  # clean control
+def other(event):
+    for _ in range(2):
+        out.publish(2.0)  # clean control
+        wait_for(lambda: level > 1.0)
+    out.publish(3.0)  # clean control
+rospy.Subscriber("in", Float64, on)
+rospy.Timer(1, step)
+rospy.Timer(1, other)
 ### the first message
 last = None
 def on(msg):

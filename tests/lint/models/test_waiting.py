@@ -13,7 +13,9 @@ from std_msgs.msg import Float64
 out = rospy.Publisher("out", Float64, queue_size=1)
 waiting, always, places = queue.Queue(), queue.Queue(), deque()
 event, changed = threading.Event(), threading.Condition()
+level, fixed = [0.0], [1.0]
 def on(msg):
+    level[0] = msg.data
     always.put(1.0)
     if msg.data > 1.0:
         waiting.put(1.0)
@@ -100,6 +102,60 @@ def items():
         yield waiting.get()
 for item in items():
     out.publish(2.0)  # control
+### in a loop over elements
+for one in [event, event]:
+    one.wait()
+out.publish(2.0)  # control
+### in the loop of a called function
+def fetch():
+    for one in [event, threading.Event()]:
+        one.wait()
+fetch()
+out.publish(2.0)  # control
+### in an endless loop
+def fetch():
+    while True:
+        item = waiting.get()
+        if item is not None:
+            return 3.0
+found = fetch()
+out.publish(found)  # control
+### in a loop with a condition
+while not rospy.is_shutdown():
+    waiting.get()
+out.publish(2.0)  # clean
+### in the loop of a called function, with a condition
+def fetch():
+    while not rospy.is_shutdown():
+        waiting.get()
+fetch()
+out.publish(2.0)  # clean
+### in an argument
+def fetch():
+    return waiting.get()
+out.publish(waiting.get())  # control
+out.publish(always.get())  # control
+### a predicate
+def ready():
+    return level[0] > 3.0
+out.publish(1.0)  # clean
+with changed:
+    changed.wait_for(ready)
+out.publish(2.0)  # control
+### a predicate with a time-out
+def ready():
+    return level[0] > 3.0
+with changed:
+    if changed.wait_for(ready, timeout=1.0):
+        out.publish(2.0)  # control
+    out.publish(1.0)  # clean
+### a predicate that is always true at the end
+with changed:
+    changed.wait_for(lambda: len(fixed) == 1)
+out.publish(2.0)  # clean
+### a wait for an object that is no condition
+changed.wait_for(3.0)
+out.publish(2.0)  # clean
 """
 
 
