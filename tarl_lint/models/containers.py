@@ -294,7 +294,13 @@ def _from_queue(ctx: Interpreter, it: Invocation) -> Value:
         waiting.may_be_empty(ctx, it, "")
     else:
         waiting.wait_for_element(ctx, it)
-    return elements_of_any(ctx, it.base)
+    return _smallest(ctx, elements_of_any(ctx, it.base), it)
+
+
+def _smallest(ctx: Interpreter, found: Value, it: Invocation) -> Value:
+    """Return an element of a queue; a comparison of all elements decides which one a `PriorityQueue` returns."""
+    compares = any(o.name == ordering.SORTED for o in it.base.pts)
+    return ordering.ordered(ctx, found, replace(it, arguments=([], {}))) if compares else found
 
 
 def sent(ctx: Interpreter, generator: Obj, it: Invocation) -> None:
@@ -319,7 +325,7 @@ def next_element(ctx: Interpreter, it: Invocation) -> Value:
 
 def _take_out(ctx: Interpreter, it: Invocation) -> Value:
     """Remove an element and return it."""
-    result, given = _read_get(ctx, it), it.arguments[0]
+    result, given = _smallest(ctx, _read_get(ctx, it), it), it.arguments[0]
     if it.name in waiting.RAISED and len(given) < 2:
         waiting.may_be_empty(ctx, it, waiting.RAISED[it.name])
     index = given[0] if given else const(0) if it.name in ("popleft", "get_nowait") else None
@@ -488,7 +494,10 @@ def _read_length(ctx: Interpreter, it: Invocation) -> Value:
 
 def new_queue(ctx: Interpreter, it: Invocation) -> Value:
     """Return a new queue."""
-    return pointer(recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot)))
+    obj = recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot))
+    if it.name.endswith(ordering.SORTED):
+        obj.name = ordering.SORTED
+    return pointer(obj)
 
 
 def new_pipe(ctx: Interpreter, it: Invocation) -> Value:

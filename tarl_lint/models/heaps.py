@@ -27,8 +27,8 @@ def popped(ctx: Interpreter, it: Invocation) -> Value:
     if not it.arguments[0]:
         return Value(call_contexts.all_used(ctx, it.arguments))
     base = it.arguments[0][0]
-    result = containers.elements_of_any(ctx, base)
-    decided = removal.decision(ctx, it.frame, it.call.slot, ctx.use(result), counts=base.deps)
+    result = ordering.ordered(ctx, containers.elements_of_any(ctx, base), it)
+    decides = ctx.use(Value(result.deps))
+    decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=base.deps)
     containers.take_any(ctx, base, decided, it.frame, it.call)
-    result = ordering.ordered(ctx, result, it)
     return Value(result.deps | base.deps, result.pts, result.consts)

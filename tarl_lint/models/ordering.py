@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tarl_lint.interpret import call_contexts, calls
+from tarl_lint.interpret import call_contexts, calls, dunder_methods
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap
 from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.values import UNKNOWN, Nodes, Value, const, in_order, join_all
-from tarl_lint.models import sizes
+from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Obj, Value, const, in_order, join_all, pointer
+from tarl_lint.models import records, sizes
 from tarl_lint.models.iterators import gate, listed, pairs
 
 # kinds of objects that consist of the compared values
@@ -18,6 +18,8 @@ COMPARED = frozenset(["sequence", "mapping", "instance"])
 # name of a pair of a key and its value; comparisons of such pairs never use the values, because all keys are
 # different
 ENTRY = "entry"
+MAX_NESTED = 3  # maximum depth of tuples in tuples whose elements are distinguished in comparisons
+SORTED = "PriorityQueue"  # name of a queue that returns its smallest element
 UNORDERED = "<unordered>"  # field of a sorted list: the elements, without the values that decided the order
 
 
@@ -30,12 +32,50 @@ def ordered(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
     """
     key = it.arguments[1].get("key")
     if key is None or key.consts:
-        inside = frozenset(o for o in elements.pts if o.kind in COMPARED)
-        entries = [o for o in in_order(inside) if o.name == ENTRY]
-        keys = (ctx.use(heap.read_field(ctx, o, item_field(0))) for o in entries)
-        compared = ctx.use(Value(pts=inside.difference(entries))).union(*keys)
-        return _decided(ctx, elements, compared, it)
+        return _decided(ctx, elements, compared(ctx, elements, it), it)
     return _decided(ctx, elements, ctx.use(_key(ctx, key, elements, it)), it)
+
+
+def compared(ctx: Interpreter, elements: Value, it: Invocation) -> Nodes:
+    """Return the data inside elements that a comparison of the elements uses; numbers themselves are left out."""
+    found: Nodes = NONE
+    plain: list[Obj] = []
+    for obj in in_order(frozenset(o for o in elements.pts if o.kind in COMPARED)):
+        if obj.name == ENTRY:
+            found |= ctx.use(heap.read_field(ctx, obj, item_field(0)))
+        elif obj.kind == "instance" and (used := _of_instance(ctx, obj, elements, it)) is not None:
+            found |= used
+        elif obj.kind == "sequence":
+            found |= _inside(ctx, heap.read_any(ctx, obj), it)
+        else:
+            plain.append(obj)
+    return found | ctx.use(Value(pts=frozenset(plain)))
+
+
+def _inside(ctx: Interpreter, parts: Value, it: Invocation, depth: int = 0) -> Nodes:
+    """Return the data that a comparison of tuples uses.
+
+    Python cannot compare messages and instances without `__lt__`. A program that puts these behind other elements
+    of a tuple therefore compares only the other ones.
+    """
+    found = parts.deps
+    for obj in parts.objects:
+        if obj.kind == "sequence" and depth < MAX_NESTED:
+            found |= _inside(ctx, heap.read_any(ctx, obj), it, depth + 1)
+        elif obj.kind == "instance":
+            found |= _of_instance(ctx, obj, parts, it) or NONE
+        elif obj.kind != "message" or obj.parent is not None:
+            found |= ctx.use(pointer(obj))
+    return found
+
+
+def _of_instance(ctx: Interpreter, obj: Obj, elements: Value, it: Invocation) -> Nodes | None:
+    """Return the data that a comparison of an instance uses: by its own `__lt__`, or by the fields of a dataclass."""
+    said = dunder_methods.special(ctx, pointer(obj), "__lt__", [elements], it.frame, it.call.pos)
+    if said is not None:
+        return ctx.use(said)
+    names = records.compared_fields(ctx, obj.info) if isinstance(obj.info, Obj) else None
+    return None if names is None else NONE.union(*(ctx.use(heap.read_field(ctx, obj, n)) for n in names))
 
 
 def _key(ctx: Interpreter, key: Value, elements: Value, it: Invocation) -> Value:

@@ -361,6 +361,14 @@ def _fields(cls: Obj) -> Iterator[tuple[Obj, str]]:
                 yield owner, name
 
 
+def compared_fields(ctx: Interpreter, cls: Obj) -> list[str] | None:
+    """Return the fields that decide the order of a dataclass's instances; None for another class."""
+    fields = list(_fields(cls))
+    if not fields:
+        return None
+    return [name for owner, name in fields if not _says(_options(ctx, owner, name), "compare", False)]
+
+
 def _decorated(info: ClassInfo) -> bool:
     """Return whether a class has a decorator, like a dataclass. Annotations in a class without one are not fields."""
     return info.statement is None or bool(info.statement.decorators)
