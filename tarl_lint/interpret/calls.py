@@ -46,7 +46,12 @@ def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
             known = one_by_one(ctx, value)
             if len(value.pts) > 1 or frame.spread:
                 frame.spread[expr.slot] = value
-            if known is None:
+            if known is None and argument is expr.arguments[-1] and (ways := sizes.each_unpacked(ctx, value)):
+                least = min(map(len, ways.values()))
+                plain.extend(join_all(way[n] for way in ways.values()) for n in range(least))
+                more = join_all(one for way in ways.values() for one in way[least:])
+                named["*"] = join(named.get("*", BOTTOM), more)
+            elif known is None:
                 named["*"] = join(named.get("*", BOTTOM), heap.elements(ctx, value))
             else:
                 plain.extend(known)

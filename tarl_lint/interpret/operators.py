@@ -7,7 +7,7 @@ import math
 import operator
 from collections.abc import Callable, Hashable, Mapping
 
-from tarl_lint.interpret import dunder_methods, nullness
+from tarl_lint.interpret import class_patterns, dunder_methods, nullness
 from tarl_lint.interpret.interpreter import NONE_ONLY, Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap, object_contents
@@ -74,6 +74,9 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
     values = [ctx.ops.evaluate(ctx, p, frame) for p in expr.parts]
     if expr.operator == "as":
         return narrowed(*values)
+    if expr.operator == "part":
+        number = values[2].constant()[1]
+        return class_patterns.part(ctx, values[0], values[1], number if isinstance(number, int) else 0)
     if expr.operator in ("text", "formatted"):
         values = [
             dunder_methods.as_text(ctx, value, frame, part.pos)

@@ -12,8 +12,9 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.interpret.tag_tests import of_variable
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory.frames import Frame, Origin, Taken
+from tarl_lint.memory.frames import REST, Frame, Origin, Taken
 from tarl_lint.memory.values import Value, const
+from tarl_lint.models import sizes
 
 
 def origins(ctx: Interpreter, caller: Frame, call: ir.Call, passed: Arguments) -> tuple[Origin, ...]:
@@ -44,6 +45,8 @@ def note(ctx: Interpreter, frame: Frame, given: Sequence[Origin]) -> None:
     taken_by_name = {place for place, _, _ in given if isinstance(place, str)}
     everything = places.get("**")
     for number, parameter in enumerate(frame.function.parameters):
+        if parameter.kind == "star" and number in places:
+            _note_rest(ctx, frame, parameter.name, number, *places[number])
         if parameter.kind in ("star", "mapping"):
             continue
         place: int | str = number if parameter.kind == "plain" and number in places else parameter.name
@@ -58,6 +61,27 @@ def note(ctx: Interpreter, frame: Frame, given: Sequence[Origin]) -> None:
         tags.keep(
             frame, key, Taken(now, origin[0], frame.caller.statement, slot, origin[1], None, frame.caller)
         )
+
+
+def _note_rest(
+    ctx: Interpreter, frame: Frame, name: str, number: int, whole: Value, field: str | Value | None
+) -> None:
+    """Give a parameter `*rest` one sequence for each of the objects whose last elements it gets."""
+    first = field.constant()[1] if isinstance(field, Value) else None
+    caller, ways = frame.caller, sizes.each_unpacked(ctx, whole)
+    if not isinstance(first, int) or caller is None or caller.statement is None or not ways:
+        return
+    parts = {
+        obj: [
+            ctx.carry(value, ctx.node(caller, ("argument", frame.slot, place, obj.number), "call"))
+            for place, value in enumerate(way[first:], number)
+        ]
+        for obj, way in ways.items()
+    }
+    value = sizes.rests(ctx, parts, frame, ("passed", name))
+    ctx.store.put((frame, name), value)
+    slot = f"argument {frame.slot} {number}"
+    tags.keep(frame, (frame, name), Taken(value, whole, caller.statement, slot, REST, None, caller))
 
 
 def _positional(

@@ -100,9 +100,10 @@ def unpack(
         if isinstance(source, ir.SequenceDisplay) and number < len(source.items) and starred is None:
             expr = source.items[number]
         bind_target(ctx, item, part, frame, f"{slot}.{number}", expr)
-        if starred is None:
+        if starred is None or number < starred:
             nullness.note_taken(ctx, item, value, number, part, frame)
-            tags.note_element(ctx, item, value, number, f"{slot}.{number}", frame)
+        place = number if starred is None or number < starred else number - len(target.items)
+        tags.note_element(ctx, item, value, place, f"{slot}.{number}", frame)
 
 
 def assign(ctx: Interpreter, target: ir.Expr, value: Value, frame: Frame) -> None:
@@ -120,8 +121,10 @@ def assign(ctx: Interpreter, target: ir.Expr, value: Value, frame: Frame) -> Non
     elif isinstance(target, ir.Item):
         _assign_item(ctx, target, value, frame)
     elif isinstance(target, ir.SequenceDisplay):
+        starred = next((n for n, t in enumerate(target.items) if isinstance(t, ir.Starred)), None)
+        parts = unpacking.parts(ctx, value, len(target.items), starred, frame, str(target.pos))
         for number, item in enumerate(target.items):
-            assign(ctx, item, expressions.read_item(ctx, value, const(number)), frame)
+            assign(ctx, item, parts[number], frame)
             tags.note_element(ctx, item, value, number, f"{target.pos}.{number}", frame)
     elif isinstance(target, ir.Starred):
         assign(ctx, target.value, value, frame)

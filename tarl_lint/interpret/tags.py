@@ -17,7 +17,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.tag_tests import Test, calls_nothing, of_variable, tags_of, tests
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap
-from tarl_lint.memory.frames import Former, Frame, Taken
+from tarl_lint.memory.frames import REST, Former, Frame, Taken
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import NONE, Key, Nodes, Obj, Value, const, lineage, pointer
 
@@ -42,8 +42,11 @@ def note(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Value, slot:
 def note_element(
     ctx: Interpreter, target: ir.Expr, whole: Value, number: int, slot: str, frame: Frame
 ) -> None:
-    """Record that the current statement assigned an element of a value to a variable."""
-    if isinstance(target, ir.Name) and several(whole):
+    """Record that the current statement assigned an element of a value to a variable, or the rest of its elements."""
+    if isinstance(target, ir.Starred):
+        if isinstance(target.value, ir.Name) and several(whole):
+            _remember(ctx, target.value, whole, REST, slot, frame)
+    elif isinstance(target, ir.Name) and several(whole):
         _remember(ctx, target, whole, const(number), slot, frame)
 
 
@@ -212,7 +215,10 @@ def _with(ctx: Interpreter, key: Key, now: Value, kept: frozenset[Obj], frame: F
     if taken is None:
         return Value(now.deps, kept, now.consts)
     before = _only(ctx, taken.before, kept, taken.frame or frame)
-    part = before if taken.field is None else _field(ctx, before, taken.field)
+    if taken.field is REST:
+        part = Value(before.deps, frozenset(o for o in now.pts if o.info in kept), now.consts)
+    else:
+        part = before if taken.field is None else _field(ctx, before, taken.field)
     value = ctx.carry(part, _node(ctx, taken, kept, frame))
     keep(frame, key, replace(taken, value=value, before=before))
     return value

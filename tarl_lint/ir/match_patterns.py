@@ -68,10 +68,12 @@ def _parts(
         for key, inner in zip(pattern.keys, pattern.patterns, strict=True):
             yield inner, ir.Item(subject, lower(key), where)
     elif isinstance(pattern, ast.MatchClass):
+        cls = lower(pattern.cls)
+        whole = ir.Operation("as", [subject, cls], where)
         for name, inner in zip(pattern.kwd_attrs, pattern.kwd_patterns, strict=True):
-            yield inner, ir.Attribute(subject, name, where)
-        whole = ir.Operation("", [subject], where)
-        yield from ((inner, whole) for inner in pattern.patterns)
+            yield inner, ir.Attribute(whole, name, where)
+        for number, inner in enumerate(pattern.patterns):
+            yield inner, ir.Operation("part", [whole, cls, ir.Const(number, where)], where)
 
 
 def _elements(

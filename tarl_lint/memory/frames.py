@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Final, Literal
 
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.exception_types import ExceptionTypes, Handled
@@ -69,11 +69,15 @@ class Leaving:
     cause: Escape | Value | Literal["break", "continue"]
 
 
+# in place of an index: the value is the rest of the elements, a sequence whose `info` is the object with all elements
+REST: Final = "<rest>"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Taken:
     """The origin of a variable's value: the statement, and the objects that the value may be, or may be a part of.
 
-    `field` is the attribute or index of the part; `of` is the variable that holds the objects.
+    `field` is the attribute or index of the part, or REST; `of` is the variable that holds the objects.
     """
 
     value: Value

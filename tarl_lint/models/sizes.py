@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Mapping, Sequence
+
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap, recency, updates
@@ -10,6 +12,7 @@ from tarl_lint.memory.heap import ANY, KEYS, LENGTH, SENT, item_field
 from tarl_lint.memory.values import (
     ABSENT,
     BOTTOM,
+    NO_CONSTANTS,
     NONE,
     UNKNOWN,
     Nodes,
@@ -97,6 +100,8 @@ def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: F
     ours = frozenset(o for o in base.pts if o.kind == "sequence")
     if not ours or ours != base.pts:
         return ctx.ops.read_item(ctx, base, Value(extra))
+    if not extra and (several := _each_sliced(ctx, base, index, bounds, pos, frame)) is not None:
+        return several
     element = heap.elements(ctx, Value(pts=ours))
     longer = length(ctx, Value(pts=ours)) | extra
     between = _between(ctx, base, index, bounds)
@@ -109,6 +114,19 @@ def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: F
         updates.add_element(ctx, pointer(obj), Value(element.deps | extra, element.pts, element.consts))
     ctx.store.put((obj, LENGTH), Value(longer))
     return Value(base.deps, frozenset([obj]))
+
+
+def _each_sliced(
+    ctx: Interpreter, base: Value, index: ir.Slice, bounds: list[Value], pos: ir.Pos, frame: Frame
+) -> Value | None:
+    """Return a slice of each of several known sequences; None if one is not known."""
+    found: dict[Obj, list[Value]] = {}
+    for obj in each_unpacked(ctx, base):
+        between = _between(ctx, Value(base.deps, frozenset([obj])), index, bounds)
+        if between is None:
+            return None
+        found[obj] = between
+    return rests(ctx, found, frame, pos) if found else None
 
 
 def _between(ctx: Interpreter, base: Value, index: ir.Slice, bounds: list[Value]) -> list[Value] | None:
@@ -150,6 +168,30 @@ def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:
     while (stored := ctx.store.get((obj, item_field(len(found))))) is not None:
         found.append(heap.arrive(ctx, stored, value.deps))
     return found
+
+
+def each_unpacked(ctx: Interpreter, value: Value, least: int = 0) -> dict[Obj, list[Value]]:
+    """Return the known elements of each of several sequences; empty if one is not known, or has less than `least`."""
+    if not 1 < len(value.pts) <= MAX_KNOWN or any(o.kind != "sequence" for o in value.pts):
+        return {}
+    found = {obj: unpacked(ctx, Value(value.deps, frozenset([obj]))) for obj in value.objects}
+    known = {obj: way for obj, way in found.items() if way is not None and least <= len(way) <= MAX_KNOWN}
+    return known if len(known) == len(found) else {}
+
+
+def rests(ctx: Interpreter, parts: Mapping[Obj, Sequence[Value]], frame: Frame, slot: Hashable) -> Value:
+    """Return a new sequence for each of several sequences, with some of its elements.
+
+    `info` of the new sequence is the one that has all elements.
+    """
+    made: list[Obj] = []
+    for source, elements in parts.items():
+        obj = recency.allocate(ctx, "sequence", frame, ("rest", slot, source.number))
+        obj.describe(source)
+        for number, value in enumerate(elements):
+            ctx.store.put((obj, item_field(number)), value)
+        made.append(obj)
+    return Value(pts=frozenset(made), consts=NO_CONSTANTS)
 
 
 def counted(ctx: Interpreter, source: ir.Expr, frame: Frame, *, each: bool) -> Value:

@@ -10,7 +10,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, reachable_data, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.values import BOTTOM, Obj, Value, const, join, pointer
+from tarl_lint.memory.values import BOTTOM, Obj, Value, const, join, join_all, pointer
 from tarl_lint.models import library_functions, sizes
 
 ITERATED = -2  # slot of the calls of `__iter__` and `__next__` made by a loop
@@ -52,9 +52,14 @@ def parts(
         value = listed_parts(ctx, given, frame, slot)
     if starred is None:
         return [expressions.read_item(ctx, value, const(n)) for n in range(count)]
+    after = count - starred - 1
+    if ways := sizes.each_unpacked(ctx, value, count - 1):
+        middle = {obj: way[starred : len(way) - after] for obj, way in ways.items()}
+        places = [*range(starred), *range(starred - count + 1, 0)]
+        single = [join_all(way[place] for way in ways.values()) for place in places]
+        return [*single[:starred], sizes.rests(ctx, middle, frame, slot), *single[starred:]]
     rest = recency.allocate(ctx, "sequence", frame, ("rest", slot))
     known = sizes.unpacked(ctx, value)
-    after = count - starred - 1
     if known is None or len(known) < count - 1:
         element = heap.elements(ctx, value)
         updates.add_element(ctx, pointer(rest), element)
