@@ -21,8 +21,6 @@ MAX_EXACT_TURNS = 8  # value of MAX_TURNS in a run for one launched node
 SHORT = 3
 # maximum number of passes over a loop's body; only a safety limit, since the value domain is finite
 MAX_PASSES = 12
-ENTERING = ("__enter__", "__aenter__")
-LEAVING = ("__exit__", "__aexit__")
 
 
 def decide(ctx: Interpreter, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | None:
@@ -253,7 +251,7 @@ def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
     for number, (context, target) in enumerate(s.items):
         value = expressions.evaluate(ctx, context, frame)
         frame.statement = s
-        entered = _special_of_manager(ctx, value, ENTERING, (), frame, s)
+        entered = _special_of_manager(ctx, value, managers_of_generators.ENTERING, (), frame, s)
         rest = BOTTOM
         if entered is None:
             entered, rest = managers_of_generators.entered(ctx, value)
@@ -266,7 +264,7 @@ def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
     frame.statement = s
     # The managers also exit if a `return` leaves the body.
     for number, (manager, rest) in reversed([*enumerate(managers)]):
-        _special_of_manager(ctx, manager, LEAVING, [UNKNOWN] * 3, frame, s)
+        _special_of_manager(ctx, manager, managers_of_generators.LEAVING, [UNKNOWN] * 3, frame, s)
         rest = join(rest, managers_of_generators.kept_on_stack(ctx, manager))
         managers_of_generators.leave(ctx, rest, frame, s.pos, number)
     return goes_on

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarl_lint.interpret import call_contexts, expressions, literals, operators, single_dispatch
+from tarl_lint.interpret import call_contexts, descriptors, expressions, literals, operators, single_dispatch
 from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
@@ -137,6 +137,10 @@ def _call_member(
     if obj.kind == "ext":
         return ctx.ops.call_library(ctx, f"{obj.name}.{name}", arguments, frame, expr)
     callables = _held_by(ctx, obj, member, name)
+    if obj.kind == "instance" and not member.pts:
+        found = descriptors.computed(ctx, Value(base.deps, frozenset([obj])), name, frame, expr.function.pos)
+        if found is not None:
+            return call_value(ctx, found, arguments, frame, expr)
     if len(callables) == 1 and (method := next(iter(callables))).kind == "bound":
         return call_object(ctx, method, arguments, frame, expr, base.deps)
     if callables:

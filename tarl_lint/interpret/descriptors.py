@@ -12,7 +12,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import BOTTOM, Obj, Value, const, join, lineage, pointer
 
-METHODS: Final = frozenset(["__get__", "__set__", "__set_name__", "__setattr__"])
+METHODS: Final = frozenset(["__get__", "__set__", "__set_name__", "__setattr__", "__getattr__"])
 
 
 def note(ctx: Interpreter, name: str) -> None:
@@ -34,11 +34,18 @@ def read(ctx: Interpreter, base: Value, value: Value, name: str, frame: Frame, p
         if ctx.store.get((obj, name)) is None:
             for descriptor in _descriptors(ctx, obj, name):
                 given = [pointer(obj), pointer(obj.info)] if isinstance(obj.info, Obj) else []
-                said = dunder_methods.special(ctx, pointer(descriptor), "__get__", given, frame, pos)
+                said = _call(ctx, descriptor, "__get__", given, frame, pos)
                 if said is not None:
                     value = Value(value.deps, value.pts - {descriptor}, value.consts)
                     found = join(found or BOTTOM, said)
     return None if found is None else join(found, value) if value.pts else found
+
+
+def computed(ctx: Interpreter, base: Value, name: str, frame: Frame, pos: ir.Pos) -> Value | None:
+    """Return an attribute that no object has, from `__getattr__` of the class; None without such a method."""
+    if not _used(ctx, "__getattr__"):
+        return None
+    return dunder_methods.special(ctx, base, "__getattr__", [const(name)], frame, pos)
 
 
 def write(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, pos: ir.Pos) -> bool:
@@ -52,7 +59,7 @@ def write(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, 
     for obj in base.objects if _used(ctx, "__set__") else ():
         for descriptor in _descriptors(ctx, obj, name):
             given = [pointer(obj), value]
-            done |= dunder_methods.special(ctx, pointer(descriptor), "__set__", given, frame, pos) is not None
+            done |= _call(ctx, descriptor, "__set__", given, frame, pos) is not None
     return done
 
 
@@ -118,5 +125,21 @@ def _descriptors(ctx: Interpreter, obj: Obj, name: str) -> list[Obj]:
     for owner in lineage(obj.info) if obj.kind == "instance" and isinstance(obj.info, Obj) else ():
         held = ctx.store.get((owner, name))
         if held is not None:
-            return [o for o in held.objects if o.kind == "instance"]
+            return [o for o in held.objects if o.kind in ("instance", "property")]
     return []
+
+
+def _call(
+    ctx: Interpreter, descriptor: Obj, name: str, given: list[Value], frame: Frame, pos: ir.Pos
+) -> Value | None:
+    """Call `__get__` or `__set__` of a descriptor; of a property, its getter or setter. None if it has none."""
+    if not isinstance(descriptor.info, tuple):
+        return dunder_methods.special(ctx, pointer(descriptor), name, given, frame, pos)
+    ctx.store.reads.look(descriptor)
+    getter, setter = descriptor.info
+    function, passed = (getter, given[:1]) if name == "__get__" else (setter, given)
+    if function is BOTTOM:
+        return None
+    call = ir.Call(ir.Const(None, pos), (), (), pos, dunder_methods.slot(name, pos))
+    found: Value = ctx.ops.call_value(ctx, function, (passed, {}), frame, call)
+    return found

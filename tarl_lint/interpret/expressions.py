@@ -10,7 +10,7 @@ from tarl_lint.catalog import fact
 from tarl_lint.interpret import descriptors, dunder_methods, generators, literals, operators, short_circuits
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import enumerations, generations, heap, properties, recency
+from tarl_lint.memory import enumerations, generations, heap, properties, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, GIVEN_KEYS, KEYS
 from tarl_lint.memory.values import (
@@ -114,7 +114,7 @@ def read_attribute(ctx: Interpreter, base: Value, expr: ir.Attribute, frame: Fra
     if (told := descriptors.read(ctx, base, value, expr.name, frame, expr.pos)) is not None:
         return told
     if value.consts == BOTTOM.consts and not value.pts:
-        said = dunder_methods.special(ctx, base, "__getattr__", [const(expr.name)], frame, expr.pos)
+        said = descriptors.computed(ctx, base, expr.name, frame, expr.pos)
         return value if said is None else said
     return value
 
@@ -141,6 +141,9 @@ def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:
     if said is not None:
         return said
     found = read_item(ctx, base, index)
+    for obj in base.objects:
+        if obj.kind == "mapping" and _makes(ctx, obj) and (made := ctx.use(index)):
+            updates.weaken(ctx, obj, KEYS, Value(made))  # a `defaultdict` adds the key
     return Value(found.deps | keys, found.pts) if keys else found
 
 

@@ -62,6 +62,7 @@ HOLLOW = frozenset(
         "ext",
         "publisher",
         "partial",
+        "property",
         "method",
         "frame",
         "super",

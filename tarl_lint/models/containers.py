@@ -474,6 +474,9 @@ def counted_elements(ctx: Interpreter, it: Invocation) -> Value:
     ctx.graph.choice(sizes.placed(ctx, frozenset(ours)), node)
     if ctx.graph.control[node]:
         ctx.graph.counts.setdefault(node, set()).update(made_of(ctx, Value(pts=frozenset(ours))))
+    # equal keys count once, so the keys of a mapping decide its length, as the elements of a set do
+    keys = [ctx.store.get((o, heap.KEYS)) for o in ours if o.kind == "mapping"]
+    deps = deps.union(*(held.deps for held in keys if held is not None))
     exact = sizes.counts(ctx, it.frame)
     elements = sizes.constants if ctx.exact else sizes.unpacked
     known = [elements(ctx, value) for value in it.arguments[0] if exact]

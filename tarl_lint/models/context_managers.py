@@ -1,6 +1,8 @@
-"""Context managers made from generators: `ir/context_managers.py` divides these at their `yield`."""
+"""Context managers made from generators, which `ir/context_managers.py` divides at their `yield`, and `ExitStack`."""
 
 from __future__ import annotations
+
+from typing import Final
 
 from tarl_lint.interpret import dunder_methods
 from tarl_lint.interpret.interpreter import Interpreter
@@ -12,6 +14,8 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, join, join_all
 
+ENTERING: Final = ("__enter__", "__aenter__")
+LEAVING: Final = ("__exit__", "__aexit__")
 _GIVEN, _REST = item_field(0), item_field(1)
 
 
@@ -53,7 +57,14 @@ def _rest(ctx: Interpreter, obj: Obj) -> Value | None:
 
 def put_on_stack(ctx: Interpreter, it: Invocation) -> Value:
     """Return the result of `stack.enter_context(manager)`; the stack keeps the functions that run after the body."""
-    value, rest = entered(ctx, it.arguments[0][0] if it.arguments[0] else UNKNOWN)
+    manager = it.arguments[0][0] if it.arguments[0] else UNKNOWN
+    value, rest = entered(ctx, manager)
+    for number, obj in enumerate(o for o in manager.objects if o.kind == "instance"):
+        one, pos = Value(manager.deps, frozenset([obj])), it.call.inner(number).pos
+        said = [dunder_methods.special(ctx, one, name, (), it.frame, pos) for name in ENTERING]
+        value = join_all([value, *(found for found in said if found is not None)])
+        leaving = [heap.read_field(ctx, obj, name) for name in LEAVING]
+        rest = join_all([rest, *(found for found in leaving if found.pts)])
     for obj in it.base.objects if rest.pts else ():
         before = ctx.store.get((obj, LEAVE)) or BOTTOM
         ctx.store.put((obj, LEAVE), join(before, rest))

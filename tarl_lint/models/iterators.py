@@ -16,6 +16,8 @@ from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, join_all
 from tarl_lint.models import rows as possible_rows
 from tarl_lint.models import sizes
 
+# functions that select elements by a predicate, as `filter` does
+SELECTING = ("itertools.takewhile", "itertools.dropwhile", "itertools.filterfalse")
 MAX_MAPPED = 8  # maximum number of elements to which `map` is applied one by one
 
 
@@ -137,6 +139,29 @@ def mapped_elements(ctx: Interpreter, it: Invocation) -> Value:
         ctx, operators.truth(ctx, asks, it.frame, ("filter", it.call.slot)), it.frame, it.call.slot
     )
     return listed(ctx, Value(kept.deps | decided, kept.pts, kept.consts), length | decided, it)
+
+
+def compressed(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the elements of the first argument of `itertools.compress` that the second one selects."""
+    if len(it.arguments[0]) != 2:
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    kept, selectors = it.arguments[0]
+    decides = operators.truth(ctx, heap.elements(ctx, selectors), it.frame, ("filter", it.call.slot))
+    decided = gate(ctx, decides, it.frame, it.call.slot)
+    element = heap.elements(ctx, kept)
+    length = lengths(ctx, [kept, selectors]) | decided
+    return listed(ctx, Value(element.deps | decided, element.pts, element.consts), length, it)
+
+
+def star_mapped(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the results of a function for each tuple of arguments."""
+    if len(it.arguments[0]) != 2:
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    function, rows = it.arguments[0]
+    row = heap.elements(ctx, rows)
+    known = calls.one_by_one(ctx, row)
+    given = (known, {}) if known is not None else ([], {"*": heap.elements(ctx, row)})
+    return listed(ctx, calls.call_value(ctx, function, given, it.frame, it.call), sizes.length(ctx, rows), it)
 
 
 def reduced(ctx: Interpreter, it: Invocation) -> Value:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tarl_lint import catalog
-from tarl_lint.interpret import call_contexts, metaclasses
+from tarl_lint.interpret import call_contexts, descriptors, metaclasses
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency, userdata
@@ -46,10 +46,22 @@ def same(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared si
 
 
 def type_of(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared signature
-    """Return the class of analysed objects; a type is not data."""
-    classes = [o.info for v in it.arguments[0][:1] for o in v.pts if o.kind == "instance"]
+    """Return the class of analysed objects, which depends on what chose the object; a type is not data."""
+    given = it.arguments[0][0] if it.arguments[0] else UNKNOWN
+    classes = [o.info for o in given.pts if o.kind == "instance"]
     found = frozenset(c for c in classes if isinstance(c, Obj))
-    return Value(pts=found) if found else UNKNOWN
+    return Value(given.deps, found) if found else UNKNOWN
+
+
+def property_of(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the property that a call of `property(getter, setter)` makes."""
+    plain, named = it.arguments
+    obj = recency.intern(ctx, "property", (it.frame.id, it.statement, it.call.slot), "property")
+    getter = plain[0] if plain else named.get("fget", BOTTOM)
+    obj.describe((getter, plain[1] if len(plain) > 1 else named.get("fset", BOTTOM)))
+    for name in ("__get__", "__set__"):
+        descriptors.note(ctx, name)
+    return pointer(obj)
 
 
 def parent(ctx: Interpreter, it: Invocation) -> Value:

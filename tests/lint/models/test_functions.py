@@ -243,6 +243,29 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME(Pair(msg.data))["near"])  # data
         out.publish(NAME(Pair(msg.data))["far"])  # clean
     """,
+    ("itertools.takewhile", "itertools.dropwhile", "itertools.filterfalse"): """
+        out.publish(list(NAME(lambda x: x < 1.0, [msg.data, 2.0]))[0])  # data
+        out.publish(list(NAME(lambda x: x < msg.data, [1.0, 2.0]))[0])  # control
+        out.publish(list(NAME(lambda x: x < 1.0, [1.0, 2.0]))[0])  # clean
+    """,
+    ("itertools.compress",): """
+        out.publish(list(NAME([msg.data, 2.0], [True, False]))[0])  # data
+        out.publish(list(NAME([1.0, 2.0], [msg.data, False]))[0])  # control
+        out.publish(list(NAME(msg.data))[0])  # data
+    """,
+    ("itertools.starmap",): """
+        out.publish(list(NAME(lambda x, y: y, [(1.0, msg.data)]))[0])  # data
+        out.publish(list(NAME(lambda x, y: x, [(1.0, msg.data)]))[0])  # clean
+        out.publish(list(NAME(msg.data))[0])  # data
+    """,
+    ("property",): """
+        class Motor:
+            speed = NAME(lambda self: self.kept, lambda self, value: setattr(self, "kept", value))
+        first, second = Motor(), Motor()
+        first.speed, second.speed = msg.data, 1.0
+        out.publish(first.speed)  # data
+        out.publish(second.speed)  # clean
+    """,
     ("dataclasses.fields", "attr.fields", "attrs.fields"): """
         @dataclasses.dataclass
         class Pair:
