@@ -47,6 +47,9 @@ class Simulator:
         self._waiting: (
             list[Event] | None
         ) = []  # messages to deliver later, or None while messages are delivered immediately
+        # whether the running simulator was ready once; the graph does not tell, because a simulator that ends also
+        # leaves the graph, and this event may arrive first
+        self._was_ready = False
         # whether the simulator can be used again, because its last step ended without an error
         self._usable = False
         # whether arriving events come from the simulator of this episode and not from an earlier one
@@ -71,6 +74,7 @@ class Simulator:
         if self.setup.reset is None or KEPT.running != self.setup or not self._reset(self.setup.reset):
             self._start()
         self._wait(self._ready, self.setup.timeout, self._unready)
+        self._was_ready = True
         self._settle()
         assert self._clock is not None  # noqa: S101 - it is ready
         self._ros.scheduler.time = self._target = self._clock
@@ -134,12 +138,12 @@ class Simulator:
 
     def _reset(self, reset: Call) -> bool:
         """Reset the running simulator; return whether it answered."""
-        self._current = True
+        self._current = self._was_ready = True
         try:
             self._client.do("subscribe", topics=list(self._topics))
             self._call(reset)
         except SimulatorError as problem:
-            self._current = False
+            self._current = self._was_ready = False
             why = problem.why if isinstance(problem, SimulatorLostError) else str(problem).removesuffix(".")
             self._ros.note(f"The simulator could not be reset, so a new one was started: {why}.")
             return False
@@ -306,12 +310,12 @@ class Simulator:
 
     def _on_ended(self, event: Event) -> None:
         how = _ending(event["status"])
-        if not self._ready():
+        if not self._was_ready:
             raise SimulatorError(
                 f"The simulator {self.setup.shown} {how} before it was ready{self._words()}."
             )
-        text = f"The simulator {self.setup.shown} {how} at {self.clock:g} s of its time{self._words()}."
-        raise self._lost(text, f"it {how}")
+        when = "during its reset" if self._clock is None else f"at {self.clock:g} s of its time"
+        raise self._lost(f"The simulator {self.setup.shown} {how} {when}{self._words()}.", f"it {how}")
 
     def _on_gone(self, _: Event) -> None:
         raise self._lost(

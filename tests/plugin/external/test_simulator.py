@@ -10,6 +10,7 @@ import pytest
 
 from pytest_tarl.errors import SimulatorError, SimulatorLostError, UnsupportedApiError
 from pytest_tarl.external import simulator as module
+from pytest_tarl.external.arguments import Setup
 from pytest_tarl.external.simulator import Simulator
 from pytest_tarl.ros import Ros, message_type
 from tests.plugin.external.conftest import (
@@ -92,6 +93,17 @@ def test_the_error_for_a_simulator_that_ended_states_the_simulated_time(guardian
         made.advance(1.0)
     made.end()
     assert [what for what, _ in guardian.done][-1] == "stop"
+
+
+@pytest.mark.parametrize("setup", [SETUP, STEPPED])
+def test_a_simulator_that_leaves_the_graph_before_its_end_still_counts_as_ready(
+    guardian: Guardian, ros: Ros, setup: Setup
+) -> None:
+    made = begun(replace(setup, ready=("/cmd",)), guardian, ros)
+    guardian.events.put(graph())  # no connection to /cmd is left, as before the simulator was ready
+    guardian.events.put({"kind": "ended", "status": 3})
+    with pytest.raises(SimulatorLostError, match="ended with status 3 at 2 s of its time"):
+        made.advance(1.0)
 
 
 def test_a_running_simulator_drives_the_clock_and_topics_of_the_nodes(guardian: Guardian, ros: Ros) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from pytest_tarl.errors import SimulatorError
+from pytest_tarl.errors import SimulatorError, SimulatorLostError
 from pytest_tarl.external import simulator as module
 from pytest_tarl.external.arguments import Call, Setup
 from pytest_tarl.external.simulator import Simulator
@@ -47,6 +47,39 @@ def test_a_simulator_that_does_not_answer_its_reset_is_started_again(guardian: G
     made = begun(quick, guardian, ros)
     assert [what for what, _ in guardian.done if what != "subscribe"] == ["call", "stop", "start"]
     assert made.clock == 2.0
+
+
+def test_a_simulator_that_ends_during_its_reset_is_started_again(guardian: Guardian, ros: Ros) -> None:
+    module.KEPT.running = RESET
+    events = {"call": [{"kind": "ended", "status": 3}], "start": STARTED}
+    guardian.react = lambda what, **_: events.get(what, [])
+    made = Simulator(RESET, ros, ())
+    made.begin()
+    assert (made.clock, len(guardian.commands("start"))) == (2.0, 1)
+    assert "so a new one was started: it ended with status 3." in "".join(ros.notes)
+
+
+def test_a_simulator_that_ends_after_it_answered_its_reset_is_lost(guardian: Guardian, ros: Ros) -> None:
+    module.KEPT.running = RESET
+
+    def react(what: str, **arguments: Any) -> list[dict[str, Any]]:
+        answer = {"kind": "answer", "id": arguments.get("id"), "asked": 5}
+        return [answer, {"kind": "ended", "status": 3}] if what == "call" else []
+
+    guardian.react = react
+    with pytest.raises(SimulatorLostError, match=r"ended with status 3 during its reset\."):
+        Simulator(RESET, ros, ()).begin()
+
+
+def test_a_simulator_that_replaces_one_without_an_answer_can_end_before_it_is_ready(
+    guardian: Guardian, ros: Ros
+) -> None:
+    module.KEPT.running = quick = replace(RESET, patience=0.05)
+    events = {"start": [{"kind": "stopped"}, {"kind": "ended", "status": 4}]}
+    guardian.react = lambda what, **_: events.get(what, [])
+    with pytest.raises(SimulatorError, match="ended with status 4 before it was ready") as caught:
+        Simulator(quick, ros, ()).begin()
+    assert not isinstance(caught.value, SimulatorLostError)
 
 
 def test_messages_of_the_former_simulator_do_not_make_the_new_simulator_ready(

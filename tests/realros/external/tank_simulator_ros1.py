@@ -35,8 +35,11 @@ class Tank:
         with self.lock:
             self.level += DT * float(os.environ.get("PUMP", "1")) * self.valve
             self.steps += 1
-            if FAULT == "die" and self.steps == int(AT):
+            if FAULT in ("die", "leave") and self.steps == int(AT):
                 print("out of water", flush=True)
+                if FAULT == "leave":  # the graph, well before the process ends
+                    rospy.signal_shutdown("out of water")
+                    threading.Event().wait(2.0)
                 os._exit(3)
         self.publish()
 

@@ -81,9 +81,10 @@ def test_nodes_follow_the_clock_of_a_simulator_that_advances_by_itself(tmp_path:
         assert run.simulator.clock >= before + 0.5
 
 
-def test_the_error_of_a_dead_simulator_contains_its_last_output(tmp_path: Path) -> None:
+@pytest.mark.parametrize("fault", ["die 4", "leave 4"])
+def test_the_error_of_a_dead_simulator_contains_its_last_output(tmp_path: Path, fault: str) -> None:
     with (
-        Run(tmp_path, {"FAULT": "die 4"}, command=COMMAND, **STEPPED) as run,
+        Run(tmp_path, {"FAULT": fault}, command=COMMAND, **STEPPED) as run,
         pytest.raises(SimulatorLostError, match=r"ended with status 3 .*out of water"),
     ):
         run.steps(10)
