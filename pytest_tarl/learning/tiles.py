@@ -97,7 +97,9 @@ def _fitted(state: Ints, next_state: Ints, count: Ints, reward: Floats, of: Ints
     """Solve Σφ(c)[φ(c) - γφ(c')]w = Σφ(c)ρ and return φw; NaN if a state has an unvisited tile."""
     size, grids = int(of.max()) + 1, of.shape[1]
     visits = sum_by(state, count, reward.size)
-    ridge = RIDGE * float(visits[visits > 0].mean()) if visits.any() else 1.0
+    if not visits.any():
+        return np.full(reward.size, np.nan)
+    ridge = RIDGE * float(visits[visits > 0].mean())
     inside = next_state != END
     start, end, weight = state[inside], next_state[inside], gamma * count[inside]
 

@@ -88,6 +88,17 @@ def test_balanced_missions_give_the_analysis_of_variance() -> None:
     assert between.variance == pytest.approx(float(table.mean(axis=1).var(ddof=1)) - expected / 25)
 
 
+def test_the_effects_of_a_factor_are_relative_to_the_mean_over_missions() -> None:
+    """Of 12 missions, 2, 4 and 6 have the levels 0, 1 and 2, which earn 0, 3 and 9: their mean is 5.5."""
+    level = np.repeat([0, 1, 2], [2, 4, 6])
+    reward = np.array([0.0, 3.0, 9.0])[level]
+    robot = np.arange(12) % 4
+    totals = summed(robot, level[:, None], reward - reward.mean(), (3,))
+    site, *_ = components(totals, ("site",), 0.95, np.random.default_rng(0))
+    assert site.effects == pytest.approx((-5.5, -2.5, 3.5))
+    assert site.variance == pytest.approx(float(np.var(reward)))
+
+
 def test_the_effects_of_a_version_and_a_season_that_always_coincide_cannot_be_separated() -> None:
     robot, levels, reward, _ = missions(1, 40, 20, 1.0)
     levels[:, 0] = levels[:, 2] >= 2
@@ -131,6 +142,8 @@ def test_with_few_robots_a_component_has_no_interval(monkeypatch: pytest.MonkeyP
     [
         # percentiles 1 and 3, shifted by 2, and scaled by 4 / 2
         (4.0, [0.0, 1.0, 2.0, 3.0, 4.0], (1.0, 6.0)),
+        # percentiles 0.5 and 1.5, shifted by 3, and scaled by 4
+        (4.0, [0.0, 0.5, 1.0, 1.5, 2.0], (0.5, 6.0)),
         # percentiles 1 and 3, shifted by -1, and not scaled
         (1.0, [0.0, 1.0, 2.0, 3.0, 4.0], (0.0, 3.0)),
         (2.0, [0.0, 1.0, 2.0, 3.0, 4.0], (1.0, 3.0)),

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.formulas.judging import Judged
-from pytest_tarl.learning import betting, footprint
+from pytest_tarl.learning import betting, footprint, parts
 from pytest_tarl.learning.betting import Bet, bet
 from pytest_tarl.learning.binning import learned_edges, quantiles
 from pytest_tarl.learning.binomial import BinomialTail, log_choose, probabilities
@@ -388,6 +388,20 @@ def test_cells_where_a_part_is_lost_are_named_by_part() -> None:
     assert lost(one, one, 0.05, np.random.default_rng(0)) == {"a": (), "b": ()}
     bare = replace(one, part_names=())
     assert lost(bare, bare, 0.05, np.random.default_rng(0)) == {}
+
+
+def test_a_loss_is_named_only_below_the_level_and_if_it_is_material(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The deployed episode loses 20, 20, 1 and -1 of the part b in its four cells."""
+    usual, moved = episodes([(0,), (1,), (2,), (3,)]), episodes([(0,), (1,), (2,), (3,)])
+    usual, moved = (replace(one, part_names=("b",)) for one in (usual, moved))
+    gains = np.array([[20.0], [20.0], [1.0], [-1.0]])
+    usual = replace(usual, chain=replace(usual.chain, parts=gains))
+    moved = replace(moved, chain=replace(moved.chain, parts=np.zeros((4, 1))))
+    p_values = np.array([0.05, 0.049, 0.01, 0.01])
+    monkeypatch.setattr(parts, "max_statistic", lambda *_, **__: p_values)
+    assert lost(usual, moved, 0.05, np.random.default_rng(0)) == {"b": ((1,),)}
+    p_values[0] = 0.04
+    assert lost(usual, moved, 0.05, np.random.default_rng(0)) == {"b": ((0,), (1,))}
 
 
 def test_the_interval_of_a_shift_is_about_symmetric_for_symmetric_totals() -> None:

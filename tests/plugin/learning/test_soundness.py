@@ -108,6 +108,8 @@ def test_columns_of_unequal_length_are_refused(part: str, name: str) -> None:
     [
         {"seeds": (SAMPLE.seeds[0],) * SAMPLE.episodes},
         {"cells": SAMPLE.cells[::-1]},
+        {"cells": (SAMPLE.cells[1], SAMPLE.cells[0], *SAMPLE.cells[2:])},
+        {"cells": (SAMPLE.cells[0], SAMPLE.cells[0], *SAMPLE.cells[2:])},
         {"cells": tuple((*cell, 0) for cell in SAMPLE.cells)},
         {"total": SAMPLE.total * np.inf},
         {"steps": SAMPLE.steps - 10**6},
