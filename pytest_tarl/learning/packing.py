@@ -129,7 +129,7 @@ def _visited(edges: Edges) -> tuple[Ints, Ints, Ints]:
 
 def _before(visits: Visits, width: int) -> Ints:
     """Return the index of each row's previous row if both have the same cell and episode, else -1; shape (rows,)."""
-    cell = np.where(visits.state > START, (visits.state - 1) // max(width, 1), -1)
+    cell = (visits.state - 1) // max(width, 1)  # -1 for the start of an episode
     same = (np.diff(cell) == 0) & (np.diff(visits.episode) == 0)
     row = np.arange(cell.size, dtype=np.int64) - 1
     return np.where(np.append(False, same)[: cell.size], row, -1)

@@ -44,9 +44,8 @@ def lost(
     p_values = max_statistic(np.concatenate(worlds), online.episodes, generator, error=4 * ROUNDING)
     losses = worlds[1].mean(axis=0) - worlds[0].mean(axis=0)
     found = {}
-    for name, loss, p_value in zip(
-        names, np.split(losses, len(names)), np.split(p_values, len(names)), strict=True
-    ):
+    for number, name in enumerate(names):
+        loss, p_value = (column.reshape(len(names), -1)[number] for column in (losses, p_values))
         chosen = (p_value < alpha) & (loss > 0) & (loss >= MATERIAL * loss.max(initial=0.0))
         found[name] = tuple(offline.cells[i] for i in np.flatnonzero(chosen))
     return found

@@ -28,6 +28,7 @@ OUTCOMES = {"succeeded": True, "failed": False}
 
 
 NEVER = Rotation()
+_PLAIN = frozenset({type(None), float, int, bool, str})  # types of values that JSON keeps as they are
 
 
 class Observer:
@@ -204,8 +205,7 @@ class Observer:
 
 
 def _plain(value: Any) -> Any:
-    kind = type(value)
-    if value is None or kind is float or kind is int or kind is bool or kind is str:
+    if type(value) in _PLAIN:
         return value
     if isinstance(value, str):
         return str(value)

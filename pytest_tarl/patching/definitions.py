@@ -285,12 +285,11 @@ def literal_number(node: ast.expr | None) -> bool | int | float | None:
     """Return the value of a literal number with its sign, or of a string that contains a number, else None."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str) and re.fullmatch(_NUMERAL, node.value):
         return int(node.value) if _PLAIN.fullmatch(node.value) else float(node.value)
-    sign = 1
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        node, sign = node.operand, -1
+    if negative := isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        node = node.operand
     if not isinstance(node, ast.Constant) or not isinstance(node.value, int | float):
         return None
-    return node.value if sign == 1 else -node.value
+    return -node.value if negative else node.value
 
 
 def _same(old: str, value: float) -> bool:

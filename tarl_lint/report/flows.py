@@ -59,7 +59,9 @@ def _heading(sink: Sink) -> Line:
 
 
 def _aligned(texts: Sequence[str]) -> list[str]:
-    widest = max(map(columns, texts), default=0)
+    if not texts:
+        return []
+    widest = max(map(columns, texts))
     return [text + " " * (widest - columns(text)) for text in texts]
 
 

@@ -35,6 +35,11 @@ HEADERS = [
 ]
 
 
+@pytest.mark.parametrize(("source", "found"), [("x = 1", False), ("x = lambda: 1", True)])
+def test_expressions_are_searched_for_lambdas_only_if_the_text_has_the_word(source, found):
+    assert text_of(source).has_lambdas is found
+
+
 @pytest.mark.parametrize(("source", "shown", "code"), HEADERS)
 def test_a_compound_statement_is_shown_by_its_header(source, shown, code):
     text = text_of(source)

@@ -72,6 +72,13 @@ def test_missions_are_scored_in_portions_that_fit_into_memory(
     assert found.new == ()
 
 
+def test_columns_that_have_the_wanted_type_are_not_copied() -> None:
+    column: Any = SimpleNamespace(to_numpy=lambda: kept)
+    kept = np.arange(3, dtype=np.int64)
+    assert partitions._values(column, np.int64) is kept
+    assert partitions._values(column, np.float64).tolist() == [0.0, 1.0, 2.0]
+
+
 def mission(number: int, cells: tuple[tuple[int, ...], ...], visited: list[tuple[int, int, int]]) -> Row:
     """Return a mission whose list of two sites has visits (cell, site, count); None for the cell is the start."""
     states = [START] + [1 + 2 * cell + site for cell, site, _ in visited]

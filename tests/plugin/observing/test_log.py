@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 from random import Random
 
 import pytest
 
 from pytest_tarl.errors import LogError
-from pytest_tarl.observing.frames import MAGIC, LogFile, encoded, records
+from pytest_tarl.observing.frames import MAGIC, LogFile, encoded, framed, records
 
 RECORDS = [{"kind": "steps", "number": number, "text": "ä" * number} for number in range(5)]
 
@@ -22,6 +24,14 @@ def written(path: Path, some: list[dict[str, object]]) -> bytes:
         log.append(record)
     log.close()
     return path.read_bytes()
+
+
+def test_records_are_compressed_at_the_fastest_level_since_the_node_continues_meanwhile() -> None:
+    record = encoded({"kind": "start", "n": 1})
+    payload = record[len(framed(b"")) :]
+    assert record == framed(payload)
+    assert json.loads(zlib.decompress(payload)) == {"kind": "start", "n": 1}
+    assert payload[1] == 1  # the byte in which zlib notes its level; 0x5e, 0x9c and 0xda are slower ones
 
 
 def test_appended_records_are_read_in_order(tmp_path: Path) -> None:

@@ -52,6 +52,26 @@ def judged(
     return accept(drifted, nominal, designed, seeds(at), REFERENCE, RISK)
 
 
+def test_each_world_knows_its_next_seeds_before_it_runs_the_first_of_them() -> None:
+    """Workers can then start these episodes early."""
+    known: dict[str, list[int]] = {"repaired": [], "designed": []}
+    ran: dict[str, list[int]] = {"repaired": [], "designed": []}
+
+    def watched(name: str, mean: float, seed: int) -> World:
+        inner = world(mean, seed=seed).run
+
+        def run(episode: int) -> Outcome:
+            assert episode in known[name]
+            ran[name].append(episode)
+            return inner(episode)
+
+        return World(run, known[name].extend)
+
+    assert judged(watched("repaired", DESIGNED, 0), None, 0, watched("designed", DESIGNED, 7)).accepted
+    assert ran == known
+    assert len(ran["repaired"]) >= LOOKS[0]
+
+
 def test_a_repair_that_restores_the_designed_reward_is_accepted() -> None:
     found = judged(world(DESIGNED), world(DESIGNED, seed=1))
     assert found.accepted

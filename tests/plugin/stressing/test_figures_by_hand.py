@@ -156,6 +156,13 @@ def test_a_cell_is_undecided_within_two_standard_deviations(
     assert map_figure.answer(margin, spread) == expected
 
 
+def test_a_map_whose_rows_lack_standard_deviations_is_neither_drawn_nor_described() -> None:
+    torn = replace(SQUARE, spreads=SQUARE.spreads[:1])
+    for show in (map_figure.map_figure, map_figure.map_words):
+        with pytest.raises(ValueError, match="shorter"):
+            show(stress(margin_map=torn))
+
+
 def test_a_map_is_drawn_with_its_first_row_at_the_bottom() -> None:
     failures = (combined(mud=2.0, slope=0.5), combined(mud=2.0, camera=1.0))
     drawn = map_figure.map_figure(stress(margin_map=SQUARE, combinations=failures))
