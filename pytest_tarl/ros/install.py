@@ -15,6 +15,7 @@ from pytest_tarl.ros.environment import set_variables, variables_restored
 from pytest_tarl.ros.eventloops import virtual_event_loops
 from pytest_tarl.ros.exiting import exits_of_nodes
 from pytest_tarl.ros.hosttime import virtual_host_time
+from pytest_tarl.ros.interpreter_state import interpreter_kept
 from pytest_tarl.ros.keyboard import terminals
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.installed import asked_kind, installed_kind
@@ -24,6 +25,7 @@ from pytest_tarl.ros.missing import as_read_by, refuse, unsupported_module
 from pytest_tarl.ros.opencv_windows import windows_discarded
 from pytest_tarl.ros.reexports import is_reexported, reexported
 from pytest_tarl.ros.siblings import generated, has_configurations, is_generated, sibling
+from pytest_tarl.ros.signals import signals_of_nodes
 from pytest_tarl.ros.standins import MISSING, STANDALONE, STANDINS, TALKING
 from pytest_tarl.ros.threads import threads_as_tasks
 from pytest_tarl.stale_modules import holders
@@ -227,6 +229,8 @@ def standins_installed(
             windows_discarded(),
             variables_restored(),
             exits_of_nodes(),
+            signals_of_nodes(),
+            interpreter_kept(),
         ):
             yield
     finally:

@@ -264,7 +264,16 @@ class Scheduler:
             return StuckNodeError("A node never waits.")
         return task.process.spins(blame.of_frame(task.worker.gr_frame))
 
-    def _resume(self, task: Task, woken: bool) -> None:
+    def interrupt(self, task: Task, error: BaseException) -> None:
+        """Raise an exception at the place where a task waits. Call this outside tasks."""
+        if task.parked:
+            task.parked = False
+            task.ticket += 1
+            self._resume(task, True, error)
+        elif not task.done:  # ready to run: it waits again after it has run
+            self.later(partial(self.interrupt, task, error))
+
+    def _resume(self, task: Task, woken: bool, error: BaseException | None = None) -> None:
         if task.done:
             return
         worker = task.worker
@@ -281,7 +290,10 @@ class Scheduler:
             outer, outer_hooks = _get_running_loop(), sys.get_asyncgen_hooks()
             _set_running_loop(task.loop)
             sys.set_asyncgen_hooks(*task.asyncgen_hooks)
-        worker.switch(woken)
+        if error is None:
+            worker.switch(woken)
+        else:
+            worker.throw(error)
         if self.keeps_loops:
             task.loop, task.asyncgen_hooks = _get_running_loop(), tuple(sys.get_asyncgen_hooks())
             _set_running_loop(outer)
