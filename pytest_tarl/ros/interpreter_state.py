@@ -19,8 +19,8 @@ def _for_others(close: Callable[[], None]) -> Callable[[], None]:
 
 @contextmanager
 def interpreter_kept() -> Iterator[None]:
-    """Let a node's `close()` of a standard stream do nothing, and restore the recursion limit."""
-    limit = sys.getrecursionlimit()
+    """Let a node's `close()` of a standard stream do nothing; restore the recursion limit and removed import paths."""
+    limit, paths, finders = sys.getrecursionlimit(), [*sys.path], [*sys.meta_path]
     kept = []
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError):  # None, or a stream without settable attributes
@@ -30,6 +30,8 @@ def interpreter_kept() -> Iterator[None]:
         yield
     finally:
         sys.setrecursionlimit(limit)
+        sys.path.extend(one for one in paths if one not in sys.path)
+        sys.meta_path.extend(one for one in finders if one not in sys.meta_path)
         for stream in kept:
             with suppress(AttributeError):
                 del stream.close

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.errors import NodeError, UnsupportedApiError
+from pytest_tarl.ros.interpreter_state import interpreter_kept
 from tests.plugin.ros.conftest import Start
 from tests.plugin.tank import changed
 
@@ -175,6 +176,18 @@ def test_streams_stay_open_and_the_recursion_limit_is_restored(start: Start) -> 
     assert not sys.stdout.closed
     assert not sys.stderr.closed
     ros.close()
+
+
+def test_import_paths_and_finders_that_a_node_removed_come_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    paths, finders = [*sys.path], [*sys.meta_path]
+    monkeypatch.setattr(sys, "path", [*paths])
+    monkeypatch.setattr(sys, "meta_path", [*finders])
+    with interpreter_kept():
+        sys.path[:] = ["/opt/node", paths[-1]]
+        sys.meta_path.clear()
+    assert sys.path[:2] == ["/opt/node", paths[-1]]
+    assert {*sys.path} == {*paths, "/opt/node"}
+    assert sys.meta_path == finders
 
 
 def test_a_forked_child_that_comes_back_to_the_scheduler_is_ended_with_a_sentence(
