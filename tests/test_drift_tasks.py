@@ -122,7 +122,7 @@ def test_the_second_half_of_the_tasks_has_every_kind_of_defect() -> None:
     }
 
 
-def test_the_third_set_has_every_kind_of_defect_and_states_where_drifts_occur() -> None:
+def test_third_set_has_every_kind_of_defect() -> None:
     third = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_3"]
     kinds = [known["kind"] for known in third]
     assert {kind: kinds.count(kind) for kind in kinds} == {

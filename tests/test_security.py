@@ -107,9 +107,7 @@ def test_no_module_uses_pickle_to_read_data() -> None:
 
 
 @pytest.mark.parametrize("workers", [pytest.param("1", marks=slow), "2"])
-def test_a_run_opens_no_connection_and_writes_only_in_the_folder_of_tarl(
-    tmp_path: Path, workers: str
-) -> None:
+def test_run_opens_no_connection_and_writes_only_in_its_folder(tmp_path: Path, workers: str) -> None:
     project = tmp_path / "project"
     project.mkdir()
     (project / "keeper.py").write_text(NODE)

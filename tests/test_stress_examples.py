@@ -84,17 +84,13 @@ def test_several_entries_move_together_from_nominal_to_the_drift(sizes: ModuleTy
     assert rollout.value(0.25) == {"low": 0.75, "high": 1.75}
 
 
-def test_the_only_default_of_the_world_is_the_nominal_value_of_a_number(
-    sizes: ModuleType, tmp_path: Path
-) -> None:
+def test_nominal_value_is_the_only_default_of_a_world(sizes: ModuleType, tmp_path: Path) -> None:
     rollout, near, far = sizes.sized(staged(tmp_path, _test_of_a_lever, 0.75), "drift")
     assert (near, far) == (0.25, 0.75)
     assert rollout.value(0.5) == 0.5
 
 
-def test_the_nominal_value_that_a_test_states_comes_first_and_may_be_whole(
-    sizes: ModuleType, tmp_path: Path
-) -> None:
+def test_stated_nominal_value_comes_first(sizes: ModuleType, tmp_path: Path) -> None:
     (tmp_path / "test_steps.py").write_text("delay = int(tarl_drift or 0)\n")
     rollout, near, far = sizes.sized(staged(tmp_path, _test_of_a_lever, 2), "drift")
     assert (near, far, rollout.value(1.4)) == (0.0, 2.0, 1)

@@ -30,14 +30,14 @@ def test_an_outcome_that_occurs_only_with_recording_counts_as_a_change(different
     assert different([plain, {**plain, "b": failed}], {**plain, "b": failed}) == []
 
 
-def test_a_test_that_runs_only_with_recording_or_only_without_counts_as_a_change(different) -> None:  # type: ignore[no-untyped-def]
+def test_outcome_only_with_or_without_recording_is_a_change(different) -> None:  # type: ignore[no-untyped-def]
     plain = {"a": ["call passed"], "b": ["call passed"]}
     assert different([plain], {"a": plain["a"]}) == ["b"]
     assert different([{"a": plain["a"]}], plain) == ["b"]
 
 
 @pytest.mark.parametrize(("failing", "left"), [({3}, []), (set(), ["a.py::test"])])
-def test_a_file_with_a_changed_outcome_runs_again_without_recording_until_this_outcome_occurs(
+def test_changed_file_runs_again_without_recording(
     suites: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, failing: set[int], left: list[str]
 ) -> None:
     passed, failed = ["call passed"], ["call failed"]

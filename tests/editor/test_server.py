@@ -185,7 +185,7 @@ async def test_columns_count_utf16_units(client: LanguageClient, tmp_path: Path)
     assert found[0].range.start == lsp.Position(PUBLISH, 16)
 
 
-async def test_code_lenses_name_the_topics_that_supply_data_or_conditions_of_a_publish_call(
+async def test_code_lens_lists_the_topics_behind_a_publish_call(
     client: LanguageClient, tmp_path: Path
 ) -> None:
     await diagnostics(client, uri(tmp_path), 2)

@@ -80,7 +80,7 @@ def ran(folder: Path, *flags: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.skipif(not os.environ.get("TARL_SLOW"), reason="half a minute of CPU time; set TARL_SLOW=1")
-def test_a_drift_of_a_launched_system_is_repaired_in_the_package_at_fault(tmp_path: Path) -> None:
+def test_drift_of_a_launched_system_is_repaired_in_the_right_package(tmp_path: Path) -> None:
     copy = tmp_path / "workspace"
     shutil.copytree(EXAMPLES / "workspace", copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
     recorded = ran(copy, "--tarl-record", "--tarl-episodes=30")

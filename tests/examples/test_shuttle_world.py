@@ -106,7 +106,7 @@ def test_only_missions_across_the_patch_are_late_in_mud() -> None:
 
 
 @pytest.mark.parametrize("edits", [IN_PATCH, BY_POSITION], ids=["terrain", "position"])
-def test_a_higher_gain_on_the_muddy_ground_suffices_and_is_harmless_in_the_designed_world(
+def test_higher_gain_fixes_mud_and_harms_nothing_else(
     edits: dict[str, str],
 ) -> None:
     designed = [mission(seed).total for seed in SEEDS]

@@ -177,9 +177,7 @@ def test_code_that_earlier_versions_reported_wrongly_has_no_findings(snippet, tm
 
 
 @pytest.mark.parametrize("condition", ['if="$(env REAL)"', 'unless="$(env REAL)"', ""])
-def test_a_node_that_is_started_under_a_condition_does_not_count_as_a_second_publisher(
-    condition, tmp_path, capsys
-):
+def test_conditional_node_is_no_second_publisher(condition, tmp_path, capsys):
     text = known_rules()["TARL305"].INVALID[0].replace("<node ", f"<node {condition} ", 1)
     found = reported(capsys, str(workspace(tmp_path, text)))
     assert [one["code"] for one in found] == ([] if condition else ["TARL305"])

@@ -44,7 +44,7 @@ def test_fingerprints_depend_on_topic_callback_class_place_and_kind(example, sou
     assert fingerprint(changed(flow, source, sink, **parts), "p").digest() != fingerprint(flow, "p").digest()
 
 
-def test_a_fingerprint_names_the_ros_package_or_the_python_package_or_the_script(example):
+def test_fingerprint_names_the_package_or_the_script(example):
     flow = example.flow()
     assert fingerprint(flow, "shuttle").package == "shuttle"
     assert fingerprint(changed(flow, {"module": "robot.nodes.follow"}), "").package == "robot.nodes"
@@ -56,7 +56,7 @@ def test_the_fingerprint_of_a_method_that_subscribes_names_its_class(example):
     assert fingerprint(changed(example.flow(), {"qualname": "main"}), "").owner == ""
 
 
-def test_a_fingerprint_with_more_flows_than_were_accepted_makes_all_its_flows_new(example):
+def test_fingerprint_with_additional_flows_is_new(example):
     finding = replace(example.finding(), fingerprint="a")
     assert [f.status for f in subtract([finding, finding], {"a": 2})] == ["accepted", "accepted"]
     assert [f.status for f in subtract([finding], {"a": 2})] == ["accepted"]
@@ -71,7 +71,7 @@ def test_an_implicit_flow_that_becomes_explicit_is_new(example):
     assert [f.status for f in subtract([implicit, explicit], accepted)] == ["accepted", "new"]
 
 
-def test_vanished_flows_are_dropped_and_flows_of_files_that_were_not_read_are_kept(entry):
+def test_vanished_flows_are_dropped_except_in_unread_files(entry):
     twice = replace(entry, count=2)
     other = replace(entry, fingerprint=replace(entry.fingerprint, source="scan"), files=("unread.py",))
     found = Counter([entry.fingerprint.digest()])
@@ -92,7 +92,7 @@ def test_a_baseline_with_any_names_is_read_back_as_it_was_written(entry, tmp_pat
     assert {e.count for e in baseline.entries} == {1, 2}
 
 
-def test_the_file_has_one_flow_per_line_and_does_not_depend_on_order(entry):
+def test_file_has_one_sorted_flow_per_line(entry):
     other = replace(entry, fingerprint=replace(entry.fingerprint, source="scan"))
     text = dumps(merged([entry, other], ()))
     assert text == dumps(merged([other, entry], ()))

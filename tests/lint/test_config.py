@@ -107,7 +107,7 @@ def test_a_byte_order_mark_before_the_settings_is_ignored(in_directory):
     assert resolve(Options()).tf2
 
 
-def test_a_settings_file_of_another_name_has_its_keys_at_the_top_level(in_directory):
+def test_settings_file_has_its_keys_at_the_top_level(in_directory):
     in_directory({"lint.toml": 'ignore = ["TARL102"]\n'})
     assert resolve(Options(config=Path("lint.toml"))).ignore == ("TARL102",)
 

@@ -96,7 +96,7 @@ TWO_WHEELS = """
         ("self.left = Wheel(0.16); self.name = str(self.left)", "msg.data", {}),
     ],
 )
-def test_constants_passed_to_the_constructor_of_a_used_object_of_the_program_are_operands(
+def test_constructor_arguments_of_used_objects_are_operands(
     setup: str, use: str, expected: dict[str, list[str]], tmp_path: Path
 ) -> None:
     analysis = analysed(tmp_path, node=TWO_WHEELS.format(setup=setup, use=use))

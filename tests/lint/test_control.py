@@ -29,7 +29,7 @@ def dependence(text: str) -> dict[int, set[tuple[int, str]]]:
     return {lines[n]: {(lines[b], way) for b, way in branches} for n, branches in control.direct.items()}
 
 
-def test_both_branches_of_an_if_depend_on_its_condition_and_later_statements_do_not():
+def test_both_branches_depend_on_the_condition_but_later_code_does_not():
     found = dependence("""
         if a:
             b()
@@ -49,7 +49,7 @@ def test_statements_after_a_loop_do_not_depend_on_it():
     assert (found[1], found[2], found[3]) == ({(1, "body")}, {(1, "body")}, set())
 
 
-def test_the_loop_body_after_the_exit_of_an_endless_loop_depends_on_the_exit_condition():
+def test_loop_body_after_an_exit_depends_on_the_exit_condition():
     found = dependence("""
         while True:
             if a:
@@ -85,7 +85,7 @@ def test_a_handler_depends_on_the_condition_of_the_raise():
     assert found[7] == set()
 
 
-def test_the_rest_of_a_loop_body_depends_on_the_condition_of_a_continue_statement():
+def test_loop_body_after_a_continue_depends_on_its_condition():
     found = dependence("""
         for x in y:
             if x:

@@ -90,9 +90,7 @@ WAYS = [
 
 @settings(max_examples=40)
 @given(function=st.sampled_from(CARRYING + SILENT), handed=st.sampled_from(WAYS))
-def test_the_result_of_a_library_call_includes_the_result_of_a_callable_argument(
-    tmp_path_factory, function, handed
-):
+def test_library_result_includes_the_result_of_a_callable_argument(tmp_path_factory, function, handed):
     directory = tmp_path_factory.mktemp("node")
     text = NODE.replace("{callable}", function).replace("{handed}", handed)
     found = {(f.source.topics, f.kind) for f in analysed(directory, node=text).flows}
@@ -100,6 +98,6 @@ def test_the_result_of_a_library_call_includes_the_result_of_a_callable_argument
 
 
 @pytest.mark.parametrize("handed", [way for way in WAYS if "0.0" in way])
-def test_a_library_may_pass_the_other_arguments_of_a_call_to_a_callable_argument(tmp_path, handed):
+def test_library_may_pass_arguments_to_a_callable_argument(tmp_path, handed):
     text = NODE.replace("{callable}", "self.idle").replace("{handed}", handed.replace("0.0", "self.other"))
     assert {f.source.topics for f in analysed(tmp_path, node=text).flows} == {("other",)}

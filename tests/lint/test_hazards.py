@@ -67,7 +67,7 @@ def test_a_limited_command_is_not_a_hazard(body):
     assert lines("TARL202", inside(RANGE, body, 8)) == []
 
 
-def test_the_hazard_is_reported_at_the_computation_and_not_at_the_publish_call():
+def test_hazard_is_reported_at_the_computation():
     body = "speed = 0.3 * msg.range\ncmd.linear.x = speed"
     assert lines("TARL202", inside(RANGE, body, 8)) == [13]
 
@@ -145,7 +145,7 @@ def test_a_callback_without_effect_is_a_hazard(body, more, found):
     assert len(lines("TARL203", WATCH.format(body=body, more=more))) == found
 
 
-def test_a_topic_name_is_not_a_use_of_an_attribute_of_that_name():
+def test_topic_name_is_not_an_attribute_use():
     text = WATCH.format(body="self.scan = msg", more="").replace("/scan", "scan")
     assert len(lines("TARL203", text)) == 1
     assert lines("TARL204", SENDER.format(more="").replace('"/a"', '"pub"')) == [6]

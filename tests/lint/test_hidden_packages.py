@@ -89,7 +89,7 @@ def test_a_launch_file_of_a_hidden_package_can_be_named(
     assert [one.file.name for one in system.problems] == ["CATKIN_IGNORE"]
 
 
-def test_the_option_for_all_launch_files_leaves_out_launch_files_of_hidden_packages(folder: Path) -> None:
+def test_all_launch_files_option_skips_hidden_packages(folder: Path) -> None:
     found = launched(folder, ALL)
     assert sorted(one.file.name for one in found) == sorted(WAYS)
     assert not any("legs" in str(problem.file) for one in found for problem in one.problems)

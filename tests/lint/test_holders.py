@@ -42,14 +42,14 @@ def test_a_stored_message_contains_all_its_fields(tmp_path):
     assert analysis.holders("/odom", "ranges.3", site(analysis, TOTAL))[0] == "self.odom.ranges[3]"
 
 
-def test_changed_values_and_values_of_other_topics_are_not_used_in_the_condition_of_a_repair(tmp_path):
+def test_repair_condition_uses_no_changed_values(tmp_path):
     analysis = analysed(tmp_path, node=KEEPER)
     found = analysis.holders("/odom", "pose.position.y", site(analysis, TOTAL))
     assert "self.scaled" not in found
     assert analysis.holders("/scan", "pose.position.y", site(analysis, TOTAL)) == ()
 
 
-def test_values_of_an_earlier_message_are_not_used_in_the_condition_of_a_repair(tmp_path):
+def test_repair_condition_uses_no_earlier_message(tmp_path):
     analysis = analysed(tmp_path, node=KEEPER)
     place = site(analysis, "self.y = msg.pose.position.y")
     assert analysis.holders("/odom", "pose.position.y", place) == (

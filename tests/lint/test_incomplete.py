@@ -109,7 +109,7 @@ BRIDGED = (
 )
 
 
-def test_the_steps_of_a_node_do_not_depend_on_other_importers_of_its_modules(monkeypatch):
+def test_node_steps_ignore_other_importers(monkeypatch):
     def steps(texts):
         modules = [Module(p, p.removesuffix(".py"), t, ast.parse(t)) for p, t in texts.items()]
         flows = [f for f in engine.analyse(modules, Config()) if f.sink.span.path == "node.py"]

@@ -95,7 +95,7 @@ def test_flows_pass_through_an_installed_base_class(workspace):
     assert not (workspace / "ran").exists()
 
 
-def test_without_the_setting_the_base_class_is_not_followed_and_the_report_names_it(workspace):
+def test_without_the_setting_an_installed_base_class_is_not_followed(workspace):
     (workspace / "pyproject.toml").write_text("[tool.tarl-lint]\n")
     result = linted(workspace)
     assert pairs(result) == set()

@@ -108,7 +108,7 @@ def test_python_dash_m_runs_no_other_file_of_the_working_directory(place, nodes,
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="the switch came with Python 3.11")
 @pytest.mark.parametrize("switch", ["-P", "-I"])
-def test_with_the_safe_path_option_python_runs_no_file_of_the_working_directory(place, nodes, switch):
+def test_safe_path_option_runs_no_local_file(place, nodes, switch):
     done = run([sys.executable, switch, "-m", "tarl_lint", *ARGUMENTS, "--jobs", "2", "../nodes"], place)
     assert done.returncode == 0, done.stderr
     assert marked(place) == set()

@@ -141,9 +141,7 @@ def test_xml_groups_keep_launch_configurations(tmp_path: Path) -> None:
             """),
     ],
 )  # fmt: skip
-def test_substitutions_in_a_parameter_file_are_replaced_if_the_launch_file_allows_it(
-    tmp_path: Path, name: str, text: str
-) -> None:
+def test_substitutions_in_a_parameter_file_need_permission(tmp_path: Path, name: str, text: str) -> None:
     one, two = launched(tmp_path, text, name).nodes
 
     assert values(one) == {"~frame": "left_cam", "~rate": 5}

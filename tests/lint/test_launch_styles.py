@@ -375,7 +375,7 @@ def test_a_submodule_of_an_imported_package_is_read(tmp_path: Path) -> None:
     assert "demo.nodes.made(kind)" in (HEAD + dedent(text)).splitlines()[node.line - 1]
 
 
-def test_a_file_with_the_name_of_a_library_does_not_replace_the_library(tmp_path: Path) -> None:
+def test_file_named_like_a_library_does_not_replace_it(tmp_path: Path) -> None:
     (tmp_path / "launch").mkdir()
     for name in ("launch", "os", "launch_ros"):
         (tmp_path / "launch" / f"{name}.py").write_text("raise SystemExit\n")
@@ -436,7 +436,7 @@ def test_the_items_of_a_dict_can_be_remappings(tmp_path: Path) -> None:
     assert node.remaps == (("in", "/scan"), ("out", "/cmd"))
 
 
-def test_a_launch_file_that_changes_data_read_from_a_file_does_not_affect_later_launch_files(
+def test_launch_file_data_changes_do_not_affect_later_files(
     tmp_path: Path,
 ) -> None:
     text = """

@@ -81,7 +81,7 @@ RCLPY = """
         ("pass", 0),
     ],
 )
-def test_access_without_the_lock_to_state_shared_by_a_callback_and_a_timer_is_reported(body, found):
+def test_unlocked_access_to_state_of_callback_and_timer_is_reported(body, found):
     assert len(lines("TARL201", inside(ROSPY, body, 12))) == found
 
 
@@ -110,14 +110,14 @@ def test_an_unlocked_read_in_a_custom_thread_is_also_reported_in_rclpy():
     assert len(lines("TARL201", text)) == 1
 
 
-def test_a_call_without_the_lock_is_reported_if_other_calls_hold_the_lock():
+def test_unlocked_call_is_reported_if_others_lock():
     text = inside(ROSPY, "with self.lock:\n    self.send()\nself.send()", 12)
     (line,) = lines("TARL201", text)
     assert dedent(text).strip("\n").split("\n")[line - 1].strip() == "self.send()"
     assert "on_timer" in dedent(text).strip("\n").split("\n")[line - 4]
 
 
-def test_unlocked_access_to_a_container_is_reported_but_not_to_an_object_with_its_own_lock():
+def test_unlocked_container_access_is_reported():
     text = inside(ROSPY, "self.store.append(2.0)", 12).replace("self.value = msg.data", "self.store.clear()")
     for made, found in (("[]", 1), ("deque()", 1), ("Store()", 0), ("store", 0)):
         assert len(lines("TARL201", text.replace("self.value = 0.0", f"self.store = {made}"))) == found
@@ -194,14 +194,12 @@ TWO_PARTS = """
     ("written", "found"),
     [("self.x = msg.data\nself.y = 2.0 * msg.data", 2), ("self.x = msg.data", 0)],
 )
-def test_reading_several_values_without_the_lock_is_reported_if_a_callback_writes_them_under_one_lock(
-    written, found
-):
+def test_reading_several_values_without_the_lock_is_reported(written, found):
     body = "\n".join(f"{' ' * 16}{line}" for line in written.split("\n"))
     assert len(lines("TARL201", TWO_PARTS.format(written=body))) == found
 
 
-def test_an_access_is_reported_if_ros_and_other_functions_call_the_function_that_contains_it(tmp_path):
+def test_access_in_a_function_called_by_ros_is_reported(tmp_path):
     """A callback run by ROS without the lock has no calling line; no line of another file may be reported."""
     files = {
         "a_first.py": "import rospy\n\n\ndef name():\n    return 'x'\n",
@@ -303,7 +301,7 @@ def test_a_lock_that_no_function_waits_for_protects_no_state(asked, found):
     assert len(lines("TARL201", ACTIVITY.format(asked=asked))) == found
 
 
-def test_a_lock_protects_state_if_at_least_one_function_waits_for_the_lock():
+def test_lock_counts_if_some_function_waits_for_it():
     waits = "with self.lock:\n                self.pub.publish(sum(self.seen.values()))"
     both = ACTIVITY.format(asked="False").replace("self.pub.publish(sum(self.seen.values()))", waits)
     assert lines("TARL201", both) == []
@@ -350,7 +348,7 @@ COROUTINE = """
         ("self.loop.run_until_complete(self.keep(msg))", 1),
     ],
 )
-def test_a_coroutine_that_runs_later_does_not_hold_the_lock_of_its_caller(runs, found):
+def test_coroutine_that_runs_later_does_not_hold_the_lock(runs, found):
     assert len(lines("TARL201", COROUTINE.format(runs=runs))) == found
 
 

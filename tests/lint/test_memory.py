@@ -50,7 +50,7 @@ def test_a_store_through_a_pointer_to_one_object_is_a_strong_update(ctx):
     assert heap.read_field(ctx, obj, "x").deps == OTHER
 
 
-def test_a_store_through_a_pointer_to_one_of_two_objects_is_a_weak_update(ctx):
+def test_store_to_one_of_two_objects_is_a_weak_update(ctx):
     one, two = instance(ctx, "a"), instance(ctx, "b")
     updates.write_field(ctx, pointer(one), "x", Value(DATA))
     updates.write_field(ctx, Value(pts=frozenset([one, two])), "x", Value(OTHER))
@@ -85,7 +85,7 @@ def test_closing_a_layer_discards_its_stores(ctx):
     assert heap.read_field(ctx, obj, "x").deps == DATA | OTHER
 
 
-def test_the_newest_object_of_an_allocation_site_is_separate_from_the_older_objects(ctx, frame):
+def test_newest_object_of_a_site_is_separate(ctx, frame):
     newest = recency.allocate(ctx, "lib", frame, "site")
     ctx.store.put((newest, "x"), Value(DATA))
     holder = instance(ctx, "holder")
@@ -99,7 +99,7 @@ def test_the_newest_object_of_an_allocation_site_is_separate_from_the_older_obje
     assert heap.read_field(ctx, newest, "x").deps == frozenset()
 
 
-def test_data_inside_an_object_is_found_at_any_depth_without_data_of_unrelated_objects(ctx):
+def test_nested_data_is_found_without_unrelated_objects(ctx):
     outer, inner, empty = (instance(ctx, key) for key in "abc")
     updates.write_field(ctx, pointer(inner), "x", Value(DATA))
     updates.write_field(ctx, pointer(outer), "inner", pointer(inner))
@@ -117,7 +117,7 @@ def test_parts_without_data_add_nothing_to_the_data_of_their_message(ctx):
 
 
 @pytest.mark.parametrize("name", [heap.ANY, heap.LENGTH, heap.KEYS, heap.HELD, heap.SENT])
-def test_a_summary_field_of_a_library_object_is_not_a_part_of_the_object(ctx, name):
+def test_summary_field_is_not_part_of_a_library_object(ctx, name):
     obj = recency.intern(ctx, "lib", "matrix")
     assert heap.read_field(ctx, obj, name) is BOTTOM
     assert not obj.subs
@@ -172,7 +172,7 @@ def carrying(graph, frame, key):
     return graph.node(key, Place(frame, None, "assign", (0, 0, 0, 0)), frozenset())
 
 
-def test_content_depends_on_a_carrier_only_if_the_carrier_contained_it_when_passed_on(ctx, frame):
+def test_content_depends_on_carriers_that_contained_it(ctx, frame):
     graph = ctx.graph
     item, carrier = carrying(graph, frame, "item"), carrying(graph, frame, "carrier")
     content, carriers = frozenset([item]), frozenset([carrier])

@@ -39,7 +39,7 @@ def test_the_types_of_fields_are_the_types_in_the_definitions() -> None:
     assert stated == {(name, field): expected[name][field] for name, field in stated}
 
 
-def test_the_fields_of_types_whose_copies_are_tracked_are_the_same_in_every_release() -> None:
+def test_tracked_types_have_the_same_fields_in_every_release() -> None:
     for store in (Stores.ROS1_NOETIC, Stores.ROS2_JAZZY):
         expected = {
             name: set(fields) - {"seq"} for name, fields in defined([store]).items() if name in FIELDS
@@ -64,7 +64,7 @@ def test_the_types_of_elements_are_the_types_in_the_definitions() -> None:
     assert elements() == ELEMENTS
 
 
-def test_fields_that_exist_in_only_one_release_of_ros_are_absent_in_the_other() -> None:
+def test_fields_of_one_ros_release_are_absent_in_another() -> None:
     for release, store in (("1", Stores.ROS1_NOETIC), ("2", Stores.ROS2_JAZZY)):
         expected = {
             name: set(fields) for name, fields in defined([store]).items() if name in BY_RELEASE[release]

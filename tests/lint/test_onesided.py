@@ -88,11 +88,11 @@ def test_cases_that_the_prefilter_skips_have_no_findings():
         ("import rospy", "import rospy\n    rospy.Service('s', Empty, lambda request: 1)"),
     ],
 )
-def test_a_module_that_publishes_is_analysed_if_it_may_subscribe_or_have_a_hazard(changed):
+def test_publishing_module_is_analysed_if_it_may_subscribe(changed):
     assert not skipped(TALKER.replace(*changed))
 
 
-def test_a_module_that_subscribes_is_analysed_if_its_callback_may_have_no_effect():
+def test_subscribing_module_is_analysed_if_a_callback_may_be_empty():
     assert not skipped(LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data"))
     assert skipped(LISTENER.replace("rospy.loginfo(msg.data)", "pass").replace("on(msg)", "on(_)"))
 
@@ -118,12 +118,12 @@ LOCKED = """
     """
 
 
-def test_a_module_that_always_or_never_holds_the_lock_of_its_state_is_not_analysed():
+def test_module_with_consistent_locking_is_not_analysed():
     assert skipped(LOCKED)
     assert skipped(LOCKED.replace("with self.lock", "if True"))
 
 
-def test_calling_a_method_of_a_lock_does_not_call_a_function_of_the_same_name():
+def test_lock_method_is_not_a_function_of_the_same_name():
     """`Condition.wait` does not call the module's `wait`, unless the attribute may hold something else."""
     waiting = LOCKED.replace("threading.Lock()", "threading.Condition()").replace(
         "rospy.loginfo(self.last)",
@@ -147,7 +147,7 @@ def test_calling_a_method_of_a_lock_does_not_call_a_function_of_the_same_name():
         ),
     ],
 )
-def test_a_module_is_analysed_if_it_uses_state_without_the_lock_of_that_state(changed):
+def test_module_with_unlocked_state_is_analysed(changed):
     text = LOCKED.replace(*changed)
     assert text != LOCKED
     assert not skipped(text)
@@ -161,7 +161,7 @@ def test_a_module_is_analysed_if_it_uses_state_without_the_lock_of_that_state(ch
         ("def on(msg):\n    last = msg.data\non(rospy.wait_for_message('a', String))", False),
     ],
 )
-def test_an_empty_function_is_a_callback_only_if_it_is_passed_as_an_argument(text, run):
+def test_empty_function_is_a_callback_only_as_an_argument(text, run):
     assert skipped("import rospy\n" + text) is not run
 
 
@@ -195,7 +195,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 @pytest.mark.parametrize("rules_out", [True, False, None])
 @pytest.mark.parametrize("text", [LISTENER, TALKER])
-def test_the_file_of_a_new_rule_states_which_nodes_the_rule_cannot_report(tmp_path, rules_out, text):
+def test_file_of_a_new_rule_names_irrelevant_nodes(tmp_path, rules_out, text):
     """A rule without `ruled_out` runs on every node, also on nodes that only subscribe or only publish."""
     package = tmp_path / "tarl_lint"
     shutil.copytree(Path(tarl_lint.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))

@@ -153,7 +153,7 @@ def test_a_parameter_with_different_arguments_has_no_value(tmp_path):
     assert [(span.line, span.column) for span in operand.definitions] == [(7, 10), (8, 10)]
 
 
-def test_a_number_that_limits_a_value_is_an_operand_but_the_limited_value_is_not(tmp_path):
+def test_limit_is_an_operand_but_the_limited_value_is_not(tmp_path):
     analysis = analysed(
         tmp_path,
         node="""
@@ -333,7 +333,7 @@ def deciding_operands(directory, text):
     }
 
 
-def test_the_limit_of_a_watchdog_is_an_operand_although_no_message_reaches_it(tmp_path):
+def test_watchdog_limit_is_an_operand_without_messages(tmp_path):
     found = deciding_operands(
         tmp_path,
         """
@@ -368,7 +368,7 @@ def test_the_limit_of_a_watchdog_is_an_operand_although_no_message_reaches_it(tm
     assert not any(code.startswith("patience") for code in found)  # the definition of a constant is not a use
 
 
-def test_set_points_and_waiting_times_are_operands_even_if_no_message_reaches_them(tmp_path):
+def test_set_points_and_waiting_times_are_operands_without_messages(tmp_path):
     found = deciding_operands(
         tmp_path,
         """

@@ -49,7 +49,7 @@ def codes(tmp_path, monkeypatch, capsys):
     return of
 
 
-def test_flows_to_the_response_of_the_same_service_are_counted_and_shown_on_request(codes, capsys):
+def test_flows_to_the_own_response_are_shown_on_request(codes, capsys):
     assert codes() == ["TARL101"]
     assert sorted(codes("--extend-select", "TARL103")) == ["TARL101", "TARL103"]
     assert codes("--select", "TARL103") == ["TARL103"]

@@ -131,7 +131,7 @@ rospy.spin()
 """
 
 
-def test_if_an_object_now_represents_several_objects_only_entry_points_that_stored_to_it_run_again():
+def test_only_storing_entry_points_run_again_after_a_merge():
     machine = Counted(ROBOTS)
     with_deep_stack(machine.link)
     assert any(obj.many and obj.name == "Robot" for obj in machine.objects.values())

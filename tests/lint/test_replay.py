@@ -121,7 +121,7 @@ def obj(store):
     return recency.intern(linked("x = 1\n"), "sequence", "a")
 
 
-def test_a_read_belongs_to_a_call_unless_the_call_has_already_stored_to_that_key(store, obj):
+def test_read_of_a_stored_key_does_not_belong_to_the_call(store, obj):
     store.get((obj, "x"))
     store.put((obj, "x"), Value(DATA))
     store.put((obj, "y"), Value(DATA))
@@ -129,7 +129,7 @@ def test_a_read_belongs_to_a_call_unless_the_call_has_already_stored_to_that_key
     assert store.reads.keys == {(obj, "x")}
 
 
-def test_a_store_in_one_branch_does_not_hide_a_read_in_another_branch(store, obj):
+def test_store_in_one_branch_does_not_hide_a_read_in_another(store, obj):
     store.push()
     store.put((obj, "x"), Value(DATA))
     store.pop()
@@ -137,7 +137,7 @@ def test_a_store_in_one_branch_does_not_hide_a_read_in_another_branch(store, obj
     assert store.reads.keys == {(obj, "x")}
 
 
-def test_reads_of_a_call_count_as_reads_of_its_caller_unless_the_caller_stored_to_that_key(store, obj):
+def test_reads_of_a_call_count_for_its_caller(store, obj):
     inner, outer = Reads(), Reads()
     inner.keys |= {(obj, "x"), (obj, "y")}
     outer.written.add((obj, "x"))
@@ -185,7 +185,7 @@ def test_a_replay_equals_an_execution():
     assert flows(linked(HELPERS, checking=True)) == flows(linked(HELPERS))
 
 
-def test_a_replay_equals_an_execution_with_fewer_passes_of_a_loop_that_raises():
+def test_replay_equals_execution_with_fewer_loop_passes():
     linked(RAISING, checking=True)
 
 
@@ -238,7 +238,7 @@ def test_a_field_with_merged_values_passes_on_all_its_values(number, made, kind)
 
 
 @pytest.mark.parametrize("added", ["msg.data", "msg.data + 1"])
-def test_merging_the_values_of_a_field_adds_no_steps_to_flows_of_other_sources(added):
+def test_merging_field_values_adds_no_steps_to_other_flows(added):
     found = flows(linked(many(MANY + 4).replace("msg.data", added)))
     for flow in found:
         (name,) = flow.source.topics
@@ -248,7 +248,7 @@ def test_merging_the_values_of_a_field_adds_no_steps_to_flows_of_other_sources(a
         assert f"def on_{name[2:]}" in "".join(s.code for s in flow.steps)
 
 
-def test_work_grows_linearly_with_the_number_of_values_that_are_added_to_a_merged_field():
+def test_merging_field_values_takes_linear_time():
     totals = [linked(many(number)).total for number in (MANY, 2 * MANY)]
     assert totals[1] < 2.3 * totals[0]
 

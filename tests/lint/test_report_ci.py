@@ -77,7 +77,7 @@ def suites(result: Result) -> ElementTree.Element:
     return ElementTree.fromstring(text_of("junit", result))
 
 
-def test_junit_has_a_suite_for_each_file_and_a_case_for_each_finding(example):
+def test_junit_has_a_suite_per_file_and_a_case_per_finding(example):
     root = suites(everything(example))
     assert root.attrib == {"name": "tarl-lint", "tests": "5", "failures": "2", "errors": "0", "skipped": "2"}
     assert [(s.get("name"), s.get("tests")) for s in root] == [("node.py", "4"), ("old.py", "1")]

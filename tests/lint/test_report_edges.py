@@ -29,7 +29,7 @@ LONGEST = 12  # steps that are shown in full
         (MOST_RESULTS + 1, [Cut(MOST_RESULTS, MOST_STEPS), Cut(MOST_RESULTS, 0)]),
     ],
 )
-def test_a_report_that_is_too_large_is_cut_step_by_step_until_it_is_empty(results, smaller):
+def test_too_large_report_is_cut_step_by_step(results, smaller):
     assert list(islice(cuts(results), len(smaller))) == smaller
     assert list(cuts(results))[-1] == Cut(0, 0)
 
@@ -84,7 +84,7 @@ def framed(text: str, span: Span, view: View = View()) -> list[str]:  # noqa: B0
     return [plain(line).rstrip() for line in frame(text.split("\n"), span, "", view)]
 
 
-def test_a_frame_shows_the_lines_before_the_span_and_carets_below_its_lines():
+def test_code_frame_has_lines_before_the_span_and_carets():
     text = "\n\na = 1\nf(\n  x,\n)\nb"
     assert framed(text, Span("n", 4, 1, 6, 2)) == [
         "   3 │ a = 1",
@@ -100,7 +100,7 @@ def test_a_frame_shows_the_lines_before_the_span_and_carets_below_its_lines():
     assert framed(text, Span("n", 7, 1, 9, 2))[-2:] == ["   7 │ b", "     │ ^"]
 
 
-def test_the_frame_of_a_long_statement_shows_its_first_lines_and_its_last_line():
+def test_frame_of_a_long_statement_has_its_first_and_last_lines():
     text = "\n".join("x" for _ in range(20))
     exact, taller = (framed(text, Span("n", 1, 1, end, 2)) for end in (TALL, TALL + 1))
     assert len(exact) == 2 * TALL

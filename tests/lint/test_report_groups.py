@@ -104,7 +104,7 @@ def test_names_in_the_overview_are_wrapped_and_long_lists_are_abbreviated():
     assert _few(()) == "?"
 
 
-def test_a_finding_that_fails_the_run_is_an_error_regardless_of_its_own_level():
+def test_finding_that_fails_the_run_is_an_error():
     result = SimpleNamespace(failing={"TARL101"})
     assert [own_level(code) for code in ("TARL101", "TARL201", "TARL001")] == ["note", "warning", "warning"]
     assert [level(code, result) for code in ("TARL101", "TARL102", "TARL201")] == ["error", "note", "warning"]
@@ -245,7 +245,7 @@ def test_control_characters_and_direction_marks_are_escaped():
     assert Counter(wide.text)["\n"] == 2
 
 
-def test_the_report_counts_omitted_findings_and_shortened_flows_only_if_there_are_any():
+def test_omitted_findings_are_counted_if_there_are_any():
     assert sarif._left_out(0) == []
     (told,) = sarif._left_out(2)
     assert told["message"]["text"] == "2 findings omitted: servers limit the size of a report."
@@ -267,7 +267,7 @@ def test_new_findings_come_before_accepted_findings_and_severe_findings_before_m
     assert keys == [(False, 0), (False, 1), (False, 2), (True, 0), (True, 2)]
 
 
-def test_the_shown_settings_of_a_wrapper_contain_only_the_argument_positions_that_were_set():
+def test_wrapper_settings_contain_only_positions_that_were_set():
     assert settings._wrapper(Wrapper("a.b", "rospy.Timer")) == "rospy.Timer"
     assert settings._wrapper(Wrapper("a.b", "rospy.Timer", topic=0, callback="on")) == {
         "like": "rospy.Timer",

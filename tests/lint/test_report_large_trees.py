@@ -77,7 +77,7 @@ def test_no_finding_is_lost_by_grouping(paths: list[str]) -> None:
 
 
 @pytest.mark.parametrize("most", [1, 4, 5, 6, 9])
-def test_at_most_the_requested_number_of_flows_is_shown_and_the_rest_is_counted(many, most):
+def test_flows_beyond_the_requested_number_are_counted(many, most):
     shown = lines(many, most_flows=most)
     assert sum("TARL10" in line for line in shown) == most
     left = [int(line.split()[1]) for line in shown if line.startswith("    and ")]

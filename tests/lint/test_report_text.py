@@ -53,7 +53,7 @@ def test_a_single_flow_is_shown_in_full(example, result_of):
     assert shown(result_of(example.finding())) == ONE_FLOW
 
 
-def test_flows_into_one_publish_call_share_a_code_frame_and_their_names_are_aligned(example, result_of):
+def test_flows_into_one_call_share_a_code_frame(example, result_of):
     text = shown(result_of(example.finding(), example.finding("implicit", "a_longer_topic")))
     assert text.count("pub.publish(vel)") == 1
     assert "    TARL101 explicit from odom (Odometry)            line 22, callback\n" in text
@@ -156,7 +156,7 @@ def test_a_multi_line_step_is_joined(example, result_of):
     )
 
 
-def test_long_lines_are_cut_on_a_terminal_and_written_in_full_to_a_file(example, result_of):
+def test_long_lines_are_cut_only_on_a_terminal(example, result_of):
     result = result_of(example.finding())
     narrow = shown(result, View(width=40)).splitlines()
     assert all(len(line) <= 40 for line in narrow if "│" in line or "assign" in line or "register" in line)

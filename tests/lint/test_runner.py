@@ -55,7 +55,7 @@ def test_flows_are_found_with_fingerprint_and_text(example, in_directory, lint):
     assert (result.statistics.files, result.statistics.lines) == (1, example.text.count("\n"))
 
 
-def test_a_file_that_cannot_be_parsed_is_an_error_and_the_rest_is_linted(example, in_directory, lint):
+def test_unparsable_file_is_an_error_and_the_rest_is_linted(example, in_directory, lint):
     in_directory({"node.py": example.text, "broken.py": "def f(:\n", "old.py": "print 'x'\n"})
     result = lint()
     assert [(e.path, e.line) for e in result.errors] == [("broken.py", 1), ("old.py", 1)]
@@ -149,9 +149,7 @@ def test_accepted_flows_stay_accepted_when_lines_move(example, in_directory, lin
     assert result.vanished == ()
 
 
-def test_if_a_flow_is_added_to_an_accepted_fingerprint_all_its_flows_are_new(
-    example, in_directory, lint, accept
-):
+def test_flow_added_to_an_accepted_fingerprint_makes_all_new(example, in_directory, lint, accept):
     root = in_directory({"node.py": example.text})
     accept()
     twice = example.text.replace(

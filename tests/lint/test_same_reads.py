@@ -72,7 +72,7 @@ def hidden(store: Store, obj: Obj, name: str, value: Value) -> None:
     store.pop()
 
 
-def test_a_call_does_not_see_a_field_that_was_added_on_another_path(store, obj):
+def test_field_added_on_another_path_is_invisible(store, obj):
     reads = noted(store, obj)
     hidden(store, obj, "x", BOTTOM)
     assert same(store, reads)
@@ -80,7 +80,7 @@ def test_a_call_does_not_see_a_field_that_was_added_on_another_path(store, obj):
     assert not same(store, reads)
 
 
-def test_a_call_that_waits_reads_what_other_entry_points_store_in_new_fields(store, obj):
+def test_waiting_call_reads_new_fields_of_other_entry_points(store, obj):
     reads = noted(store, obj)
     hidden(store, obj, "x", BOTTOM)
     reads.wait(0)
@@ -97,7 +97,7 @@ def test_a_call_does_not_see_data_that_was_stored_on_another_path(store, obj):
     assert not same(store, reads)
 
 
-def test_a_call_sees_new_data_in_an_object_that_its_object_points_to(store, obj):
+def test_call_sees_new_data_in_an_indirect_object(store, obj):
     inner = Obj("lib", "inner")
     store.put((obj, "x"), pointer(inner))
     reads = noted(store, obj)
@@ -106,7 +106,7 @@ def test_a_call_sees_new_data_in_an_object_that_its_object_points_to(store, obj)
     assert not same(store, reads)
 
 
-def test_a_call_sees_data_stored_anywhere_in_the_object_that_encloses_a_part(store, obj):
+def test_call_sees_data_anywhere_in_the_enclosing_object(store, obj):
     part = obj.sub("x")
     reads = noted(store, part)
     store.put((obj, "*"), Value(DATA))
@@ -128,7 +128,7 @@ def test_a_call_always_sees_a_change_in_the_description_of_an_object(store, obj)
     assert not same(store, reads)
 
 
-def test_a_call_is_not_replayed_if_an_object_that_it_creates_is_already_referenced(store):
+def test_call_is_not_replayed_if_its_new_object_is_referenced(store):
     obj, holder = Obj("lib", "made"), Obj("instance", "holder")
     reads = Reads(objects={obj: NEW})
     hidden(store, obj, BORN, BOTTOM)
@@ -139,7 +139,7 @@ def test_a_call_is_not_replayed_if_an_object_that_it_creates_is_already_referenc
     assert not same(store, reads)  # creating the object would first merge the held one into the older ones
 
 
-def test_a_pointer_to_an_object_counts_only_if_the_call_can_see_the_holder_of_the_pointer(store, obj):
+def test_pointer_counts_only_if_the_call_sees_its_holder(store, obj):
     one, other = Obj("instance", "one"), Obj("instance", "other")
     store.put((one, "x"), pointer(obj))
     reads = Reads(holders={obj: len(obj.holders)})

@@ -61,7 +61,7 @@ rospy.Subscriber("in", F, on)
 """
 
 
-def test_data_of_one_caller_reaches_another_caller_only_if_both_share_a_call_context(tmp_path, monkeypatch):
+def test_data_passes_between_callers_only_in_a_shared_context(tmp_path, monkeypatch):
     (tmp_path / "node.py").write_text(TWO)
     assert [f.sink.topics for f in analyse([tmp_path]).flows] == [("out",)]
     monkeypatch.setattr(context_selection, "SEPARATE_STATEMENTS", -1)
@@ -108,7 +108,7 @@ rospy.Subscriber("in", F, on)
 
 
 @pytest.mark.usefixtures("sharing")
-def test_the_conditions_of_other_callers_do_not_decide_the_result_of_a_shared_call(tmp_path):
+def test_conditions_of_other_callers_do_not_decide_a_shared_result(tmp_path):
     (tmp_path / "node.py").write_text(RESULT)
     assert [(f.sink.topics, f.kind) for f in analyse([tmp_path]).flows] == [(("chosen",), "implicit")]
 

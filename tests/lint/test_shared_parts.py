@@ -60,14 +60,14 @@ def graphs(draw):
 
 
 @given(graphs(), SETS, SETS)
-def test_chosen_constants_are_the_same_if_the_result_for_a_subset_is_given(graph, subset, more):
+def test_subset_result_gives_the_same_constants(graph, subset, more):
     choices = Choices(graph)
     known = Made(subset, choices.made_there(subset))
     assert choices.made_there(subset | more, known) == choices.made_there(subset | more)
 
 
 @given(graphs(), SETS, SETS)
-def test_statements_and_their_order_are_the_same_if_the_result_for_a_subset_is_given(graph, subset, more):
+def test_subset_result_gives_the_same_statements(graph, subset, more):
     texts = {"n.py": TEXT}
     statements = Statements(graph, texts, (_reversed(graph.data), _reversed(graph.control)))
     parts = Parts(statements, Choices(graph))

@@ -79,7 +79,7 @@ def counted(condition: int) -> SimpleNamespace:
     )
 
 
-def test_the_length_of_a_container_is_data_if_elements_are_added_under_conditions_of_the_source():
+def test_length_is_data_if_elements_are_added_conditionally():
     found = tracer(counted(condition=0)).reach(SimpleNamespace(nodes={0}))
     assert (found.data, found.counted) == ({0, 1, 2, 4}, {2: {1}})
     other = tracer(counted(condition=5)).reach(SimpleNamespace(nodes={0}))
@@ -114,7 +114,7 @@ def test_constants_chosen_by_conditions_are_found_with_their_nodes():
     assert Choices(of).made_there({6, 9}) == set()
 
 
-def test_a_graph_node_copied_without_conditions_is_traced_back_to_the_original_node():
+def test_node_copy_without_conditions_leads_to_the_original():
     under = frozenset({(9, 1)})
     of = graph(10, data={7: [8]}, branches={5: under, 7: ()}, stands_for={8: 5})
     assert made_alongside(of) == {7: [5]}
@@ -163,7 +163,7 @@ def test_the_calls_between_two_frames_are_listed_outermost_first():
     assert calls(frame(outer, None), outer) == []
 
 
-def test_conditions_that_choose_a_value_are_listed_with_the_frame_of_the_value():
+def test_conditions_have_the_frame_of_the_chosen_value():
     frames = [frame() for _ in range(4)]
     places = [SimpleNamespace(frame=one) for one in frames]
     under = frozenset({(3, 1), (3, 0)})
@@ -265,7 +265,7 @@ def test_a_call_is_found_by_its_start_and_end_position():
     assert isinstance(found.scope(inner, (ast.Module,)), ast.Module)
 
 
-def test_by_default_a_wrapper_takes_its_arguments_in_the_order_of_the_function_that_it_wraps():
+def test_wrapper_takes_the_arguments_of_the_wrapped_function():
     usual = facts((Wrapper("a.b", "rospy.Subscriber"),))["a.b"]
     other = facts((Wrapper("a.b", "rospy.Subscriber", topic=4, callback="on", type=0),))["a.b"]
     assert usual.api == other.api == "a.b"

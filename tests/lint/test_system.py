@@ -79,7 +79,7 @@ def test_flows_pass_through_one_program_that_is_launched_twice(workspace, capsys
     assert code == 0
 
 
-def test_names_are_resolved_in_the_namespace_of_the_node_and_private_names_below_its_name(workspace, capsys):
+def test_names_are_resolved_in_the_node_namespace(workspace, capsys):
     file = launched(
         workspace, f'<group ns="left">{relay("one", "~raw", "/out")}{relay("two", "raw", "done")}</group>'
     )
@@ -99,7 +99,7 @@ def test_arguments_choose_what_is_launched(workspace, capsys):
     ]
 
 
-def test_a_node_whose_code_is_not_read_may_connect_the_topics_in_its_remappings(workspace, capsys):
+def test_unread_node_may_connect_topics_of_its_remappings(workspace, capsys):
     driver = '<node pkg="base" type="mux" name="mux"><remap from="i" to="/raw"/><remap from="o" to="/safe"/></node>'
     file = launched(workspace, relay("one", "/scan", "/raw") + driver + relay("two", "/safe", "/cmd_vel"))
     _, out, _ = run(capsys, "--launch", file)
@@ -339,7 +339,7 @@ rospy.spin()
 """
 
 
-def test_the_row_of_a_node_is_followed_by_its_remappings_parameters_services_and_actions(workspace, capsys):
+def test_node_row_is_followed_by_its_remappings_and_services(workspace, capsys):
     write(workspace, {"arm/scripts/server.py": SERVER, "arm/config/limits.yaml": "pid: {p: 1.0, i: 0.1}\n"})
     body = (
         '<group ns="left"><node pkg="arm" type="server.py" name="server"><remap from="reset" to="/wheels/reset"/>'

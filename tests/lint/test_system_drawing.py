@@ -32,7 +32,7 @@ def test_a_chain_of_nodes_has_one_name_in_each_column():
     assert drawn() == []
 
 
-def test_a_topic_without_publisher_is_drawn_before_its_reader_and_a_node_after_its_inputs():
+def test_topic_without_publisher_is_drawn_before_its_reader():
     assert drawn(*LINE, "t late > n two")[2] == ["t b", "t late"]
     early = drawn(*LINE, "t x > n three", "n three > t c")
     assert early[:2] == [["t a", "t x"], ["n one", "n three"]]

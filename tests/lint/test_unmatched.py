@@ -26,7 +26,7 @@ SAID = "pyproject.toml: 'sources' names 'robot.nothing', which no file mentions:
         ("", False),
     ],
 )
-def test_a_name_in_the_settings_matches_its_definition_or_a_use_that_names_its_module(text, met):
+def test_settings_match_a_definition_or_a_qualified_use(text, met):
     assert bool(unmatched(Config(sources=("robot.bus.listen",)), [text])) is not met
 
 

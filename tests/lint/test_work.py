@@ -292,7 +292,7 @@ rospy.spin()
 """
 
 
-def test_a_library_does_not_pass_an_instance_to_the_call_of_this_instance():
+def test_library_does_not_pass_an_instance_to_its_own_call():
     layers = ", ".join(f"conv{n}=lib.Conv({n})" for n in range(8))
     body = "\n".join(f"        x = self.conv{n}(x)" for n in range(8))
     machine = work(NET.replace("LAYERS", layers).replace("BODY", body))

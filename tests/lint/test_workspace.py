@@ -350,7 +350,7 @@ def test_a_hidden_package_is_found_by_name_and_path_but_not_listed(tmp_path: Pat
     assert found.package("elsewhere") is None
 
 
-def test_a_visible_package_takes_precedence_over_a_hidden_one_of_the_same_name(tmp_path: Path) -> None:
+def test_visible_package_wins_over_a_hidden_one(tmp_path: Path) -> None:
     write(package(tmp_path / "a_fork", "arm"), CATKIN_IGNORE="")
     package(tmp_path / "arm", "arm")
     found = read(tmp_path)

@@ -7,7 +7,7 @@ import pytest
 from tests.plugin.tank import ONLINE, RECORD, changed, result
 
 
-def test_if_the_worlds_share_no_cells_the_sensor_with_new_values_is_left_out(tank: pytest.Pytester) -> None:
+def test_sensor_with_new_values_is_left_out_without_common_cells(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "bins=10)]", 'bins=10), Sensor("tank")]')
     changed(
         tank,

@@ -55,7 +55,7 @@ def run():
 """
 
 
-def test_the_error_for_a_program_that_only_starts_a_node_says_which_files_to_name(tmp_path: Path) -> None:
+def test_error_for_a_starter_program_says_which_files_to_name(tmp_path: Path) -> None:
     package = tmp_path / "src" / "robot"
     (package / "maths").mkdir(parents=True)
     texts = {

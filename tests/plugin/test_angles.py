@@ -26,7 +26,7 @@ def test_the_hull_of_cells_on_both_sides_takes_the_shorter_arc() -> None:
 
 
 @given(st.floats(-20, 20))
-def test_a_condition_holds_in_the_bins_of_its_arc_after_any_number_of_turns(
+def test_condition_holds_in_its_arc_after_any_turns(
     value: float,
 ) -> None:
     code = condition(Guard((ACROSS,)), {"heading": Reading("theta")}, {})

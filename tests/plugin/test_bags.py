@@ -152,7 +152,7 @@ def test_topics_of_the_node_are_not_replayed_but_available_to_the_monitor(
     assert found["sites"][0]["online"] != 0  # the node ran
 
 
-def test_without_a_monitor_the_judge_is_used_and_without_both_there_is_an_error(
+def test_replay_without_monitor_or_judge_is_an_error(
     deployed: pytest.Pytester,
 ) -> None:
     judge = "    judge=lambda before, after: -abs(1.0 - after['level']),\n"

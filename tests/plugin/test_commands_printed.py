@@ -24,7 +24,7 @@ def printed(result: pytest.RunResult, label: str) -> list[str]:
     return shlex.split(line.partition(label)[2])
 
 
-def test_printed_commands_name_the_test_from_the_current_folder_and_repeat_the_options(
+def test_printed_commands_name_the_test_from_the_folder(
     nested: pytest.Pytester,
 ) -> None:
     test = "tank/test_tank.py::test_fills"

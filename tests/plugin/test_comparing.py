@@ -57,13 +57,13 @@ def test_tables_are_extended_to_the_cells_of_both_worlds() -> None:
     assert np.flatnonzero(np.isfinite(after[:, 0])).tolist() == [3]
 
 
-def test_the_table_has_the_cells_of_the_region_or_all_other_cells_if_there_is_no_region() -> None:
+def test_table_has_the_cells_of_the_region_or_the_rest() -> None:
     assert _rows(Region(cells=((4,),), novel=((1,),)), ((2,),), CELLS).tolist() == [0, 2]
     assert _rows(Region(), ((2,), (7,)), CELLS).tolist() == [1, 3]
     assert _rows(Region(left=((4,),)), (), CELLS).tolist() == []
 
 
-def test_the_region_of_the_paper_has_the_cells_of_all_lists_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_paper_region_has_the_cells_of_all_lists(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(comparing, "paper_region", lambda before, _: np.array(before))
     tables: Any = [([3, 1], 0), ([1, 0], 0)]
     assert _paper_cells(tables, CELLS) == ((1,), (2,), (7,))
@@ -75,7 +75,7 @@ def test_lists_without_sites_are_left_out() -> None:
     assert [(one.offline, one.online) for one in found.slices] == [(2.0, 0.0), (2.0, 0.0)]
 
 
-def test_the_sizes_of_a_drift_in_the_figure_are_the_sizes_in_the_episodes() -> None:
+def test_figure_has_the_drift_sizes_of_the_episodes() -> None:
     marked: Any = SimpleNamespace(drifts={"mud": Drift({"depth": Drift.range(1.0, 3.0), "kind": 2})})
     assert _sizes(marked, None, (1, 2)) == {}
     (found,) = _sizes(marked, "mud", (1, 2, 3)).values()

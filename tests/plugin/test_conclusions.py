@@ -79,7 +79,7 @@ def test_github_gets_an_annotation_at_the_line_of_the_culprit(
     assert "%0AWhere: level" in message
 
 
-def test_several_drifts_are_shown_in_a_table_but_a_single_drift_is_not(drifting: pytest.Pytester) -> None:
+def test_only_several_drifts_are_shown_in_a_table(drifting: pytest.Pytester) -> None:
     told = drifting.runpytest(*ONLINE)
     told.stdout.fnmatch_lines(
         [

@@ -107,7 +107,7 @@ def test_a_silent_sensor_or_node_is_reported_but_the_episode_is_usable(
         {"faults": ACTIVE},
     ],
 )
-def test_missing_output_is_not_an_error_under_a_drift_or_in_a_test_without_nodes(
+def test_missing_output_under_a_drift_is_no_error(
     changed: dict[str, Any],
 ) -> None:
     assert problem(**changed) == ended(**changed).silence() == ""
@@ -126,7 +126,7 @@ def test_a_replayed_mission_needs_a_step_and_a_reward() -> None:
     assert problem(replay=replay(True), **silent) == ended(replay=replay(True), **silent).silence() == ""
 
 
-def test_a_node_that_a_drift_silences_is_noted_unless_a_fault_is_declared_for_it() -> None:
+def test_silenced_node_is_noted_unless_a_fault_is_declared() -> None:
     (note,) = ended(drifted=True, ros=SILENT).notes()
     assert "published nothing in a whole episode of this drift" in note
     assert "it subscribes to /joy, /odom" in note

@@ -45,7 +45,7 @@ def test_a_random_stream_depends_on_its_name_and_not_on_earlier_draws(tmp_path):
         assert tarl.rng("wind").random(4).tolist() != first
 
 
-def test_a_cell_begins_when_its_last_sensor_gets_a_value_and_lasts_until_the_next_message(tmp_path):
+def test_cell_lasts_until_the_next_message(tmp_path):
     with episode(tmp_path) as (tarl, recorder):
         tarl.message("odom", SimpleNamespace(data=3.5))
         tarl.reward(0.0)
@@ -131,7 +131,7 @@ STARTS: dict[str, dict[str, Any]] = {
 
 
 @pytest.mark.parametrize("words", STARTS)
-def test_a_wrong_argument_of_start_is_the_error_of_the_test_and_not_of_the_node(tmp_path, words):
+def test_wrong_argument_of_start_is_a_test_error(tmp_path, words):
     (tmp_path / "node.py").write_text("1 / 0\n")
     with episode(tmp_path) as (tarl, _), pytest.raises(SettingsError, match=f"^tarl.start: {words}"):
         tarl.start("node.py", **STARTS[words])

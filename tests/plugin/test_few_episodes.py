@@ -15,7 +15,7 @@ def test_few_episodes_show_only_large_losses() -> None:
     assert scaled != note
 
 
-def test_the_note_is_absent_if_there_are_many_episodes_or_all_are_equal() -> None:
+def test_many_or_equal_episodes_give_no_note() -> None:
     assert not detectable(np.arange(30.0))
     assert not detectable(np.full(20, 0.1))
 

@@ -65,7 +65,7 @@ def test_a_package_that_wraps_rospy_is_instrumented_in_every_episode(
 
 
 @pytest.mark.usefixtures("quick_acceptance")
-def test_a_constant_in_a_helper_is_changed_if_the_node_lies_outside_rootdir(
+def test_constant_of_a_helper_outside_rootdir_is_changed(
     tank: pytest.Pytester,
 ) -> None:
     source = tank.path / "src"

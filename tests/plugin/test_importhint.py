@@ -33,7 +33,7 @@ def test_import_errors_that_do_not_involve_ros_get_no_hint(tank: pytest.Pytester
     told.stdout.no_fnmatch_line("*TARL*")
 
 
-def test_the_error_of_a_test_inside_a_package_that_imports_ros_advises_moving_the_test(
+def test_package_test_that_imports_ros_should_move(
     tank: pytest.Pytester,
 ) -> None:
     package = tank.mkpydir("robot")
@@ -50,7 +50,7 @@ def test_the_error_of_a_test_inside_a_package_that_imports_ros_advises_moving_th
     )
 
 
-def test_the_advice_appears_if_the_package_tries_another_import_after_the_import_of_ros(
+def test_advice_appears_after_a_second_import(
     tank: pytest.Pytester,
 ) -> None:
     package = tank.mkpydir("robot")
@@ -66,7 +66,7 @@ def test_the_advice_appears_if_the_package_tries_another_import_after_the_import
     result.stdout.fnmatch_lines(["*whose __init__.py imports ROS*"])
 
 
-def test_another_error_in_the_package_of_a_test_gets_no_advice_on_ros(tank: pytest.Pytester) -> None:
+def test_unrelated_package_error_gets_no_ros_advice(tank: pytest.Pytester) -> None:
     package = tank.mkpydir("robot")
     (package / "__init__.py").write_text("import no_such_driver\n")
     tests = package / "tests"

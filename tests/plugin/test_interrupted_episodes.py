@@ -97,7 +97,7 @@ class System:
         patch.setattr(faulthandler, "register", lambda number, **how: self.registered.append(how))
 
 
-def test_a_limit_of_cpu_time_is_set_as_soon_as_one_is_given(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cpu_limit_is_set_when_given(monkeypatch: pytest.MonkeyPatch) -> None:
     system = System(monkeypatch, signal.SIG_DFL, stderr=7)
     held_interpreter.allow(0.0)
     assert (system.timers, system.registered) == ([], [])
@@ -108,7 +108,7 @@ def test_a_limit_of_cpu_time_is_set_as_soon_as_one_is_given(monkeypatch: pytest.
 
 
 @pytest.mark.parametrize(("handler", "stderr"), [(signal.SIG_IGN, 7), (print, 7), (signal.SIG_DFL, None)])
-def test_no_limit_of_cpu_time_is_set_with_another_signal_handler_or_without_standard_error(
+def test_cpu_limit_needs_standard_error_and_free_signals(
     handler: Any, stderr: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def none(_: int) -> int:

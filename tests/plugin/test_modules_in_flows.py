@@ -58,7 +58,7 @@ def test_a_name_leads_to_the_file_that_it_is_imported_from(
     assert list(uses(found, tmp_path)) == expected
 
 
-def test_if_a_flow_has_several_statements_in_a_file_the_first_statement_counts(tmp_path: Path) -> None:
+def test_first_statement_of_a_flow_in_a_file_counts(tmp_path: Path) -> None:
     files = {"node.py": "import gains\n", "other.py": "import math\n", "gains.py": ""}
     sites = (
         step("other.py", 2, "x = gains.KP"),
@@ -144,7 +144,7 @@ def test_flows_pass_through_packages_that_are_not_named(tmp_path: Path) -> None:
     assert {one.span.path for one in named(tmp_path, "node.py").sites} == {"node.py"}
 
 
-def test_a_file_that_a_flow_reaches_only_through_another_file_is_named_with_that_file(tmp_path: Path) -> None:
+def test_indirectly_reached_file_is_named_with_its_importer(tmp_path: Path) -> None:
     files = {
         "node.py": NODE.replace(
             "from robot import scaled", "from middle import Middle\nscaled = Middle().scaled"

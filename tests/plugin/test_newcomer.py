@@ -92,9 +92,7 @@ def test_a_run_without_marked_tests_says_that_nothing_was_run(
 
 
 @pytest.mark.parametrize("helper", [False, True])
-def test_a_mistake_outside_a_test_is_reported_in_one_sentence_with_its_line(
-    tank: pytest.Pytester, helper: bool
-) -> None:
+def test_mistake_outside_a_test_is_reported_with_its_line(tank: pytest.Pytester, helper: bool) -> None:
     wrong = "from pytest_tarl.ros import message_type\n\nScan = message_type('sensor_msgs/msg/Skan')\n"
     tank.makepyfile(**({"laser": wrong, "test_laser": "import laser\n"} if helper else {"test_laser": wrong}))
     told = tank.runpytest("test_laser.py")
@@ -112,7 +110,7 @@ def test_the_verdict_is_the_failure_message(tank: pytest.Pytester) -> None:
     )
 
 
-def test_the_error_about_a_file_of_another_kind_does_not_advise_trusting_the_file(
+def test_file_of_another_kind_is_not_to_be_trusted(
     tank: pytest.Pytester,
 ) -> None:
     tank.runpytest(*RECORD)
@@ -127,7 +125,7 @@ def test_no_second_full_stop_is_added_to_a_failure_message(tank: pytest.Pytester
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*ZeroDivisionError*keeper.py, line*[!.]. Fix the node*"])
 
 
-def test_an_interrupt_caught_by_the_node_still_ends_the_run_and_keeps_the_old_recording(
+def test_interrupt_keeps_the_old_recording(
     tank: pytest.Pytester,
 ) -> None:
     tank.runpytest(*RECORD)

@@ -65,7 +65,7 @@ def test_a_failed_mission_is_distinguished_from_a_broken_test(error: BaseExcepti
         assert bool(failure) == bool(expected[1])
 
 
-def test_a_node_that_raises_an_exception_has_crashed_and_a_node_that_never_waits_is_stuck() -> None:
+def test_raising_node_crashed_and_waiting_free_node_is_stuck() -> None:
     run = ran(FAILED, error=NodeError("Node '/a' raised KeyError."))
     assert (run.passed, run.crashed, run.stuck, run.broken) == (False, True, False, "")
     run = ran(FAILED, error=StuckNodeError("Node '/a' never waits."))
@@ -93,7 +93,7 @@ def test_an_error_of_the_settings_or_an_unusable_episode_is_raised() -> None:
     assert ran(FAILED, error=KeyError("speed"), problem=problem).broken
 
 
-def test_a_skipped_test_is_skipped_with_its_reason_unless_a_bag_was_replayed() -> None:
+def test_skipped_test_is_skipped_unless_a_bag_was_replayed() -> None:
     skipped = report("setup", "skipped", ("t.py", 3, "Skipped: no arm"))
     with pytest.raises(pytest.skip.Exception, match="no arm"):
         ran(skipped)
@@ -102,7 +102,7 @@ def test_a_skipped_test_is_skipped_with_its_reason_unless_a_bag_was_replayed() -
     assert ran(skipped, replayed=True).passed
 
 
-def test_a_mark_for_an_expected_failure_does_not_change_the_result_of_a_mission() -> None:
+def test_xfail_mark_does_not_change_a_mission_result() -> None:
     run = ran(report(outcome="skipped", told="reason", wasxfail="reason"), error=AssertionError("too far"))
     assert (run.passed, run.broken) == (False, "")
     assert ran(report(outcome="failed", told="[XPASS(strict)] reason")).passed

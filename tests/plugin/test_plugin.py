@@ -133,7 +133,7 @@ def test_a_damaged_recording_is_reported(recorded: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["*is damaged*--tarl-record*"])
 
 
-def test_an_edited_node_loses_the_slices_of_edited_lines_and_keeps_its_verdict(
+def test_edited_node_loses_the_slices_of_edited_lines(
     recorded: pytest.Pytester,
 ) -> None:
     changed(recorded, "keeper", "missing = 1.0 - level", "missing = 1.0 - 1.0 * level")
@@ -208,7 +208,7 @@ def test_a_test_that_is_not_reproducible_is_reported(tank: pytest.Pytester) -> N
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*not reproducible*tarl.rng*"])
 
 
-def test_function_scoped_fixtures_are_fresh_in_every_episode_and_module_fixtures_are_shared(
+def test_function_fixtures_are_fresh_in_every_episode(
     tank: pytest.Pytester,
 ) -> None:
     tank.makeconftest(

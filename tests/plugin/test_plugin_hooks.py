@@ -70,7 +70,7 @@ def test_an_error_of_tarl_is_shown_in_one_sentence() -> None:
     assert reported(None)[1].longrepr == "traceback"
 
 
-def test_the_first_error_of_an_episode_is_kept_if_the_test_has_the_marker() -> None:
+def test_first_error_of_an_episode_is_kept() -> None:
     none: Any = None
 
     def kept(before: BaseException | None, marked: bool = True) -> Any:

@@ -112,7 +112,7 @@ def comparison(p_drift: float, p_loss: float, episodes: int = 20, tolerance: flo
     return Comparison("t", "mud", 0, (), (), (), verdict, Region(cells=((1,),)), (), totals, notes=("first",))
 
 
-def test_p_values_of_a_run_are_corrected_and_a_note_states_the_uncorrected_values() -> None:
+def test_p_values_of_a_run_are_corrected() -> None:
     one, other = corrected([comparison(0.01, 0.02), comparison(0.5, 0.6)], 0.05)
     assert (one.verdict.p_drift, one.verdict.p_loss) == pytest.approx((0.02, 0.04))
     assert (other.verdict.p_drift, other.verdict.p_loss) == pytest.approx((0.5, 0.6))
@@ -132,7 +132,7 @@ def test_a_single_comparison_stays_as_it_is() -> None:
     assert one == comparison(0.01, 0.02)
 
 
-def test_the_detectable_loss_follows_from_holms_first_step_but_is_at_least_the_tolerance() -> None:
+def test_detectable_loss_is_at_least_the_tolerance() -> None:
     one, _ = corrected([comparison(0.01, 0.02), comparison(0.5, 0.6)], 0.05)
     offline, online = (np.array(one.totals[world]) for world in ("offline", "online"))
     assert one.verdict.detectable_loss == detectable_loss(offline, online, 0.025)

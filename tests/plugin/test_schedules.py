@@ -48,6 +48,6 @@ def test_an_invalid_moment_or_duration_is_refused(shape: Any, at: Any, lasts: An
         profile(shape, at, lasts)
 
 
-def test_a_drift_may_begin_with_the_episode_and_a_step_has_no_duration() -> None:
+def test_drift_may_begin_with_the_episode() -> None:
     assert profile("step", 0) == Profile("step", 0.0, 0.0)
     assert profile("ramp", 0, 0.5) == Profile("ramp", 0.0, 0.5)

@@ -57,7 +57,7 @@ def test_comparisons_select_the_scenario_and_tests_that_lack_the_fixture() -> No
     assert not selecting.chosen(item("mud"), options("online", AS_WRITTEN))
 
 
-def test_the_error_for_a_drift_that_no_test_declares_names_the_declared_drifts() -> None:
+def test_error_for_an_undeclared_drift_names_the_declared() -> None:
     selecting.check_drift([item("wind"), item("mud")], options("online", "mud"))
     selecting.check_drift([], options("online", "mud"))
     selecting.check_drift([item("wind")], options("record", AS_WRITTEN))

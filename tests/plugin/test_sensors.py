@@ -32,9 +32,7 @@ def test_a_value_lies_in_the_interval_of_its_bin(value: float) -> None:
 @pytest.mark.parametrize(
     ("value", "index"), [(-1.0, 0), (-0.5, 1), (3.0, 7), (3.0001, 8), (-1.1, -1), (math.inf, 8)]
 )
-def test_an_edge_belongs_to_the_bin_above_but_the_last_edge_belongs_to_the_bin_below(
-    value: float, index: int
-) -> None:
+def test_edge_belongs_to_the_bin_above(value: float, index: int) -> None:
     assert X.bin(value) == index
 
 

@@ -296,7 +296,7 @@ def test_the_commands_that_apply_patches_are_the_last_lines(monkeypatch: pytest.
     assert warned(of) == []
 
 
-def test_the_report_is_as_wide_as_the_terminal_if_there_is_a_terminal() -> None:
+def test_report_is_as_wide_as_the_terminal() -> None:
     assert run(Terminal())._width() == 120
     assert run()._width() == PLAIN_WIDTH
     of = run()

@@ -58,7 +58,7 @@ def test_a_recording_stops_once_too_many_episodes_fail(
     assert ENOUGH_FAILURES == 5
 
 
-def test_the_error_about_too_many_failures_states_how_many_episodes_were_not_run() -> None:
+def test_error_states_how_many_episodes_were_not_run() -> None:
     settling = Settling(designated(), 20)
     run(settling, ".FFFFF")
     assert settling.failing == (
@@ -74,9 +74,7 @@ def test_a_confidence_allows_more_episodes() -> None:
     assert Settling(designated(confidence=0.95), MOST + 1).most == MOST + 1
 
 
-def test_with_a_confidence_a_recording_ends_when_the_rate_is_shown_and_all_requested_episodes_have_run() -> (
-    None
-):
+def test_confidence_recording_ends_when_the_rate_is_shown() -> None:
     sure = designated(min_success=0.5, confidence=0.95)
     # all of n missions succeed: the evidence is (2ⁿ⁺¹ - 1) / (n + 1), which reaches 20 at n = 7
     assert run(Settling(sure, 2), "." * 20) == 7

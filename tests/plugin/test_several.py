@@ -83,7 +83,7 @@ def project(tank: pytest.Pytester) -> pytest.Pytester:
     return tank
 
 
-def test_a_test_with_four_sensors_two_nodes_and_two_lists_is_recorded_and_compared(
+def test_test_with_four_sensors_is_recorded_and_compared(
     project: pytest.Pytester,
 ) -> None:
     project.runpytest("--tarl-record").assert_outcomes(passed=1)

@@ -31,7 +31,7 @@ seeds = st.integers(0, 2**63 - 1)
 
 
 @given(seeds)
-def test_an_episode_draws_all_directions_and_passes_on_the_directions_of_the_world(seed: int) -> None:
+def test_episode_draws_all_directions(seed: int) -> None:
     found = drawn(WORLD, "world", seed)
     assert found.keys() == {"mud", "camera"}
     assert 0.05 <= found["mud"] <= 1.0
@@ -146,7 +146,7 @@ def spaced(tank: pytest.Pytester) -> pytest.Pytester:
     return tank
 
 
-def test_recording_uses_the_nominal_point_of_a_space_and_comparing_draws_from_it(
+def test_recording_is_nominal_and_comparing_draws(
     spaced: pytest.Pytester,
 ) -> None:
     changed(spaced, "test_tank", "    tarl.start", '    print("PUMP", pump == 1.0)\n    tarl.start')

@@ -75,7 +75,7 @@ def test_annotations_are_written_last_and_only_on_github(monkeypatch: pytest.Mon
         assert written(found, "End.")[4:] == expected
 
 
-def test_the_rows_of_a_test_under_several_drifts_are_compared_in_a_table() -> None:
+def test_drifts_of_a_test_are_compared_in_a_table() -> None:
     row = ("t.py::test", "mud", "degraded", "1", "2", "3", "4", "5", "6", "7")
     from pytest_tarl.report.table import HEAD
 

@@ -48,7 +48,7 @@ def ran(project: pytest.Pytester) -> dict[str, int]:
     return {drift: int(one["episodes"]["online"]) for drift, one in results(project).items()}
 
 
-def test_an_undecided_comparison_gets_the_episodes_that_a_decided_one_did_not_need(
+def test_undecided_comparison_gets_spare_episodes(
     sharing: pytest.Pytester,
 ) -> None:
     told = sharing.runpytest("--tarl-online", "--tarl-total=80")

@@ -80,7 +80,7 @@ def test_events_of_one_step_are_ordered_by_thread() -> None:
     assert (found.flow.tolist(), found.thread.tolist()) == ([2.0, 1.0, 3.0], [0, 1, 1])
 
 
-def test_rewards_of_formulas_replace_those_of_the_log_if_there_is_one_for_each_step() -> None:
+def test_formula_rewards_replace_logged_rewards() -> None:
     assert joined(FIRST, by_formulas=[7.0, 8.0]).reward.tolist() == [7.0, 8.0]
     assert joined(FIRST, by_formulas=[7.0]).reward.tolist() == [0.5, 1.5]
     unknown = chunk([[0]], site=[0], flow=[1.0], step=[0], step_cell=[0, 0], reward=[np.nan, 1.0])

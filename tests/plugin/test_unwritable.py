@@ -211,7 +211,7 @@ def test_a_full_disk_and_a_read_only_tree_are_reported(
 
 
 @pytest.mark.skipif(not mounting(), reason="this user cannot mount a file system: unshare -rm is not allowed")
-def test_recording_on_a_full_disk_that_still_takes_empty_files_is_refused_before_the_first_episode(
+def test_recording_on_a_full_disk_is_refused_early(
     recorded: pytest.Pytester,
 ) -> None:
     changed(recorded, "test_tank", FIRST, f"{FIRST}\n    1 / 0")

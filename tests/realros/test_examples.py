@@ -46,7 +46,7 @@ def run(folder: Path, *options: str) -> str:
 
 
 @pytest.mark.parametrize(("example", "test", "repair"), HERE)
-def test_recording_comparing_and_repairing_an_example_gives_the_results_of_the_embedded_ros(
+def test_real_ros_gives_the_results_of_the_embedded_one(
     tmp_path: Path, example: str, test: str, repair: str
 ) -> None:
     digests = {}

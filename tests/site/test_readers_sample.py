@@ -35,7 +35,7 @@ def _project(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_each_kind_of_text_is_drawn_once_and_equal_seeds_give_equal_samples(tmp_path: Path) -> None:
+def test_equal_seeds_draw_equal_samples_of_every_kind(tmp_path: Path) -> None:
     _project(tmp_path)
     drawn = sample(tmp_path, 100, seed=1)
     assert sorted(drawn) == [

@@ -29,7 +29,7 @@ def ends(flows: tuple[Flow, ...]) -> set[tuple[str, tuple[str, ...], str]]:
     return {(flow.kind, flow.source.topics, ", ".join(flow.sink.topics)) for flow in flows}
 
 
-def test_each_use_of_a_helper_class_has_its_own_kind_and_message_type(tmp_path):
+def test_each_use_of_a_helper_class_has_its_own_type(tmp_path):
     node = HELPER + (
         "rospy.init_node('node')\n"
         "pub, log = rospy.Publisher('out', Float64), rospy.Publisher('log', Float64)\n"
@@ -69,7 +69,7 @@ def test_two_uses_of_one_topic_are_one_source(tmp_path):
      ("set([('left', double), ('right', half)])", {("left",), ("right",)})],
     ids=["in order", "in any order"],
 )  # fmt: skip
-def test_each_row_of_a_table_is_a_source_of_its_own_if_the_loop_is_unrolled(tmp_path, wanted, topics):
+def test_each_row_of_an_unrolled_loop_is_a_source(tmp_path, wanted, topics):
     node = (
         "import rospy\nfrom std_msgs.msg import Float64\n"
         "more, less = rospy.Publisher('more', Float64), rospy.Publisher('less', Float64)\n"
@@ -117,7 +117,7 @@ def test_a_topic_name_that_is_found_late_adds_no_second_source(tmp_path):
     assert [flow.source.topics for flow in analysed(tmp_path, node=node).flows] == [("early", "late")]
 
 
-def test_a_helper_call_with_an_unknown_topic_is_reported_only_where_it_adds_information(tmp_path):
+def test_helper_with_an_unknown_topic_is_reported_once(tmp_path):
     node = HELPER + (
         "rospy.init_node('node')\n"
         "pub, log = rospy.Publisher('out', Float64), rospy.Publisher('log', Float64)\n"
@@ -249,9 +249,7 @@ def test_a_publisher_that_is_chosen_by_data_depends_on_the_choice() -> None:
     }
 
 
-def test_a_helper_called_with_a_known_and_an_unknown_topic_has_a_separate_sink_for_the_data_of_the_unknown_topic() -> (
-    None
-):
+def test_known_and_unknown_topics_of_a_helper_have_separate_sinks() -> None:
     text = OUTPUT + (
         "known, chosen = Output('known'), Output(rospy.get_param('~name'))\n"
         "rospy.Subscriber('a', Float64, lambda msg: (known.send(msg.data), chosen.send(msg.data)))\n"

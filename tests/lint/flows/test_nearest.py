@@ -41,7 +41,7 @@ def test_every_request_gets_the_result_of_the_requested_nodes(requests):
         assert nearest.of(nodes, kind) == Total(nodes, sum(nodes))
 
 
-def test_the_result_for_the_intersection_of_two_sets_is_computed_once_and_reused_for_later_sets():
+def test_intersection_of_two_sets_is_cached():
     sums = Sums()
     nearest = Nearest(EMPTY, sums.extended, worthwhile=3)
     shared = set(range(10))

@@ -545,7 +545,7 @@ def test_state_that_table_rows_share_connects_their_flows():
     assert ends(node(wiring).replace("\n    def rows(self)", f"{relay}\n    def rows(self)")) == EVERYTHING
 
 
-def test_data_that_one_table_row_stores_reaches_later_rows_and_the_code_after_the_loop():
+def test_data_stored_by_one_row_reaches_later_rows():
     wiring = """
         callbacks = {"a": self.on_a}
         if len(self.names) > 1:
@@ -561,7 +561,7 @@ def test_data_that_one_table_row_stores_reaches_later_rows_and_the_code_after_th
     assert ("c/earlier", "y") not in found
 
 
-def test_a_loop_that_publishes_for_each_entry_connects_the_entries_through_its_own_state():
+def test_loop_over_publishers_connects_them_through_shared_state():
     wiring = """
         self.last = {"a": 0.0, "b": 0.0}
         self.outs = {"a": self.x, "b": self.y}
@@ -591,7 +591,7 @@ def test_flows_of_a_table_row_that_may_be_missing_are_also_found():
     assert ends(node(wiring)) == APART
 
 
-def test_a_loop_over_marked_methods_subscribes_only_to_the_topics_of_the_marks():
+def test_loop_over_marked_methods_subscribes_to_marked_topics_only():
     wiring = """
         for name in dir(self):
             method = getattr(self, name)

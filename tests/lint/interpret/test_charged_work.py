@@ -79,7 +79,7 @@ def reads_of_objects(monkeypatch, files: dict[str, str]) -> int:
     return count
 
 
-def test_cyclic_objects_are_read_again_only_after_a_store_into_one_of_these_objects(monkeypatch):
+def test_cyclic_objects_are_read_again_only_after_a_store(monkeypatch):
     """A read of each object after each store would double with the size of the ring."""
     small, large = (reads_of_objects(monkeypatch, ring(size, 120)) for size in (8, 16))
     assert 0 < large < 1.5 * small
@@ -106,7 +106,7 @@ SHARED = {
 }
 
 
-def test_the_entry_points_of_an_imported_file_use_the_budget_of_the_program():
+def test_entry_points_of_an_imported_file_use_the_program_budget():
     machine = linked({**SHARED, "run.py": "import rospy\nfrom pkg.inner import on_a\nrospy.spin()\n"})
     assert set(machine.work.totals) <= {"run.py", "pkg/__init__.py", "pkg/inner.py"}
     assert machine.work.charged_to("pkg/inner.py") == "run.py"
@@ -119,7 +119,7 @@ def test_a_program_has_its_own_budget_even_if_another_file_imports_it():
     assert machine.work.charged_to("inner.py") == "inner.py"
 
 
-def test_the_first_program_that_imports_a_file_is_charged_even_if_imports_form_a_cycle():
+def test_first_importing_program_is_charged_even_in_a_cycle():
     work = Work(importers={"a": {"b": False, "init": True}, "b": {"a": False, "run": False}})
     assert [work.charged_to(path) for path in ("a", "b", "run", "init")] == ["run", "run", "run", "init"]
     assert Work(importers={"a": {"b": False}, "b": {"a": False}}).charged_to("a") == "a"

@@ -269,7 +269,7 @@ def test_a_method_of_a_decorated_function_may_call_it(text):
         ("self.describe(View).level", "clean"),
     ],
 )
-def test_a_library_may_return_the_instance_of_a_class_that_it_looks_up(look, mark):
+def test_library_may_return_an_instance_of_a_looked_up_class(look, mark):
     text = f"""
         class Base(framework.Widget):
             pass

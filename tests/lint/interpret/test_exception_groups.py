@@ -100,7 +100,7 @@ def test_data_passes_through_an_iteration_until_a_sentinel(body: str) -> None:
     assert differing(in_callback(body, "import queue")) == {}
 
 
-def test_a_handler_for_parts_of_an_exception_group_may_catch_the_whole_group() -> None:
+def test_except_star_may_catch_the_whole_group() -> None:
     where = (1, 0, 1, 1)
     handled = handled_by(ir.Starred(ir.Name("ValueError", "global", 0, where), where))
     assert handled == {PARTS, "ValueError"}

@@ -83,7 +83,7 @@ self.pub.publish(1)
         ("OSError", "socket.OSError"),  # another class of this name
     ],
 )
-def test_statements_after_a_handler_that_might_miss_the_exception_depend_on_the_exception(raised, caught):
+def test_code_after_a_handler_depends_on_an_uncaught_exception(raised, caught):
     assert flows(AROUND.format(raised=raised, caught=caught)) == ["implicit"]
 
 
@@ -102,9 +102,7 @@ def test_statements_after_a_handler_that_might_miss_the_exception_depend_on_the_
         ("rospy.ROSException()", "Exception"),
     ],
 )
-def test_statements_after_a_handler_that_surely_catches_the_exception_do_not_depend_on_the_exception(
-    raised, caught
-):
+def test_code_after_a_handler_ignores_a_caught_exception(raised, caught):
     assert flows(AROUND.format(raised=raised, caught=caught)) == []
 
 
@@ -253,7 +251,7 @@ def test_a_handler_gets_no_data_of_exceptions_that_it_cannot_catch():
     assert flows(body) == []
 
 
-def test_a_handler_for_an_exception_class_of_a_library_catches_the_exception_of_a_failing_call():
+def test_handler_for_a_library_exception_catches_a_failing_call():
     body = """\
     for _ in range(2):
         try:

@@ -34,7 +34,7 @@ out.publish([one.value() for one in clean][0])  # clean
 
 
 @pytest.mark.parametrize("most", [0, 1, 5, 100])
-def test_a_call_of_a_method_on_one_of_many_library_objects_covers_all_of_them(monkeypatch, most):
+def test_call_on_one_of_many_library_objects_covers_all(monkeypatch, most):
     monkeypatch.setattr(calls, "MAX_ALIKE", most)
     assert differing(in_callback(LIBRARY)) == {}
 
@@ -50,7 +50,7 @@ def three(x):
 
 
 @pytest.mark.parametrize("most", [1, 2, 3])
-def test_a_call_beyond_the_limit_on_call_contexts_returns_the_data_of_its_arguments(monkeypatch, most):
+def test_call_beyond_the_context_limit_returns_its_arguments(monkeypatch, most):
     body = "out.publish(one(msg.data)[0])  # data\nout.publish(one(1.0)[0])  # clean"
     assert differing(in_callback(body, CHAIN)) == {}
     assert machine(in_callback(body, CHAIN)).cut == {}
@@ -68,7 +68,7 @@ def test_an_analysis_with_too_many_edges_ends_early(monkeypatch):
     assert list(machine(text).cut) == ["node.py"]
 
 
-def test_entry_points_run_until_they_add_nothing_new_or_the_round_limit_is_reached(monkeypatch):
+def test_entry_points_run_until_nothing_changes(monkeypatch):
     steps = "\n".join(f"def on_{n}(msg):\n    global x_{n + 1}\n    x_{n + 1} = x_{n}" for n in range(6))
     names = "\n".join(f"x_{n} = 0.0" for n in range(8))
     registered = "\n".join(f'rospy.Subscriber("s{n}", Float64, on_{n})' for n in reversed(range(6)))
@@ -115,7 +115,7 @@ def topics(body: str) -> set[str]:
     return {name for flow in flows(in_callback(body)) for name in flow.sink.topics}
 
 
-def test_topic_names_are_computed_for_each_combination_of_parts_up_to_a_limit(monkeypatch):
+def test_combinations_of_topic_name_parts_are_limited(monkeypatch):
     assert topics(NAMES) == {"left/left", "left/right", "right/left", "right/right"}
     monkeypatch.setattr(operators, "MAX_TEXTS", 3)
     assert topics(NAMES) == set()

@@ -58,9 +58,7 @@ def node(body: str, head: str = "") -> str:
         ("value = table.get(last.name)", "value", "control"),
     ],
 )
-def test_a_comparison_with_none_depends_on_data_only_if_the_data_decided_whether_the_value_is_none(
-    before, value, flows
-):
+def test_comparison_with_none_depends_on_data_that_decides_nullness(before, value, flows):
     assert differing(node(f"{before}\n{GATED.format(value=value, flows=flows)}".strip())) == {}
 
 
@@ -82,7 +80,7 @@ def test_a_parameter_may_be_none_if_the_argument_may_be(given, flows):
     ("result", "flows"),
     [("last", "clean"), ("found", "control"), ("level", "clean"), ("high", "control"), ("None", "clean")],
 )
-def test_the_result_of_a_call_may_be_none_if_the_returned_value_may_be_none(result, flows):
+def test_call_may_return_none_if_its_value_may_be_none(result, flows):
     head = f"def asked():\n    return {result}"
     assert differing(node(GATED.format(value="asked()", flows=flows), head)) == {}
 
@@ -122,5 +120,5 @@ rospy.spin()
         ("Track", "msg.pose", "control"),
     ],
 )
-def test_the_truth_of_a_field_depends_on_data_unless_the_field_is_a_message(kind, field, flows, test):
+def test_truth_of_a_field_depends_on_data(kind, field, flows, test):
     assert differing(POSE.format(kind=kind, field=field, flows=flows, test=test)) == {}

@@ -81,7 +81,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_a_state_depends_on_a_set_of_outcomes_if_only_some_of_them_lead_to_the_state(title):
+def test_state_depends_on_the_outcomes_that_lead_to_it(title):
     groups, outcomes, wanted = CASES[title]
     found = dependences(groups, lambda part: frozenset(outcomes.get(part, ())))
     text = {None: "{0} {1}?", frozenset(): "{0} in {1}"}
@@ -99,7 +99,7 @@ def test_very_deep_and_wide_trees_are_cut():
     assert len({one.part for one in dependences(wide, lambda _: frozenset(["good"]))}) == 0
 
 
-def test_the_outcomes_of_a_subtree_are_known_if_all_answers_in_it_are_known():
+def test_subtree_outcomes_are_known_if_all_answers_are_known():
     part = Part(1, 2)
     assert part.outcomes() == frozenset()
     part.answers[3] = frozenset(["good"])

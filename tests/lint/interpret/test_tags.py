@@ -219,6 +219,6 @@ if event.kind == Kind.HEAT:
 
 
 @pytest.mark.parametrize("title", sections(BODIES))
-def test_in_a_branch_on_the_kind_of_an_object_only_data_of_this_kind_is_found(title: str) -> None:
+def test_branch_on_an_object_kind_sees_only_that_kind(title: str) -> None:
     body = sections(BODIES)[title].replace("\n", "\n    ")
     assert not differing_topics(f"{HEAD}def step(event):\n    {body}\nrospy.Timer(1.0, step)\nrospy.spin()\n")

@@ -90,7 +90,7 @@ def _run(tree: ast.Module, use: Callable[..., None]) -> list[Any]:
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_the_two_parts_of_a_context_manager_do_the_same_as_its_generator(seed):
+def test_context_manager_acts_like_its_generator(seed):
     lines = ["local = 2", *_body(random.Random(seed))]
     text = HEADER + "\n".join(_indented(lines))
     before = _run(ast.parse(text), _with)

@@ -60,7 +60,7 @@ def test_each_member_of_an_enumeration_is_a_separate_mapping_key(ctx, channel):
     assert pointer(sequence(ctx, "other", const("/scan"))).item_keys() is None
 
 
-def test_a_member_has_its_value_its_name_and_the_attributes_of_its_class(ctx, channel):
+def test_enum_member_has_value_name_and_class_attributes(ctx, channel):
     cls, _ = channel
     member = ctx.store.get((cls, "SCAN"))
     (obj,) = member.pts

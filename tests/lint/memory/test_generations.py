@@ -220,7 +220,7 @@ def test_the_last_object_of_a_long_chain_represents_all_further_objects(ctx, fra
     assert [obj.many for obj in chain] == [False, False, True]
 
 
-def test_entry_points_run_again_if_an_object_that_they_read_now_represents_several_objects(ctx):
+def test_entry_point_runs_again_when_an_object_becomes_a_summary(ctx):
     obj = recency.intern(ctx, "instance", "a")
     assert recency.single(ctx, obj)
     recency.one_of_many(ctx, obj)
@@ -228,7 +228,7 @@ def test_entry_points_run_again_if_an_object_that_they_read_now_represents_sever
     assert ctx.store.root in ctx.pending
 
 
-def test_calls_of_a_closure_share_contexts_if_it_was_created_while_the_same_function_was_running(ctx, frame):
+def test_closures_of_one_recursive_function_share_contexts(ctx, frame):
     functions = {name: dataclasses.replace(frame.function) for name in "ab"}
     for number, name in enumerate("aba"):
         caller = frame

@@ -52,7 +52,7 @@ def test_a_program_at_its_edge_limit_gets_only_a_few_further_edges(graph, node, 
     assert graph.data[node("d")] == set(many[: value_flow_graph.FEW])
 
 
-def test_a_value_chosen_by_a_branch_depends_on_the_branch_condition_through_a_gate(graph, node):
+def test_chosen_value_depends_on_the_branch_condition_through_a_gate(graph, node):
     decision = node("if")
     chosen, same, after = node("a", (decision, "then")), node("b", (decision, "then")), node("c")
     graph.flow([chosen], same)
@@ -69,7 +69,7 @@ def test_a_value_chosen_by_a_branch_depends_on_the_branch_condition_through_a_ga
     assert graph.control[same] == set()
 
 
-def test_a_copy_of_a_node_without_its_branches_keeps_the_data_and_drops_the_conditions(graph, node):
+def test_node_copy_without_branches_keeps_data_and_drops_conditions(graph, node):
     decision = node("if")
     chosen, after = node("a", (decision, "then")), node("b")
     copy = graph.unchosen(chosen)
@@ -97,7 +97,7 @@ def test_many_values_of_a_field_are_merged_into_one_node(graph, node, frame):
     assert graph.data[place] == deps | {node("new")}
 
 
-def test_a_node_becomes_live_as_soon_as_it_depends_on_a_live_node(graph, node):
+def test_node_becomes_live_with_its_dependency(graph, node):
     source, data, decided, late = (node(key) for key in ("source", "data", "decided", "late"))
     graph.flow([source], data)
     graph.depend(decided, [data])
@@ -177,7 +177,7 @@ def test_large_programs_do_not_track_the_carriers_of_content(graph, node, monkey
     assert graph.through(frozenset([item]), frozenset([carrier])) == {item}
 
 
-def test_settling_the_graph_connects_each_carry_node_to_the_content_that_it_represents(graph, node):
+def test_settled_graph_connects_carry_nodes_to_their_content(graph, node):
     item, carrier = node("item"), node("carrier")
     graph.hold(carrier, frozenset([item]))
     (arrived,) = graph.through(frozenset([item]), frozenset([carrier]))
@@ -196,7 +196,7 @@ def test_a_cycle_of_carry_nodes_depends_on_its_origin(graph, node):
     assert item in graph.data[one] | graph.data[two]
 
 
-def test_in_a_copy_of_a_node_one_branch_decision_can_be_replaced_by_other_conditions(graph, node):
+def test_node_copy_can_replace_a_branch_condition(graph, node):
     kept, decided = (7, True), (3, False)
     read = node("read", kept, decided)
     copy = graph.under(read, 3, frozenset([(5, True)]))

@@ -74,7 +74,7 @@ def a_function(ctx, name: str, *decorators: str) -> Obj:
 # --- reads --------------------------------------------------------------------------------------------
 
 
-def test_the_data_of_a_field_includes_data_of_the_object_as_a_whole(ctx):
+def test_field_data_includes_data_of_the_whole_object(ctx):
     whole = made(ctx, "lib", "a")
     part = whole.sub("x")
     assert heap.content(ctx, part) is BOTTOM
@@ -123,9 +123,7 @@ def test_an_unset_attribute_of_a_library_object_is_its_bound_method(ctx, kind, n
 
 
 @pytest.mark.parametrize(("name", "held"), [("create_subscription", True), ("name", False)])
-def test_an_attribute_of_an_unknown_object_is_a_stored_callable_only_if_ros_has_a_method_of_this_name(
-    ctx, name, held
-):
+def test_unknown_object_has_only_callables_that_ros_knows(ctx, name, held):
     value = heap.read_or_hold(ctx, ONE, name)
     assert [(one.kind, one.info[1]) for one in value.pts] == ([("method", name)] if held else [])
     assert value.deps == ONE.deps
@@ -146,7 +144,7 @@ def test_an_unset_field_has_the_default_of_its_kind_of_object(ctx):
     assert heap.default(ctx, recency.intern(ctx, "closure", "f"), "x") is BOTTOM
 
 
-def test_the_field_named_shape_has_the_data_of_a_library_object_but_is_ordinary_in_a_message(ctx):
+def test_shape_field_is_special_only_outside_messages(ctx):
     matrix, message = made(ctx, "lib", "a"), made(ctx, "lib", "b")
     message.info = BY_CLASS
     for obj in (matrix, message):
@@ -155,7 +153,7 @@ def test_the_field_named_shape_has_the_data_of_a_library_object_but_is_ordinary_
     assert heap.default(ctx, message, "shape") == pointer(message.sub("shape"))
 
 
-def test_a_known_index_of_a_library_object_may_read_an_element_stored_at_an_unknown_index(ctx):
+def test_known_index_may_read_an_element_at_an_unknown_index(ctx):
     obj = made(ctx, "lib", "a")
     assert heap.default(ctx, obj, "[0]") == pointer(obj.sub("[0]"))
     any_of_them = obj.sub("[]")
@@ -299,7 +297,7 @@ def test_iteration_over_the_attributes_of_an_object_yields_their_names(ctx):
 @pytest.mark.parametrize(
     ("external", "field"), [((), "x"), (("builtins.dict",), "['x']"), (("Unknown",), "x")]
 )
-def test_the_items_of_dunder_dict_are_attributes_unless_the_object_is_a_dict(ctx, external, field):
+def test_items_of_dunder_dict_are_attributes(ctx, external, field):
     obj = an_instance(ctx, a_class(ctx, "A", external=external))
     assert heap.attribute_of_item(obj, "x") == field
     assert heap.attribute_of_item(obj, 0) == item_field(0) == "[0]"
@@ -389,14 +387,14 @@ def test_joining_a_single_continuation_leaves_it_unchanged(ctx):
     assert ctx.store.get((obj, "x")) is ONE
 
 
-def test_a_field_set_on_only_one_path_may_have_its_default_but_a_variable_has_only_the_set_value(ctx, frame):
+def test_field_set_on_one_path_may_have_its_default(ctx, frame):
     obj = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((cls, "x"), ONE)
     both = joins.joined(ctx, [{(frame, "v"): TWO, (obj, "x"): TWO}, {}])
     assert both == {(frame, "v"): TWO, (obj, "x"): BOTH}
 
 
-def test_an_object_created_on_one_path_has_no_value_on_the_other_path(ctx):
+def test_object_created_on_one_path_has_no_value_elsewhere(ctx):
     obj = recency.intern(ctx, "sequence", "new")
     ctx.store.push()
     ctx.store.put((obj, BORN), BOTTOM)
@@ -414,7 +412,7 @@ def test_all_paths_without_a_store_contribute_the_former_value_only_once(ctx):
 @pytest.mark.parametrize(
     ("stored", "blank"), [(0.0, False), (False, False), ("", False), (1.0, True), (None, True)]
 )
-def test_a_zero_stored_on_one_path_equals_the_unset_field_of_a_new_message(ctx, stored, blank):
+def test_zero_stored_on_one_path_equals_the_unset_field(ctx, stored, blank):
     message = made(ctx, "lib", "m")
     message.info = BY_CLASS
     both = joins.joined(ctx, [{(message, "x"): const(stored)}, {}])[message, "x"]
@@ -443,7 +441,7 @@ def test_each_loop_iteration_and_each_call_allocates_its_own_object(ctx, frame):
     assert recency.allocate(ctx, "sequence", frame, "slot") is not obj
 
 
-def test_an_older_library_object_is_kept_only_while_another_object_points_to_it(ctx, frame):
+def test_unreferenced_older_library_object_is_dropped(ctx, frame):
     obj, holder = recency.allocate(ctx, "lib", frame, "slot"), made(ctx, "instance", "holder")
     ctx.store.put((obj, "x"), ONE)
     ctx.store.put((obj, "next"), pointer(obj))
@@ -523,7 +521,7 @@ def test_only_variables_are_dropped_if_no_object_was_created(ctx, frame):
     assert [name for _, name in kept] == ["y"]
 
 
-def test_variables_of_a_function_are_kept_while_ros_may_call_a_function_defined_inside_it(ctx, frame):
+def test_variables_are_kept_while_ros_may_call_an_inner_function(ctx, frame):
     """A function that is defined two levels deeper keeps the variables of all frames around it."""
     between = Frame("between", 2, frame.function, frame.program, frame.module)
     between.outer = frame
@@ -546,7 +544,7 @@ def test_a_reachable_part_keeps_its_enclosing_object_and_definition_alive():
 
 
 @pytest.mark.parametrize("length", [2, 2 * reachable_data.FEW])
-def test_data_found_inside_many_objects_is_cached_and_the_cache_stays_up_to_date(ctx, length):
+def test_cache_of_data_inside_objects_stays_up_to_date(ctx, length):
     chain = [made(ctx, "lib", number) for number in range(length)]
     for outer, inner in itertools.pairwise(chain):
         ctx.store.put((outer, "x"), pointer(inner))
@@ -629,7 +627,7 @@ def test_a_parameter_whose_default_is_not_text_has_no_placeholder_in_names(known
     assert symbolic_names.text_of_parameter(known, name, default) is None
 
 
-def test_the_default_of_a_parameter_is_a_name_that_a_launch_file_may_replace():
+def test_launch_file_may_replace_the_default_of_a_parameter():
     texts = symbolic_names.text_of_parameter(None, "~scan", const("scan"))
     assert texts == symbolic_names.with_default(const("scan"))
     value = Value(consts=texts)
@@ -647,7 +645,7 @@ def test_only_an_array_that_was_made_without_data_has_a_known_shape(ctx):
     assert [heap.shape(ctx, obj) for obj in (array, other, table)] == [ONE, None, None]
 
 
-def test_the_newest_object_of_an_allocation_site_becomes_an_older_object_when_another_is_created(ctx, frame):
+def test_newest_object_becomes_older_when_another_is_created(ctx, frame):
     holder = made(ctx, "instance", "holder")
     box = recency.intern(ctx, "instance", "box")
     recency.renew(ctx, box, frame)
@@ -677,7 +675,7 @@ def test_an_object_with_callbacks_represents_all_objects_of_its_allocation_site(
     assert ctx.store.get((box, "x")) == Value(consts=frozenset([1, 2]))
 
 
-def test_entry_points_that_relied_on_a_single_object_run_again_when_it_represents_several_objects(ctx, frame):
+def test_entry_points_run_again_when_a_single_object_becomes_several(ctx, frame):
     first, other = Root("first", "callback"), Root("other", "callback")
     box, lib = recency.intern(ctx, "instance", "box"), made(ctx, "lib", "lib")
     ctx.store.root = first
@@ -694,7 +692,7 @@ def test_entry_points_that_relied_on_a_single_object_run_again_when_it_represent
     assert ctx.store.reads.single == ctx.shared.several == {box}
 
 
-def test_a_try_statement_catches_an_exception_if_one_of_its_handlers_catches_the_exception():
+def test_try_catches_an_exception_with_a_matching_handler():
     attempt = Attempt(0, [], (frozenset(["KeyError"]), frozenset(["OSError"])))
     assert attempt.catches("OSError", NO_CLASSES) is True
     assert attempt.catches("ValueError", NO_CLASSES) is False

@@ -24,7 +24,7 @@ def program(ctx):
     return ctx, base, view, made
 
 
-def test_a_library_method_that_queries_instances_gets_instances_of_the_class_and_of_its_subclasses(program):
+def test_instance_query_returns_instances_of_subclasses(program):
     ctx, base, view, made = program
     assert instances(looked_up(ctx, "query_one", [pointer(view)])) == {made["view"]}
     assert instances(looked_up(ctx, "get_component", [pointer(base)])) == {made["base"], made["view"]}
@@ -46,7 +46,7 @@ def test_an_instance_made_after_the_query_is_also_found(program):
     assert instances(looked_up(ctx, "find", [pointer(base)])) == {*made.values(), late}
 
 
-def test_an_instance_is_recorded_only_if_a_library_may_ask_for_its_class(program):
+def test_instances_are_recorded_only_for_queried_classes(program):
     ctx, _base, view, made = program
     note(ctx, Obj("instance", "unasked"), view)
     assert instances(looked_up(ctx, "find", [pointer(view)])) == {made["view"]}

@@ -62,7 +62,7 @@ def test_contents_include_the_summary_of_the_enclosing_object(ctx):
 
 
 @pytest.mark.parametrize("wrote", [False, True])
-def test_the_running_call_depends_on_the_contents_that_it_reads_except_for_its_own_stores(ctx, wrote):
+def test_running_call_depends_on_contents_that_it_reads(ctx, wrote):
     obj = made(ctx, "obj")
     ctx.store.put((obj, "a"), ONE)
     ctx.store.reads = Reads()

@@ -68,7 +68,7 @@ def test_empty_lists_are_ignored_if_there_are_other_lists(ctx):
     assert object_lists.without_empty(ctx, mixed) is mixed
 
 
-def test_elements_can_be_queried_if_they_are_objects_numbers_or_tuples_of_these(ctx):
+def test_elements_can_be_objects_numbers_or_tuples(ctx):
     part = an_object(ctx, "a")
     pair = a_list(ctx, const(0), part)
     assert object_lists.asked(ctx, [part, const(1), pair])

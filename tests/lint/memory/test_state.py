@@ -46,7 +46,7 @@ def test_a_read_sees_the_last_store_in_any_layer(store, obj):
     assert store.get(key) is ONE
 
 
-def test_a_layer_starts_with_the_given_changes_and_closing_it_restores_the_former_values(store, obj):
+def test_closing_a_layer_restores_the_former_values(store, obj):
     old, new = (obj, "old"), (obj, "new")
     store.put(old, ONE)
     store.push({old: TWO, new: TWO})
@@ -63,7 +63,7 @@ def test_an_absent_field_reads_as_unset(store, obj):
     assert not store.stored((obj, "y"))
 
 
-def test_the_stores_since_a_given_depth_are_those_in_the_layers_above_it(store, obj):
+def test_stores_since_a_depth_are_in_the_layers_above(store, obj):
     first, second, third = ((obj, name) for name in "abc")
     store.put(first, ONE)
     store.push()
@@ -189,7 +189,7 @@ def test_the_current_values_of_recorded_reads_are_looked_up(store, obj):
     assert store.found_by(reads) == ({here: ONE, gone: None, unset: None}, {here: True, unset: False})
 
 
-def test_reading_the_fields_of_an_object_records_its_first_version_and_the_reader(store, obj):
+def test_reading_fields_records_the_first_version_and_the_reader(store, obj):
     store.look(obj)
     obj.changed("x")
     store.look(obj)
@@ -209,7 +209,7 @@ def test_a_recorded_query_keeps_its_first_answer():
     assert reads.facts[counting, "x"] == 3
 
 
-def test_the_first_wait_records_the_keys_stored_so_far_and_later_waits_keep_this_record(obj):
+def test_first_wait_records_the_stored_keys(obj):
     reads = Reads(written={(obj, "x")})
     reads.wait(3, {(obj, "y")})
     reads.written.add((obj, "z"))
@@ -218,7 +218,7 @@ def test_the_first_wait_records_the_keys_stored_so_far_and_later_waits_keep_this
     assert reads.own == {(obj, "x"), (obj, "y")}
 
 
-def test_finished_reads_keep_the_values_that_a_replay_needs_and_drop_values_stored_by_the_call(obj):
+def test_finished_reads_keep_only_values_that_a_replay_needs(obj):
     here, mine = (obj, "here"), (obj, "mine")
     outer, inner = Reads(written={mine}), Reads(keys={here, mine}, stored={here})
     outer.add(inner)
@@ -229,14 +229,14 @@ def test_finished_reads_keep_the_values_that_a_replay_needs_and_drop_values_stor
     assert (outer.taken, outer.arrivals, outer.written) == ({}, set(), set())
 
 
-def test_values_that_an_entry_point_reads_at_several_waits_are_joined_per_key(obj):
+def test_values_read_at_several_waits_are_joined_per_key(obj):
     reads = Reads()
     reads.admit((obj, "x"), ONE)
     reads.admit((obj, "x"), TWO)
     assert reads.admitted == {(obj, "x"): BOTH}
 
 
-def test_reads_of_a_nested_call_omit_the_keys_that_the_caller_has_already_stored(obj):
+def test_nested_call_omits_keys_stored_by_its_caller(obj):
     mine, other = (obj, "mine"), (obj, "other")
     outer = Reads(written={mine})
     inner = Reads(keys={mine, other}, stored={mine, other}, unreached={4}, whole=False)
@@ -277,7 +277,7 @@ def same(store: Store, reads: Reads, graph: Graph | None = None) -> bool:
     return unchanged(reads, *store.found_by(reads), store, graph or Graph())
 
 
-def test_recorded_reads_stay_valid_until_a_value_a_flag_or_an_answer_changes(store, obj):
+def test_recorded_reads_stay_valid_until_something_changes(store, obj):
     read, asked = (obj, "read"), (obj, "asked")
     store.put(read, ONE)
     facts: list[int] = []
@@ -299,7 +299,7 @@ def test_recorded_reads_stay_valid_until_a_value_a_flag_or_an_answer_changes(sto
     assert not unchanged(reads, found, stored, store, Graph())
 
 
-def test_recorded_reads_are_outdated_if_a_new_source_reaches_a_node_or_a_carrier_gets_more_data(store):
+def test_new_source_or_new_data_makes_recorded_reads_outdated(store):
     graph = Graph()
     assert same(store, Reads(unreached={3}), graph)
     graph.live.add(3)
@@ -373,14 +373,14 @@ def test_changing_a_stored_value_reruns_the_entry_points_that_read_it(shared, ob
     assert shared.ends[key][writer] == BOTH
 
 
-def test_an_entry_point_that_can_run_concurrently_with_itself_reads_its_own_stores(shared, obj):
+def test_concurrent_entry_point_reads_its_own_stores(shared, obj):
     mine = Root("mine", "callback")
     shared.entry((obj, "x"), mine)
     shared.leave(shared.ends, mine, (obj, "x"), ONE)
     assert shared.dirty == {mine}
 
 
-def test_a_new_field_reruns_the_entry_points_that_read_the_object_or_its_enclosing_object(shared):
+def test_new_field_reruns_entry_points_that_read_the_object(shared):
     whole, watcher, writer = Obj("message", "m"), Root("watcher", "callback"), Root("writer", "timer")
     shared.look(whole, watcher)
     shared.leave(shared.ends, writer, (whole.sub("pose"), BORN), BOTTOM)
@@ -389,7 +389,7 @@ def test_a_new_field_reruns_the_entry_points_that_read_the_object_or_its_enclosi
     assert shared.dirty == {watcher}
 
 
-def test_new_data_in_an_object_reruns_the_entry_points_that_found_no_data_in_it(shared):
+def test_new_data_reruns_entry_points_that_found_none(shared):
     obj, doubter = Obj("lib", "a"), Root("doubter", "callback")
     part, outer = obj.sub("x"), Obj("lib", "outer")
     obj.inside[outer] = None
@@ -402,7 +402,7 @@ def test_new_data_in_an_object_reruns_the_entry_points_that_found_no_data_in_it(
     assert shared.doubters == {}
 
 
-def test_the_generation_of_a_frame_is_its_number_of_ancestors_with_the_same_function(ctx):
+def test_generation_of_a_frame_counts_its_recursive_ancestors(ctx):
     (program,) = ctx.programs.values()
     first = Root("a", "timer", function=program.function)
     other = Root("b", "timer", maker=first)
@@ -411,7 +411,7 @@ def test_the_generation_of_a_frame_is_its_number_of_ancestors_with_the_same_func
     assert Root("d", "timer", function=program.function, maker=third).generations() == 2
 
 
-def test_an_object_created_on_another_path_has_only_the_stores_of_other_entry_points(shared, store):
+def test_object_from_another_path_has_only_foreign_stores(shared, store):
     obj, other, mine = Obj("lib", "made"), Root("other", "callback"), store.root
     store.push()
     store.put((obj, BORN), BOTTOM)
@@ -430,7 +430,7 @@ def test_an_object_created_on_another_path_has_only_the_stores_of_other_entry_po
     assert shared.dirty == {mine}
 
 
-def test_an_object_created_on_the_current_path_is_invisible_to_others_until_a_wait(store, obj):
+def test_new_object_is_invisible_to_others_until_a_wait(store, obj):
     assert not store.isolated(obj)
     store.push()
     store.put((obj, BORN), BOTTOM)
@@ -467,7 +467,7 @@ def test_a_store_that_adds_nothing_new_reruns_no_entry_point(store, obj):
     assert store.shared.dirty == set()
 
 
-def test_reading_a_local_variable_after_a_wait_does_not_depend_on_other_entry_points(store, frame):
+def test_local_variable_read_after_a_wait_has_no_foreign_data(store, frame):
     store.put((frame, "x"), ONE)
     store.waited = True
     assert store.get((frame, "x")) is ONE
@@ -492,7 +492,7 @@ def test_an_entry_point_publishes_no_values_that_came_from_other_entry_points(st
     assert store.mine(key, Value(frozenset([1, 2]), consts=frozenset())) is None
 
 
-def test_an_entry_point_publishes_only_values_that_did_not_exist_at_its_start(store, obj):
+def test_entry_point_publishes_only_new_values(store, obj):
     key = (obj, "x")
     assert store.mine(key, ONE) is ONE
     store.found[key] = ONE

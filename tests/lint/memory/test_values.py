@@ -88,7 +88,7 @@ def test_a_value_may_have_more_string_constants_than_other_constants():
     assert join_consts(few, None) is None
 
 
-def test_a_value_is_constant_only_if_it_has_one_constant_and_no_objects():
+def test_value_with_one_constant_and_no_objects_is_constant():
     assert const(3).constant() == (True, 3)
     assert constants(1, 2).constant() == (False, None)
     assert UNKNOWN.constant() == (False, None)
@@ -99,7 +99,7 @@ def test_a_value_is_constant_only_if_it_has_one_constant_and_no_objects():
     assert const([]) is UNKNOWN
 
 
-def test_a_value_has_no_known_strings_if_one_of_its_constants_depends_on_the_launch_file():
+def test_value_that_depends_on_the_launch_file_has_no_known_strings():
     assert constants("b", "a").texts() == ("a", "b")
     assert constants("a", 1).texts() == ()
     assert UNKNOWN.texts() == ()
@@ -119,7 +119,7 @@ def test_constants_and_classes_are_keys_of_mappings():
     assert Value(pts=frozenset([first, Obj("instance", 1)])).item_keys() is None
 
 
-def test_the_constants_of_a_value_can_be_a_subset_of_the_constants_of_another_value():
+def test_constants_of_one_value_can_be_a_subset_of_another():
     assert constants(1).consts_in(constants(1, 2))
     assert constants(1).consts_in(UNKNOWN)
     assert not constants(1, 3).consts_in(constants(1, 2))
@@ -215,7 +215,7 @@ def test_the_method_resolution_order_has_a_bounded_length():
     ("external", "opaque"),
     [((), False), (("builtins.Exception",), False), (("abc.ABC",), False), (("rclpy.node.Node",), True)],
 )
-def test_a_class_with_a_base_class_outside_the_files_is_opaque_and_so_are_its_subclasses(external, opaque):
+def test_class_with_an_unknown_base_is_opaque(external, opaque):
     cls = made_class("base", external=external)
     inner = made_class("inner", made_class("between", cls))
     assert cls.info.opaque is opaque

@@ -25,7 +25,7 @@ def test_a_library_call_fills_an_array_that_was_created_without_data(name):
 
 
 @pytest.mark.parametrize("operator", sorted(ARITHMETIC))
-def test_a_library_call_also_fills_an_array_that_was_computed_from_an_array_without_data(operator):
+def test_library_call_fills_an_array_computed_from_an_empty_array(operator):
     assert differing(in_callback(fills(f"np.ones(4) {operator} 2"), HEAD)) == {}
 
 
@@ -34,7 +34,7 @@ def test_a_comparison_does_not_make_an_array():
     assert differing(in_callback(body, HEAD)) == {}
 
 
-def test_an_array_computed_from_data_holds_the_data_but_its_empty_operand_holds_none():
+def test_computed_array_holds_data_but_its_empty_operand_does_not():
     body = """
         zeros = np.zeros(4)
         shifted = zeros + msg.data
@@ -44,7 +44,7 @@ def test_an_array_computed_from_data_holds_the_data_but_its_empty_operand_holds_
     assert differing(in_callback(body, HEAD)) == {}
 
 
-def test_a_library_call_fills_an_array_with_data_of_its_arguments_or_of_its_object():
+def test_library_call_fills_an_array_with_its_argument_data():
     body = """
         array, other = np.zeros(4), np.zeros(4)
         lib.evaluate(msg.data, into=array)
@@ -65,7 +65,7 @@ def test_a_library_call_fills_an_array_with_data_of_its_arguments_or_of_its_obje
         "lib.evaluate(array)",
     ],
 )
-def test_an_array_is_not_filled_by_a_call_without_data_or_by_a_call_that_only_reads_it(call):
+def test_call_without_data_leaves_an_array_empty(call):
     body = f"""
         array = np.zeros(4)
         {call}
@@ -86,7 +86,7 @@ def test_the_arrays_of_earlier_iterations_are_also_filled():
     assert differing(in_callback(body, HEAD)) == {}
 
 
-def test_an_empty_list_is_filled_even_by_a_call_that_only_reads_arrays():
+def test_reading_call_may_still_fill_an_empty_list():
     body = """
         found, full = [], [0.0]
         lib.report(msg.data, found, full)

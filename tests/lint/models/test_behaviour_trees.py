@@ -256,7 +256,7 @@ CASES = dict(program(HEAD, part) for part in PROGRAMS.split("### ")[1:])
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_the_status_of_a_behaviour_decides_what_runs_and_all_behaviours_share_the_blackboard(
+def test_behaviour_status_decides_what_runs_next(
     title: str,
 ) -> None:
     assert differing(CASES[title]) == {}

@@ -111,7 +111,7 @@ CASES = dict(part.split("\n", 1) for part in ARRIVALS.split("### ")[1:])
 
 @pytest.mark.parametrize("arrivals", [False, True])
 @pytest.mark.parametrize("title", CASES)
-def test_the_arrival_of_a_message_counts_as_a_decision_only_with_the_setting_arrivals(title, arrivals):
+def test_message_arrival_is_a_decision_only_with_the_arrivals_setting(title, arrivals):
     text = HEAD + re.sub(r"# (\w+) (\w+)$", r"# \2" if arrivals else r"# \1", CASES[title], flags=re.M)
     assert differing(text, flows(text, Config(arrivals=arrivals))) == {}
 

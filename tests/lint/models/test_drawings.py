@@ -89,7 +89,7 @@ def test_the_functions_of_pyplot_draw_into_the_figure_of_their_program():
     assert found({"shared": SHARED, "one": both}) == {("one", "image"), ("one", "two")}
 
 
-def test_a_figure_made_while_a_module_is_imported_is_drawn_by_the_importing_programs():
+def test_figure_made_during_import_is_drawn_by_importing_programs():
     shared = SHARED + "\nfigure = plt.figure()\n"
     main = f"{MAINS['one']}\n    while True:\n        {MAINS['two'].replace('plt.gcf()', 'shared.figure')}"
     drawing = shared.replace("self.axes.plot(msg.data)", "plt.plot(msg.data)")

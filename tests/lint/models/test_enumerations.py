@@ -127,7 +127,7 @@ def test_enumeration_members_with_tuple_values_name_topics_and_are_separate_keys
     assert found == [(("heel",), ("HIP/out",), "explicit"), (("knee",), ("KNEE/out",), "explicit")]
 
 
-def test_a_member_that_is_chosen_by_data_may_have_the_data_of_any_member() -> None:
+def test_member_chosen_by_data_may_be_any_member() -> None:
     text = FLEET.format(body=STYLES["properties"].strip(), callback=CALLBACKS[0])
     text = text.replace(
         'self.samples[Channel["KNEE"]]', "self.samples[list(Channel)[int(event.last_duration)]]"

@@ -56,7 +56,7 @@ def test_a_stored_reference_to_a_publisher_method_makes_a_publisher(main):
     assert ends(f"{make}\n        {DIRECT}", main) == [("explicit", ("in",), ("out",))]
 
 
-def test_a_stored_reference_to_a_method_that_ros_does_not_know_creates_no_endpoint():
+def test_stored_reference_to_an_unknown_method_creates_no_endpoint():
     subscribe = 'make = node.create_something; make(Float64, "in", self.receive, 10)'
     assert ends(PLAIN.format(subscribe=subscribe), MAINS["a node of a library"]) == []
 
@@ -72,5 +72,5 @@ def test_a_stored_reference_to_a_method_that_ros_does_not_know_creates_no_endpoi
         ("create_subscriptions", False),
     ],
 )
-def test_a_file_that_stores_a_reference_to_a_publisher_method_may_start_a_node(text, starts):
+def test_file_that_stores_a_publisher_method_may_start_a_node(text, starts):
     assert (STARTING.search(text) is not None) is starts

@@ -53,5 +53,5 @@ def plain(x):
         """,
     ],
 )
-def test_later_results_of_an_object_contain_results_of_the_functions_that_it_stores(body: str) -> None:
+def test_later_results_include_results_of_stored_functions(body: str) -> None:
     assert differing(in_callback(body, HEAD)) == {}

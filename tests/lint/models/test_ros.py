@@ -306,7 +306,7 @@ def test_only_data_of_messages_reaches_sinks(name, body):
 @pytest.mark.parametrize(
     "call", ["node.destroy_subscription(sub)", "node.destroy_timer(sub)", "sub.unregister()"]
 )
-def test_the_findings_of_a_node_do_not_depend_on_the_endpoints_that_it_destroyed(call):
+def test_destroyed_endpoints_do_not_affect_findings(call):
     text = f"""
         sub = node.create_subscription(Float64, "other", print, 10)
         def on(msg):
@@ -374,6 +374,6 @@ LIBRARY = """
         *((f"{name.removeprefix('builtins.')}(near, msg.data)", "clean") for name in sorted(catalog.KEEPERS)),
     ],
 )
-def test_the_arguments_after_a_callback_may_be_passed_to_the_callback_by_the_library(call, passed):
+def test_library_may_pass_later_arguments_to_the_callback(call, passed):
     text = HEAD + "import inspect, library\n" + dedent(LIBRARY.format(call=call, passed=passed))
     assert differing(text) == {}

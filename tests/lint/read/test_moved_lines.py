@@ -113,7 +113,7 @@ def test_changed_functions_of_equal_names_require_a_new_analysis():
     assert moved(other.replace("2", "3"), other, unread=[(1, 0), (4, 0)]) == {1: 1, 4: 4}
 
 
-def test_a_new_analysis_is_needed_if_a_check_of_the_source_text_gives_another_answer():
+def test_changed_answer_of_a_text_check_requires_a_new_analysis():
     asked = (lambda text: "unread" in text, True)
     new = OLD.replace("return 1", "return 3")
     assert moved(new, answers=[asked]) is not None
@@ -121,7 +121,7 @@ def test_a_new_analysis_is_needed_if_a_check_of_the_source_text_gives_another_an
     assert moved(new, answers=[asked, (lambda text: "return 3" in text, False)]) is None
 
 
-def test_a_change_of_a_text_that_was_read_whole_or_cannot_be_parsed_requires_a_new_analysis():
+def test_changed_unparsable_text_requires_a_new_analysis():
     assert moved(OLD, whole=True) is None
     assert moved(OLD + "\n(") is None
     assert moved(OLD, OLD + "\n(") is None

@@ -100,7 +100,7 @@ def test_the_nearest_of_several_modules_is_imported():
     assert found("other", File("b/node.py", "node"), *files) == ""
 
 
-def test_a_file_of_a_package_that_runs_as_a_script_may_import_files_beside_it():
+def test_script_of_a_package_may_import_files_beside_it():
     files = File("p/util.py", "p.util"), File("p/q/tool.py", "p.q.tool"), File("p/time.py", "p.time")
     assert found("util", File("p/node.py", "p.node"), *files) == "p/util.py"
     assert found("util", File("p/__init__.py", "p", is_package=True), *files) == "p/util.py"

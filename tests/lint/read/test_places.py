@@ -55,7 +55,7 @@ def test_a_pipe_and_a_missing_file_are_refused(tmp_path):
         (b"(" * 300 + b")" * 300, 1, "The file is not valid Python (too many nested parentheses): "),
     ],
 )
-def test_a_file_that_is_not_python_is_reported_in_one_sentence_with_its_line(data, line, message):
+def test_file_that_is_not_python_is_reported_with_its_line(data, line, message):
     found = parse("a.py", data, "a")
     assert isinstance(found, SourceError)
     assert (found.line, found.bug) == (line, False)

@@ -61,7 +61,7 @@ def test_a_line_is_named_after_its_function(line, name):
     assert outline().qualname(line) == name
 
 
-def test_a_call_is_found_by_its_position_only_if_start_and_end_match():
+def test_call_is_found_only_if_start_and_end_match():
     found = outline()
     call = found.call((15, 19, 15, 26))
     assert call is not None

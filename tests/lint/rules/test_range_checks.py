@@ -109,7 +109,7 @@ def test_the_fields_in_a_condition_have_their_full_names(test, names):
 @pytest.mark.parametrize(
     ("call", "name"), [("f(x)", "f"), ("a.b.c(x)", "c"), ("f(x)(y)", ""), ("a[0](y)", "")]
 )
-def test_the_name_of_a_call_is_the_last_part_of_the_called_expression(call, name):
+def test_call_name_is_the_last_part_of_the_called_expression(call, name):
     found = expression(call)
     assert isinstance(found, ast.Call)
     assert call_name(found) == name

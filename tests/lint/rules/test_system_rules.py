@@ -89,7 +89,7 @@ def test_names_in_a_namespace_that_differ_by_whole_words_are_recognised(one, oth
     assert longer_alike(one, other) is longer_alike(other, one) is alike
 
 
-def test_another_private_name_of_the_same_node_is_near_even_if_other_nodes_are_unknown():
+def test_private_name_of_the_same_node_is_similar():
     says = node("/speech", end("publishes", "~finish", "String"))
     hears = node("/tour", end("subscribes", "speech/finished", "String"))
     assert len(messages(301, says, hears)) == len(messages(301, says, hears, node("/x", unread=True))) == 1
@@ -138,13 +138,13 @@ def test_a_subscription_that_may_have_a_publisher_is_not_reported(others):
 
 
 @pytest.mark.parametrize("other", [node("/c", unread=True), node("/c", interface=Interface("c.py"))])
-def test_a_misspelt_name_is_reported_even_if_there_are_unread_nodes_that_do_not_mention_it(other):
+def test_misspelt_name_is_reported_beside_unread_nodes(other):
     assert len(messages(301, node("/a", HEARS), node("/b", SAYS), other)) == 1
     assert misspelt("/cmd_vel", "/cmd_val")
     assert not misspelt("/cmd_vel", "/left/cmd_vel")
 
 
-def test_subscriptions_in_the_publishing_node_or_with_an_unknown_type_or_name_are_not_compared():
+def test_subscriptions_of_unknown_type_are_not_compared():
     assert messages(301, node("/a", end("subscribes", "cmd_vel", "")), node("/b", SAYS)) == []
     several = end("subscribes", "", names=("cmd_vel", "cmd_vex"))
     assert messages(301, node("/a", several), node("/b", SAYS)) == []
@@ -286,7 +286,7 @@ def test_a_setting_of_a_parameter_that_the_node_lacks_is_reported(setting, absen
     assert messages(307, keeper("/k", setting)) == [NONE.format(name) for name in absent]
 
 
-def test_a_parameter_counts_as_absent_only_if_no_node_with_the_setting_may_declare_it():
+def test_parameter_is_absent_only_if_no_matching_node_declares_it():
     setting = Setting("~gian", FILE, 1)
     assert messages(307, keeper("/k", setting), keeper("/l", setting, words=("gian",))) == []
     assert messages(307, keeper("/k", setting), keeper("/l", setting, named=False)) == []
@@ -294,7 +294,7 @@ def test_a_parameter_counts_as_absent_only_if_no_node_with_the_setting_may_decla
     assert messages(307, node("/k", unread=True, settings=(setting,))) == []
 
 
-def test_a_misspelt_parameter_in_a_section_for_all_nodes_is_reported_if_no_node_has_it():
+def test_misspelt_parameter_for_all_nodes_is_reported():
     shared = yaml("/**: {ros__parameters: {treshold: 1, other: 2}}")
     near = keeper("/k", shared, words=("threshold",))
     assert messages(307, near, keeper("/l", shared)) == [NONE.format("treshold")]
@@ -302,14 +302,14 @@ def test_a_misspelt_parameter_in_a_section_for_all_nodes_is_reported_if_no_node_
     assert messages(307, near, node("/l", unread=True, settings=(shared,))) == []
 
 
-def test_a_section_of_a_shared_parameter_file_is_meant_for_the_node_of_its_name():
+def test_section_of_a_shared_parameter_file_belongs_to_its_node():
     shared = yaml("k: {ros__parameters: {gian: 1}}\nl: {ros__parameters: {other: 1}}")
     open_ = keeper("/l", shared, named=False)
     assert messages(307, keeper("/k", shared), open_) == [NONE.format("gian")]
     assert messages(307, open_, keeper("/k", shared)) == [NONE.format("gian")]
 
 
-def test_a_parameter_section_without_a_namespace_applies_to_a_node_without_a_namespace():
+def test_section_without_namespace_applies_to_nodes_without_namespace():
     section = yaml("k: {ros__parameters: {gain: 1, a: 2, b: 3, c: 4}}")
     lost = "/n/k does not get a, b, c …: the section k of k.yaml is for /k; name it /n/k or /**/k"
     assert messages(307, keeper("/n/k", section)) == [lost]
@@ -346,14 +346,14 @@ def mover(name: str = "/n/k", **given: Any) -> Instance:
         ("k:cmd_val", None),
     ],
 )
-def test_a_remapping_of_a_name_that_the_node_does_not_use_is_reported(old, told):
+def test_remapping_of_an_unused_name_is_reported(old, told):
     found = messages(308, mover(remaps=((old, "y"),)))
     assert found == (
         [] if told is None else [f"/n/k uses no name {old}, so renaming it to y has no effect{told}"]
     )
 
 
-def test_a_remapping_of_a_name_that_the_node_may_use_is_not_reported():
+def test_remapping_of_a_possibly_used_name_is_not_reported():
     remaps = (("cmd_val", "y"),)
     assert messages(308, mover(remaps=remaps, whole=False)) == []
     for word in ("cmd_val", "/n/cmd_val", "n/cmd_val"):
@@ -365,7 +365,7 @@ def test_a_remapping_of_a_name_that_the_node_may_use_is_not_reported():
     assert messages(308, silent) == ["/k uses no name cmd_val, so renaming it to y has no effect"]
 
 
-def test_a_remapping_of_a_group_is_reported_once_if_no_node_of_the_group_uses_the_name():
+def test_unused_remapping_of_a_group_is_reported_once():
     first, other = (
         mover("/k", remaps=(("cmd_val", "y"),), inherited=1),
         mover("/l", remaps=(("cmd_val", "y"),), inherited=1),

@@ -70,7 +70,7 @@ def test_a_publisher_that_may_publish_is_not_reported(name):
     assert found(USED[name]) == []
 
 
-def test_an_unused_publisher_in_a_library_is_not_reported_because_other_programs_may_use_it():
+def test_unused_publisher_in_a_library_is_not_reported():
     body = "class C:\n    def __init__(self):\n        self.pub = MADE\nC()"
     assert found(body, foot="\n") == []
     assert found("MADE", foot="\n") == [1], "no other code can reach a publisher without a name"

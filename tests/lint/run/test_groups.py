@@ -116,7 +116,7 @@ def test_final_findings_are_reported_after_one_two_and_four_programs(performed):
     assert len(performed) == 7
 
 
-def test_the_findings_of_a_file_are_final_only_after_all_programs_that_use_the_file_were_analysed():
+def test_findings_are_final_after_all_importing_programs():
     shared = Script("shared.py", "shared", "x = 1\n")
     tasks = [Task((shared, one), analyse=True) for one in scripts(0, 0)]
     told: list[frozenset[str]] = []

@@ -86,7 +86,7 @@ def test_the_command_line_ends_with_the_arguments_that_ros_adds():
     assert command_line(launched(arguments="--x $(arg y)"), Launch(FILE), "/k") == {}
 
 
-def test_all_parameters_of_a_node_are_passed_unless_only_the_robot_knows_them():
+def test_node_parameters_are_passed_if_they_are_known():
     values = {
         "b": {"c": [1, None]},
         "a": 1,
@@ -125,7 +125,7 @@ def test_an_endpoint_is_undetermined_unless_it_has_exactly_one_name(example):
     assert not undetermined(Interface("n.py", flows=(replace(unnamed, flow=None),)))
 
 
-def test_fingerprints_and_names_in_the_code_are_the_same_as_in_a_run_without_a_launch_file(example):
+def test_launch_file_does_not_change_fingerprints(example):
     every = Interface("n.py", flows=(replace(example.finding(), fingerprint="old"),))
     other = example.finding("implicit")
     decided = Interface("n.py", flows=(replace(example.finding(), fingerprint="new"), other))
@@ -159,7 +159,7 @@ def made(*instances: Instance) -> list[tuple[str, str, str, str]]:
     return [(one.node, one.source, one.sink, one.kind) for one in hops(instances)]
 
 
-def test_the_topics_in_the_flows_of_a_node_are_renamed_as_in_its_launch_file(example):
+def test_launch_file_renames_topics_in_flows(example):
     both = instance(
         "/n/k",
         flow(example, ("a",), ("b", "/c")),
@@ -176,12 +176,12 @@ def test_the_topics_in_the_flows_of_a_node_are_renamed_as_in_its_launch_file(exa
     assert made(instance("/k", replace(example.finding(), flow=None))) == []
 
 
-def test_the_source_of_a_service_flow_is_named_request_and_its_sink_response(example):
+def test_service_flow_runs_from_request_to_response(example):
     server = instance("/s", flow(example, ("add",), ("add",), heard="rospy.Service", said="rospy.Service"))
     assert made(server) == [("/s", "/add (request)", "/add (response)", "explicit")]
 
 
-def test_data_of_a_request_may_return_to_its_client_if_the_server_was_not_analysed(example):
+def test_unread_server_may_return_request_data_to_its_client(example):
     call, answer = "rospy.ServiceProxy.__call__", "rospy.ServiceProxy"
     asks, uses = flow(example, ("a",), ("add",), said=call), flow(example, ("add",), ("b",), heard=answer)
     through = [hop for hop in made(instance("/c", asks, uses)) if hop[3] == "not read"]
@@ -191,7 +191,7 @@ def test_data_of_a_request_may_return_to_its_client_if_the_server_was_not_analys
     assert [hop for hop in made(instance("/c", asks)) if hop[3] == "not read"] == []
 
 
-def test_a_node_that_was_not_read_may_connect_the_topics_of_its_remappings(example):
+def test_unread_node_may_connect_its_remapped_topics(example):
     unread = Instance(
         launched("u", namespace="/", remaps=(("in", "/a"), ("out", "/b"), ("x", "/c"))),
         "/u",
@@ -212,7 +212,7 @@ def test_a_node_that_was_not_read_may_connect_the_topics_of_its_remappings(examp
     assert made(replace(seen, known=replace(seen.known, through=False))) == []
 
 
-def test_a_node_without_a_name_in_the_launch_file_is_named_by_its_code_or_program():
+def test_unnamed_node_gets_the_name_in_its_code_or_program():
     assert full_name(launched("a"), "b") == "/n/a"
     assert full_name(launched(""), "b") == "/n/b"
     assert full_name(launched(""), "") == "/n/k.py"

@@ -72,7 +72,7 @@ def quality(text: str) -> Qos | None:
 
 
 @pytest.mark.parametrize(("call", "found"), PROFILES)
-def test_the_quality_of_service_of_a_call_is_read_if_it_is_constant(call, found):
+def test_constant_quality_of_service_is_read(call, found):
     assert quality(call) == found
 
 
@@ -95,12 +95,12 @@ def test_the_quality_of_service_of_a_call_is_read_if_it_is_constant(call, found)
         ("given = {}\ngiven = {'reliability': R.BEST_EFFORT}\np = QoSProfile(**given)", None),
     ],
 )
-def test_a_profile_in_a_variable_is_followed_with_the_policies_assigned_to_it(before, found):
+def test_profile_in_a_variable_includes_assigned_policies(before, found):
     assert quality(f"{before}\n{SUBSCRIBED.format('p')}") == found
     assert quality(f"{before}\n{SUBSCRIBED.format('self.p')}") == found
 
 
-def test_a_profile_may_be_imported_under_another_name_or_from_another_module_of_the_program():
+def test_profile_may_be_imported_under_another_name():
     assert quality("from rclpy.qos import qos_profile_sensor_data as S\n" + SUBSCRIBED.format("S")) == EFFORT
     call = ast.parse(SUBSCRIBED.format("profiles.FAST"))
     place = call.body[0]
@@ -351,7 +351,7 @@ def test_parts_of_format_strings_are_words():
     assert words([module("for a in 'xy': f(a)\n[b for b in 'z']")]) == {"xy", "x", "y", "z"}
 
 
-def test_each_string_of_a_program_may_be_a_name_that_the_program_uses():
+def test_any_string_of_a_program_may_be_a_used_name():
     assert words([module("a = '~b/'\nc = f'x{1}.y'"), module("'/d/e'; 1; b'f'")]) == {"b", "x", "y", "d/e"}
     assert words([module("class C:\n    a: int = 1\n    b = 2\nc: int = 1\ndict(d=1, **e)\nf(g=1)")]) == {
         "a",
@@ -429,7 +429,7 @@ def test_a_command_that_a_timer_repeats_is_stale(example):
     assert stale([found], [module(CONTROL)]) == (found,)
 
 
-def test_numbers_count_as_movement_commands_if_the_name_of_their_topic_says_so():
+def test_numbers_on_movement_topics_are_movement_commands():
     names = {"wheel_velocity/command": True, "cmd_vel": True, "arm/command": True, "speed": False, "leftThrust": True,
              "thrust/state": False, "command/log/level": False}  # fmt: skip
     assert {one: is_command("Float64", (one,)) for one in names} == names
@@ -471,6 +471,6 @@ def test_other_flows_are_not_stale(example, given):
         ("    s = Service('a', Trigger, tick)\n", False),
     ],
 )
-def test_a_command_is_not_stale_if_the_program_clears_it_or_reads_the_time(example, more, found):
+def test_cleared_or_timed_command_is_not_stale(example, more, found):
     assert bool(stale([command(example)], [module(CONTROL + "    " + more)])) is found
     assert stale([], [module(CONTROL)]) == ()

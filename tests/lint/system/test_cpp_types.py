@@ -68,7 +68,7 @@ def test_a_program_uses_only_types_that_its_files_name(tmp_path, line, more):
         "#include <base/base.h>",
     ],
 )
-def test_the_types_are_unknown_if_a_library_may_use_topics_on_its_own(tmp_path, line):
+def test_types_are_unknown_if_a_library_may_use_topics(tmp_path, line):
     assert types(tmp_path, line, base="#include <gazebo/gazebo.hh>") is None
 
 

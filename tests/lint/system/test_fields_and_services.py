@@ -179,7 +179,7 @@ def test_no_field_counts_as_absent_if_the_message_type_is_unknown():
         ("rospy.Service('a', Add)", None),
     ],
 )
-def test_the_name_of_the_service_that_a_client_calls_is_read_from_a_literal(call, found):
+def test_service_name_of_a_client_is_read_from_a_literal(call, found):
     services = [(name, kind) for _, name, kind in called_services(Outline(ast.parse(call)))]
     assert services == ([found] if found else [])
 
@@ -199,6 +199,6 @@ def test_the_name_of_the_service_that_a_client_calls_is_read_from_a_literal(call
         ("rospy.Subscriber", "", ""),
     ],
 )
-def test_the_part_of_a_service_or_action_that_is_sent_or_received_is_named(api, sent, received):
+def test_sent_or_received_part_of_a_service_is_named(api, sent, received):
     assert part(api, sent=True) == sent
     assert part(api, sent=False) == received

@@ -94,7 +94,7 @@ def test_gitlab_lists_hazards_and_unreadable_files(robot, capsys):
     ]
 
 
-def test_junit_has_a_failed_case_for_each_hazard_and_a_passed_case_for_each_flow(robot, capsys):
+def test_junit_has_failed_hazards_and_passed_flows(robot, capsys):
     root = ElementTree.fromstring(report(capsys, "junit"))
     assert (root.get("tests"), root.get("failures"), root.get("skipped")) == ("3", "1", "1")
     suites = {suite.get("name"): list(suite) for suite in root}

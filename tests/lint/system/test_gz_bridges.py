@@ -233,7 +233,7 @@ def test_a_remapping_that_no_bridged_topic_has_is_reported(cart, capsys):
 @pytest.mark.parametrize(
     "place", ["", '<include file="$(find-pkg-share other)/launch/x.launch.py"/>', "<unknown/>"]
 )
-def test_a_missing_publisher_may_be_started_by_a_file_that_is_not_read(cart, capsys, place):
+def test_unread_file_may_start_a_missing_publisher(cart, capsys, place):
     wrong = CMD.replace("/cmd_vel", "/model/cart/cmd_vel")
     _, out, _ = run(capsys, "--launch", launched(cart, BRIDGE.format(f"{SCAN} {wrong}") + START + place))
     assert ("TARL301" in out) is not bool(place)

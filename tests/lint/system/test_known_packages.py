@@ -72,9 +72,7 @@ def codes(root: Path, launch: str, pilot: str = "Twist", base: str = "Twist") ->
         ("tilting_laser", "tilt", []),
     ],
 )
-def test_a_node_that_was_not_read_may_be_the_other_end_only_if_its_package_uses_the_type(
-    tmp_path, package, program, found
-):
+def test_unread_node_is_the_other_end_only_with_a_matching_type(tmp_path, package, program, found):
     assert codes(tmp_path, PAIR.format(NODE.format(package, program))) == found
 
 
@@ -85,7 +83,7 @@ def test_the_velocities_of_a_multiplexer_are_twists(tmp_path):
     assert codes(tmp_path / "b", PAIR.format(stamped), base="TwistStamped") == []
 
 
-def test_a_message_type_of_the_workspace_is_used_only_by_packages_of_the_workspace(tmp_path):
+def test_workspace_types_are_used_only_by_workspace_packages(tmp_path):
     (tmp_path / "robot/msg").mkdir(parents=True)
     (tmp_path / "robot/msg/Twist.msg").write_text("float64 speed\n")
     (tmp_path / "robot/launch").mkdir()
@@ -107,7 +105,7 @@ def node(package: str, executable: str, arguments: str = "", kind: str = "node")
     return LaunchedNode(package, executable, "n", "/", Path("a.launch"), 1, arguments=arguments, kind=kind)  # type: ignore[arg-type]
 
 
-def test_a_nodelet_and_a_component_have_the_types_of_the_package_of_their_class():
+def test_nodelet_has_the_types_of_its_class_package():
     assert kinds(node("nodelet", "nodelet", "manager")) == frozenset()
     assert "Image" in (kinds(node("nodelet", "nodelet", "load image_proc/rectify m")) or ())
     assert "Image" in (kinds(node("image_proc", "image_proc::RectifyNode", kind="component")) or ())
@@ -185,9 +183,7 @@ def test_the_type_of_a_multiplexer_of_ros_2_depends_on_its_version():
     [("$(find usb_cam)/launch/a.launch", ["TARL301"]), ("$(find amcl_maps)/launch/a.launch", []),
      ("$(find move_base)/launch/a.launch", [])],
 )  # fmt: skip
-def test_a_missing_launch_file_of_a_known_package_starts_only_nodes_that_use_the_types_of_that_package(
-    tmp_path, include, found
-):
+def test_missing_launch_file_of_a_known_package_has_its_types(tmp_path, include, found):
     assert codes(tmp_path, PAIR.format(f'<include file="{include}"/>')) == found
 
 

@@ -54,7 +54,7 @@ READER = '<node pkg="arm" type="relay.py" name="reader"/>'
         (f"<group>{SCAN.replace('scan', 'in', 1)}{READER}{unread('filter', OUT)}</group>", False),
     ],
 )
-def test_a_remapping_of_a_group_belongs_to_the_only_node_that_can_use_it(workspace, capsys, body, reached):
+def test_group_remapping_belongs_to_the_only_possible_node(workspace, capsys, body, reached):
     file = launched(workspace, ENDS + body)
     _, out, _ = run(capsys, "--launch", file)
     chain = "/a → /talker → /front/scan → [/filter, not read] → /b → /listener → /c  not read"

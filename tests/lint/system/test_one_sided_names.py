@@ -70,7 +70,7 @@ def test_published_topics_are_not_listed(arm, capsys):
     assert listed(capsys, arm, relay("one", "a", "b") + relay("two", "b", "a")) == []
 
 
-def test_a_remapping_of_a_node_that_was_not_read_may_be_the_publisher(arm, capsys):
+def test_remapping_of_an_unread_node_may_be_the_publisher(arm, capsys):
     driver = '<node pkg="base" type="laser" name="laser"><remap from="out" to="/scan"/></node>'
     assert listed(capsys, arm, relay("one", "scan", "out") + driver) == []
 

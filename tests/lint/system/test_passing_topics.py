@@ -127,7 +127,7 @@ def test_programs_of_topic_tools_name_their_topics_in_parameters_in_ros2(
     assert ends(capsys, launched(workspace, component, "b.launch.xml"), 1) == (subscribed, published)
 
 
-def test_in_ros2_a_remapping_of_out_does_not_rename_the_topic_out_compressed_of_republish(workspace, capsys):
+def test_ros2_republish_does_not_rename_out_compressed(workspace, capsys):
     node = """<node pkg="image_transport" exec="republish" name="r">
         <param name="in_transport" value="raw"/><param name="out_transport" value="compressed"/>
         <remap from="in" to="/cam"/><remap from="out" to="/small"/></node>"""

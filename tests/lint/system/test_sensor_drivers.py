@@ -37,7 +37,7 @@ def test_a_sensor_driver_uses_the_message_types_of_its_sensor(package, program, 
         ("scamera", "node"),
     ],
 )
-def test_a_program_that_does_more_than_read_a_sensor_may_use_any_topic(package, program):
+def test_program_beyond_a_sensor_driver_may_use_any_topic(package, program):
     assert sensors(package, program) == ()
     assert driver_types(package, program) is None
     assert driver_words(package, program) is None
@@ -63,7 +63,7 @@ def test_a_sensor_driver_may_use_names_made_of_typical_words_of_drivers(name, ma
     assert offered(name, words) is may
 
 
-def test_a_sensor_driver_may_publish_the_topics_to_which_its_launch_file_subscribes():
+def test_sensor_driver_may_publish_topics_of_its_launch_file():
     lidar = Seen(kinds=driver_types("acme_lidar", ""), words=driver_words("acme_lidar", ""))
     assert not lidar.may_offer("Trigger", ("/scout/release",), ())
     assert lidar.may_offer("Trigger", ("/scout/release",), ("scan", "~/release"))

@@ -93,7 +93,7 @@ def test_conditions_of_enclosing_elements_are_combined(package):
     assert exclusive(*found.nodes)
 
 
-def test_if_an_argument_is_passed_to_an_included_file_its_condition_names_the_outer_argument(package):
+def test_included_condition_names_the_outer_argument(package):
     (package / "inner.launch").write_text(
         '<launch><arg name="sim"/><node pkg="arm" type="d" name="n" if="$(arg sim)"/></launch>'
     )

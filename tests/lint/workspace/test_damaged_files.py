@@ -266,7 +266,7 @@ def test_a_broken_file_is_named_with_the_reason(name: str, workspace: Path) -> N
     assert any(re.match(reason, one.reason) for one in problems[name]), problems
 
 
-def test_a_missing_file_and_a_path_that_is_not_a_file_are_named(workspace: Path) -> None:
+def test_missing_file_and_folder_are_named(workspace: Path) -> None:
     for name in ("arm/msg/State.msg", "arm/cfg/Arm.cfg", "arm/scripts/drive.py"):
         path = workspace / name
         before = path.read_bytes()

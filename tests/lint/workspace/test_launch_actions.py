@@ -212,7 +212,7 @@ PARAMETERS2 = [
 
 
 @pytest.mark.parametrize(("given", "found", "problems"), PARAMETERS2)
-def test_a_parameter_of_a_ros2_node_gets_the_value_in_the_launch_file(package, given, found, problems):
+def test_ros2_parameter_gets_its_value_in_the_launch_file(package, given, found, problems):
     launch = described(package, f"node(parameters={given})")
     assert settings(launch.nodes[0]) == found
     assert reasons(launch) == problems
@@ -232,7 +232,7 @@ def test_parameters_and_remappings_of_actions_apply_to_later_nodes(package):
     assert [(one.remaps, one.inherited) for one in found.nodes] == [((), 0), ((("x", "y"), ("z", "/w")), 1)]
 
 
-def test_a_remapping_in_a_group_also_applies_after_the_group_if_an_earlier_remapping_was_set(package):
+def test_remapping_in_a_group_may_apply_after_the_group(package):
     inside = "GroupAction([SetRemap('x', 'y'), SetParameter('p', 1)]), node('a')"
     alone = described(package, inside).nodes[0]
     assert (alone.remaps, settings(alone)) == ((), {})
@@ -284,7 +284,7 @@ def test_an_opaque_function_can_read_configurations_and_conditions(package):
     assert found.problems == ()
 
 
-def test_a_value_of_an_opaque_function_that_only_the_robot_knows_is_not_followed(package):
+def test_opaque_function_value_from_the_robot_is_not_followed(package):
     body = """
 def made(context):
     if IfCondition(LaunchConfiguration("open")).evaluate(context):
@@ -316,7 +316,7 @@ def test_the_elements_of_an_xml_launch_file_show_its_ros_version(package, text, 
     assert launched(package, text, "a.launch.xml").ros2 is ros2
 
 
-def test_an_xml_launch_file_without_typical_elements_has_the_ros_version_of_its_package(package):
+def test_plain_xml_launch_file_has_the_ros_version_of_its_package(package):
     text = '<launch><arg name="a"/></launch>'
     (package / "package.xml").write_text(
         "<package><name>arm</name><export><build_type>ament_cmake</build_type></export></package>"

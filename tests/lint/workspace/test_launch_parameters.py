@@ -20,7 +20,7 @@ def values(*settings: Setting, node: str = "/n") -> dict[str, Any]:
     return {one.name: one.value for one in stated(settings, node)}
 
 
-def test_a_value_or_each_entry_of_a_yaml_mapping_gets_the_name_that_its_setting_states():
+def test_each_yaml_entry_gets_the_name_of_its_setting():
     assert values(Setting("~a", HERE, 1), Setting("/b", HERE, "x"), Setting("~c", HERE, yaml="[1, 2]")) == {
         "~a": 1, "/b": "x", "~c": [1, 2],
     }  # fmt: skip
@@ -87,7 +87,7 @@ def test_sections_are_found_at_any_depth():
     ]
 
 
-def test_a_node_has_the_parameters_of_its_sections_and_later_sections_take_precedence():
+def test_later_parameter_sections_take_precedence():
     file = {
         "/**": {"ros__parameters": {"a": 1, "b": {"c": 2}}},
         "gate": {"ros__parameters": {"a": 5}},

@@ -203,7 +203,7 @@ def test_a_launch_file_that_does_not_exist_is_reported(package):
     assert (found.nodes, len(found.problems)) == ((), 1)
 
 
-def test_a_parameter_that_is_set_after_a_node_replaces_the_parameter_that_the_node_sets(package):
+def test_parameter_set_after_a_node_replaces_its_value(package):
     found = launched(
         package,
         """<launch><param name="/left/drive/early" value="1"/>

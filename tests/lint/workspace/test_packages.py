@@ -125,7 +125,7 @@ def test_the_modules_that_setup_files_install_are_found(tmp_path, given, modules
     assert {one.name: one.path.relative_to(tmp_path).as_posix() for one in found} == modules
 
 
-def test_a_package_of_unknown_kind_has_the_module_with_the_name_of_the_package(tmp_path):
+def test_package_of_unknown_kind_has_a_module_of_its_name(tmp_path):
     written(tmp_path, {"arm/__init__.py": ""})
     assert [one.name for one in contents(tmp_path, Manifest("arm", "unknown"), [])[1]] == ["arm"]
     assert contents(tmp_path, Manifest("arm", "catkin"), [])[1] == ()
@@ -340,7 +340,7 @@ def test_folders_of_tools_are_skipped_and_folders_marked_as_ignored_are_noted(tm
     assert not is_ignored(tmp_path / "a", tmp_path)
 
 
-def test_the_root_of_a_workspace_is_its_src_folder_its_repository_or_the_folder_of_the_outermost_package(
+def test_workspace_root_is_the_src_folder_or_the_repository(
     tmp_path,
 ):
     inner = tmp_path / "ws/src/group/arm/arm"
@@ -358,7 +358,7 @@ def test_the_root_of_a_workspace_is_its_src_folder_its_repository_or_the_folder_
     assert workspace_root(file) == tmp_path / "ws/src/group"
 
 
-def test_a_launch_file_may_have_another_ending_in_a_folder_of_launch_files(tmp_path):
+def test_launch_folder_may_contain_files_with_other_endings(tmp_path):
     written(
         tmp_path,
         {
@@ -459,7 +459,7 @@ def test_arguments_of_nodes_are_read_as_ros_reads_them():
     assert ros2("--ros-args -r __name:=m -r __node:=o -p x:=1 -r") == Given((), (("~x", "1"),), (), "m")
 
 
-def test_the_first_remapping_of_each_name_counts_and_remappings_of_other_nodes_are_left_out():
+def test_first_remapping_of_each_name_counts():
     pairs = [
         ("a", "b"),
         ("/n/a", "c"),

@@ -161,9 +161,7 @@ def test_a_module_is_found_in_the_folder_of_its_package(tmp_path):
         ("d.txt", "#!/usr/bin/env python3\n", False),
     ],
 )
-def test_a_file_is_recognised_as_a_python_program_by_its_name_or_its_first_line(
-    tmp_path: Path, name, text, python
-):
+def test_python_program_is_recognised_by_name_or_first_line(tmp_path: Path, name, text, python):
     (tmp_path / name).write_text(text)
     assert is_python(tmp_path / name) is python
     assert not has_shebang(tmp_path)

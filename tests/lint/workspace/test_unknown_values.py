@@ -187,7 +187,7 @@ def test_code_that_is_not_constant_is_reported_with_its_line(tmp_path, name):
     assert [(one.file, one.line, one.reason) for one in file.problems] == [(path, line, reason)]
 
 
-def test_if_a_condition_is_unknown_a_branch_that_does_not_raise_is_taken(tmp_path):
+def test_unknown_condition_takes_a_branch_that_does_not_raise(tmp_path):
     kept = interpreted(
         tmp_path,
         "x = y = 0\nif absent:\n    x = 1\nelse:\n    x = 2\nif absent:\n    raise E\nelse:\n    y = 3",

@@ -123,7 +123,7 @@ def test_bytes_are_converted_to_the_form_of_each_ros_version() -> None:
     assert second == array("B", [1, 2, 255])
 
 
-def test_a_single_byte_is_bytes_in_ros_2_and_a_number_in_ros_1() -> None:
+def test_single_byte_is_bytes_in_ros2_and_a_number_in_ros1() -> None:
     found = [converted(told("b", data=7), one("std_msgs/Byte", kind)).data for kind in KINDS]
     assert found == [7, b"\x07"]
 

@@ -47,7 +47,7 @@ def test_a_type_that_the_bag_defines_is_read(tmp_path: Path) -> None:
     assert bag.decode("/b", b"\x00\x01\x00\x00" + struct.pack("<d", 4.0)).x == 4.0
 
 
-def test_a_type_that_the_bag_does_not_define_comes_from_its_ros_version(tmp_path: Path) -> None:
+def test_undefined_type_comes_from_the_ros_version_of_the_bag(tmp_path: Path) -> None:
     """The header of ROS 1 begins with a counter."""
     channels = {"/h": Channel("/h", "std_msgs/msg/Header")}
     stamp, frame = struct.pack("<iI", 3, 4), struct.pack("<I", 3) + b"map"
@@ -106,7 +106,7 @@ def test_without_rosbags_the_command_that_installs_it_is_named(
         opened(path)
 
 
-def test_the_note_on_a_truncated_bag_states_its_duration_and_number_of_messages(tmp_path: Path) -> None:
+def test_note_on_a_truncated_bag_states_duration_and_messages(tmp_path: Path) -> None:
     folder = write_bag(tmp_path / "run", iter(STEPS))
     (folder / "metadata.yaml").unlink()
     bag = opened(folder)

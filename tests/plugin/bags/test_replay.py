@@ -75,7 +75,7 @@ class Played:
         self.heard.append((round(self.ros.scheduler.time / 1e9 - START / 1e9, 6), topic, message.data))
 
 
-def test_each_message_of_a_sensor_is_delivered_at_its_time_and_steps_follow_each_other() -> None:
+def test_sensor_messages_are_delivered_at_their_times() -> None:
     bag = Mission([(0.0, "/level", 1.0), (0.3, "/level", 2.0), (0.5, "/level", 3.0), (1.7, "/level", 4.0)])
     played = Played(bag)
     assert played.heard == [
@@ -91,7 +91,7 @@ def test_each_message_of_a_sensor_is_delivered_at_its_time_and_steps_follow_each
     assert round(played.end * 10) == (START // 10**9) * 10 + 20
 
 
-def test_a_message_at_the_end_of_a_step_belongs_to_the_next_step() -> None:
+def test_message_at_a_step_end_belongs_to_the_next_step() -> None:
     seen: list[float] = []
     bag = Mission([(0.0, "/level", 1.0), (0.5, "/level", 2.0), (0.9, "/level", 3.0)])
     Played(bag, monitor=lambda moment: seen.append(moment.latest("/level").data) or 0.0)

@@ -52,7 +52,7 @@ def bag(tmp_path: Path, *records: bytes, name: str = "a.bag") -> Path:
 BOOL = Channel("/a", "std_msgs/msg/Bool", "bool data")
 
 
-def test_a_bag_of_ros_1_has_channels_and_messages_in_and_outside_of_chunks(tmp_path: Path) -> None:
+def test_ros1_bag_has_messages_inside_and_outside_chunks(tmp_path: Path) -> None:
     inside = connection(7, "/b", "my_msgs/sub/Odd", latching=b"1") + message(7, 1, 5, b"xy")
     path = bag(
         tmp_path,
@@ -200,7 +200,7 @@ def test_all_whole_records_of_a_truncated_mcap_file_are_read(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("lost", [0, 1])
-def test_the_whole_records_of_a_chunk_are_read_even_if_its_end_is_missing(tmp_path: Path, lost: int) -> None:
+def test_whole_records_of_a_truncated_chunk_are_read(tmp_path: Path, lost: int) -> None:
     inside = b"".join((*HEAD, recorded(5, 1, b"one"), recorded(5, 2, b"two")))
     path = mcap_file(tmp_path, mcap_chunk(inside), recorded(5, 3, b"three"))
     if lost:
@@ -256,9 +256,7 @@ def database(path: Path, definitions: Iterable[tuple[str, str, str]] | None) -> 
 
 
 @pytest.mark.parametrize("defined", [True, False])
-def test_a_database_has_its_topics_and_its_messages_in_the_order_of_writing(
-    tmp_path: Path, defined: bool
-) -> None:
+def test_database_keeps_topics_and_messages_in_writing_order(tmp_path: Path, defined: bool) -> None:
     definitions = [("std_msgs/msg/Bool", "ros2msg", "bool data"), ("my/msg/B", "ros2idl", "struct B {}")]
     path = database(tmp_path / "a.db3", definitions if defined else None)
     assert list(walk(path)) == [

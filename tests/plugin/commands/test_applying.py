@@ -291,9 +291,7 @@ def test_git_merges_a_repair_into_a_file_that_changed_since(robot: Path) -> None
     assert "2.4 * GAIN" in (robot / "node.py").read_text()
 
 
-def test_a_repair_of_a_permanent_drift_says_to_record_it_and_to_commit_both(
-    robot: Path, capsys: Printed
-) -> None:
+def test_repair_of_a_permanent_drift_is_recorded_and_committed(robot: Path, capsys: Printed) -> None:
     record = "pytest test_it.py::test_it --tarl-record --tarl-drift mud"
     patch = repair(robot, {"node.py": guarded(NODE)}, facts=(f"record: {record}",))
     assert main(["apply", str(patch)]) == 0

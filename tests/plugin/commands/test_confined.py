@@ -382,7 +382,7 @@ def test_repeating_an_interrupted_command_completes_it(command: str, capsys: Pri
         assert ("node.py was already changed" in told) == (command == "apply")
 
 
-def test_a_patch_without_a_digest_applies_only_to_the_exact_text_it_was_made_for(capsys: Printed) -> None:
+def test_patch_without_a_digest_needs_the_exact_text(capsys: Printed) -> None:
     with robot() as (root, place):
         place.write_bytes(re.sub(rb"# " + SEAL.encode() + rb".*\n", b"", PATCH))
         assert main(["apply", str(place)]) == 0

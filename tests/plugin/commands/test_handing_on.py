@@ -471,7 +471,7 @@ def test_the_command_fleet_writes_its_result_to_the_named_files(
         (("robot",), ["--fail-if", "degraded", "--fail-if", "robot"], 1),
     ],
 )
-def test_the_command_fleet_fails_if_the_condition_of_the_option_fail_if_holds(
+def test_fleet_command_fails_if_fail_if_holds(
     answered: Answer, met: tuple[str, ...], flags: list[str], status: int
 ) -> None:
     answered.met = met

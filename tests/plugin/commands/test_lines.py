@@ -36,7 +36,7 @@ def difference(**changes: Any) -> FixtureDiff:
         (2.0, 0.0, 1.9, True),
     ],
 )
-def test_a_recording_is_worse_if_its_loss_is_significant_and_above_the_tolerated_loss(
+def test_recording_is_worse_if_its_loss_exceeds_the_tolerance(
     loss: float, p: float, most: float, expected: bool
 ) -> None:
     assert difference(loss=loss, p_loss=p).worse(0.05, most) is expected
@@ -181,7 +181,7 @@ def test_a_result_becomes_a_row_of_a_table() -> None:
     assert summary._repair(follows) == "scale KP by (light / 2.0) to the power of -1.7"
 
 
-def test_a_chart_has_the_statements_with_the_largest_losses_in_order_of_file_and_line() -> None:
+def test_chart_lists_the_largest_losses_in_file_order() -> None:
     sites = [
         {
             "path": f"src/{'ba'[n % 2]}.py",
@@ -239,7 +239,7 @@ def test_a_recording_of_a_permanent_drift_names_it() -> None:
     assert lines[1] == "  design     with the drift mud and ice, permanent"
 
 
-def test_the_bounds_of_a_recording_have_a_label_on_the_first_line_only() -> None:
+def test_bounds_label_is_on_the_first_line_only() -> None:
     sure = Bound(0.9, 1.0, 0.95, "exact", True, 2)
     stated = Guarantee(2, 2, sure, 1.0, sure, 0.1, None, 0, True)
     bounds = [*show.lines(shown(stated=stated), 1000, [500])][4:7]
@@ -266,7 +266,7 @@ def test_many_statements_are_listed_only_on_request() -> None:
     assert len([*show.lines(given, 9000, [1500, 2500])]) == 8 + 2 * 13
 
 
-def test_a_decrease_of_successes_without_a_loss_of_reward_is_reported_with_both_shares() -> None:
+def test_decrease_of_successes_is_reported_with_both_shares() -> None:
     verdict = {
         "result": "degraded",
         "because": ["success"],

@@ -41,7 +41,7 @@ def test_a_file_of_arrays_is_a_recording() -> None:
 
 
 @pytest.mark.parametrize("place", [".tarl/margins", "HEAD:.tarl/margins", "HEAD:.tarl/margins/"])
-def test_the_margins_of_a_folder_are_read_in_the_order_of_their_names(project: Path, place: str) -> None:
+def test_margins_of_a_folder_are_sorted_by_name(project: Path, place: str) -> None:
     assert margins_in(place) == [OTHER, FOUND]
 
 

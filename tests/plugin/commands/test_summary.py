@@ -33,7 +33,7 @@ def written(folder: Path, *documents: object) -> Path:
     return results
 
 
-def test_the_summary_has_a_row_per_test_and_a_chart_of_each_loss(
+def test_summary_has_a_row_per_test_and_a_chart_per_loss(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     same = copy.deepcopy(RESULT) | {"drift": "dry", "region": [], "repair": None}

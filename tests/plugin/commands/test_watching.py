@@ -246,7 +246,7 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 @pytest.mark.parametrize(("below", "code"), [(True, 1), (False, 0)])
-def test_with_the_option_once_the_exit_status_shows_whether_there_is_an_alarm(
+def test_once_option_sets_the_exit_status_by_alarm(
     begun: Any, below: bool, code: int, capsys: Printed
 ) -> None:
     watched = Watch([status(1, below=below)])
@@ -258,9 +258,7 @@ def test_with_the_option_once_the_exit_status_shows_whether_there_is_an_alarm(
     assert capsys.readouterr().out == "report\n1\n"
 
 
-def test_with_the_option_once_an_unreadable_log_is_reported_and_the_command_fails(
-    begun: Any, capsys: Printed
-) -> None:
+def test_once_option_reports_an_unreadable_log_and_fails(begun: Any, capsys: Printed) -> None:
     watched = Watch([status(1)], problems=("a.log: torn.", "b.log: gone."))
     begun(watched)
     with pytest.raises(LogError, match=r"^a\.log: torn\. b\.log: gone\.$"):
@@ -330,7 +328,7 @@ def test_a_watch_waits_between_two_reads_of_the_logs(begun: Any, monkeypatch: py
     assert waited == [7.5] * 3
 
 
-def test_a_watch_that_runs_as_a_ros_node_reads_the_logs_until_it_ends(
+def test_ros_node_of_the_watch_reads_logs_until_it_ends(
     begun: Any, monkeypatch: pytest.MonkeyPatch, capsys: Printed
 ) -> None:
     watched = Watch([status(1)], [status(2, below=True)])

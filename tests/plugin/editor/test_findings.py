@@ -56,7 +56,7 @@ def test_a_diagnostic_has_the_range_message_code_and_data_of_its_finding(places:
         ("TARL201", "accepted", Severity.Hint),
     ],
 )
-def test_the_severity_is_warning_for_hazards_and_information_for_flows_and_hint_for_accepted_findings(
+def test_severity_depends_on_hazard_flow_or_acceptance(
     places: Places, code: str, status: Any, severity: Severity
 ) -> None:
     assert one(finding(code, status=status), places).severity == severity
@@ -87,7 +87,7 @@ def test_a_hazard_lists_no_statements(places: Places) -> None:
 
 
 @pytest.mark.parametrize(("site", "page"), [("", None), ("https://a.example/", "https://a.example/rules/")])
-def test_a_code_links_to_the_page_of_its_rule_if_there_is_a_page(
+def test_code_links_to_the_page_of_its_rule(
     places: Places, monkeypatch: pytest.MonkeyPatch, site: str, page: str | None
 ) -> None:
     monkeypatch.setattr("tarl_lint.documentation.site", lambda: site)
@@ -115,7 +115,7 @@ def test_an_unreadable_file_has_an_error_on_the_whole_line(
     assert shown[0].range == types.Range(types.Position(*start), types.Position(*end))
 
 
-def test_a_code_lens_is_above_each_publish_call_in_the_order_of_the_file(places: Places) -> None:
+def test_code_lenses_follow_the_order_of_the_file(places: Places) -> None:
     later, first = span(4, 5, 23), span(2, 1, 5)
     result = Result(
         findings=(

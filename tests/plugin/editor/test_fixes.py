@@ -52,7 +52,7 @@ def test_accepted_findings_and_other_diagnostics_have_no_fix(data: Any) -> None:
     assert made("a = 1\n", diagnostic(data)) == []
 
 
-def test_a_finding_without_a_fix_does_not_shift_the_fixes_of_later_findings() -> None:
+def test_finding_without_a_fix_does_not_shift_later_fixes() -> None:
     other = {**NEW, "code": "TARL201"}
     titles = [one.title for one in made("a\n", diagnostic(None), diagnostic(NEW), diagnostic(other))]
     assert [title.split()[1] for title in titles[::2]] == ["TARL101", "TARL201"]
@@ -70,9 +70,7 @@ def test_a_finding_without_a_fix_does_not_shift_the_fixes_of_later_findings() ->
         ("a = 1  # ignore[TARL201]\n", (0, 24, "  # tarl: ignore[TARL101]")),
     ],
 )
-def test_a_comment_is_added_to_the_line_or_the_code_is_added_to_an_existing_comment(
-    text: str, expected: tuple[int, int, str]
-) -> None:
+def test_ignore_comment_is_added_or_extended(text: str, expected: tuple[int, int, str]) -> None:
     assert edit(text, diagnostic(NEW)) == expected
 
 

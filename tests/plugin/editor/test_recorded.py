@@ -46,7 +46,7 @@ def written(root: Path, name: str = "a", **changed: Any) -> None:
     (root / ".tarl" / "results" / f"{name}.json").write_text(json.dumps(document))
 
 
-def test_the_figures_of_a_site_come_from_all_comparisons_and_ranks_start_at_one(root: Path) -> None:
+def test_site_figures_come_from_all_comparisons(root: Path) -> None:
     written(root, "b", culprits=[])
     written(root, "a")
     found = read(root).by_site

@@ -276,9 +276,7 @@ def test_each_change_of_a_file_is_noticed(
     assert noticed == [1]
 
 
-def test_the_root_is_the_first_workspace_folder_or_the_root_path_or_the_current_folder(
-    session: Session, tmp_path: Path
-) -> None:
+def test_root_is_the_first_workspace_folder_or_a_fallback(session: Session, tmp_path: Path) -> None:
     def root(folders: Sequence[str], path: str | None) -> Path:
         known = {name: types.WorkspaceFolder(name, name) for name in folders}
         ls: Any = SimpleNamespace(workspace=SimpleNamespace(folders=known, root_path=path))
@@ -350,7 +348,7 @@ def test_a_statement_with_figures_has_a_hover_on_each_of_its_lines(answering: Se
     assert found.range == types.Range(types.Position(1, 0), types.Position(2, 2))
 
 
-def test_there_is_no_hover_without_figures_without_a_file_or_without_a_result(answering: Session) -> None:
+def test_hover_needs_figures_and_a_file(answering: Session) -> None:
     assert hover(answering, 1, "../outside.py") is None
     assert hover(answering, 1, "map.py") is None
     answering.server.kept = recorded.Recorded({SPEED: ()})
@@ -369,7 +367,7 @@ def hints(session: Session, first: int, last: int, name: str = "pilot.py") -> li
 @pytest.mark.parametrize(
     ("first", "last", "count"), [(0, 9, 1), (1, 1, 1), (0, 1, 1), (1, 2, 1), (0, 0, 0), (2, 9, 0)]
 )
-def test_a_ranked_statement_has_a_hint_at_its_end_if_its_line_is_shown(
+def test_ranked_statement_has_a_hint_at_its_end(
     answering: Session, first: int, last: int, count: int
 ) -> None:
     found = hints(answering, first, last)
@@ -386,7 +384,7 @@ def test_hints_are_in_the_order_of_the_file(answering: Session) -> None:
     assert [one.position.line for one in hints(answering, 0, 9)] == [1, 3]
 
 
-def test_there_are_no_hints_without_a_rank_without_a_file_or_without_a_result(answering: Session) -> None:
+def test_hints_need_a_rank_and_a_file(answering: Session) -> None:
     assert hints(answering, 0, 9, "../outside.py") == []
     answering.server.kept = recorded.Recorded({SPEED: figures(None)})
     assert hints(answering, 0, 9) == []

@@ -104,7 +104,7 @@ def command(link: Link) -> None:
 
 
 @pytest.mark.parametrize("place", [("/", "cart"), ("/a", "cart")])
-def test_a_command_that_arrives_between_two_checks_of_an_executor_is_handled_before_the_step(
+def test_command_between_two_checks_is_handled_before_the_step(
     monkeypatch: pytest.MonkeyPatch, place: tuple[str, str]
 ) -> None:
     simulator = Simulator([f"{place[0].rstrip('/')}/cart/get_parameters"])
@@ -151,7 +151,7 @@ def test_without_a_command_since_the_last_step_no_parameter_service_is_called(
     assert simulator.handled == ["/step", "/cmd", "/cart/get_parameters", "/step", "/step"]
 
 
-def test_the_parameter_service_of_each_node_that_receives_a_command_is_called_first(
+def test_parameter_services_of_command_receivers_are_called_first(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     simulator = Simulator(["/left/get_parameters", "/right/get_parameters", "/else/get_parameters"])
@@ -189,7 +189,7 @@ def test_a_step_waits_until_the_services_for_parameters_can_be_called(
     assert simulator.handled == ["/cmd", "/cart/get_parameters", "/step"]
 
 
-def test_a_topic_counts_as_subscribed_once_the_names_of_its_nodes_are_known_or_after_a_limit(
+def test_topic_is_subscribed_once_its_nodes_are_known(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     said: list[Any] = []
@@ -215,7 +215,7 @@ def test_a_topic_counts_as_subscribed_once_the_names_of_its_nodes_are_known_or_a
     assert link._receivers == {"/cmd": ["/cart/get_parameters"]}
 
 
-def test_a_node_that_runs_only_within_a_step_is_called_once_and_delays_one_step(
+def test_node_that_runs_only_within_a_step_delays_one_step(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     now = [100.0]

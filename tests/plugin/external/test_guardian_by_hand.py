@@ -212,7 +212,7 @@ def looks(made: Made, times: list[float]) -> list[float]:
     return found
 
 
-def test_the_ros_graph_is_checked_often_at_first_and_later_once_a_second(made: Made) -> None:
+def test_ros_graph_is_checked_often_at_first(made: Made) -> None:
     made.guardian._do_start(**{name: value for name, value in start().items() if name != "do"})
     quick = [100.0, 100.0 + LOOK / 2, 100.0 + LOOK * 1.5, 100.0 + LOOK * 2, 100.0 + LOOK * 3]
     assert looks(made, quick) == [quick[0], quick[2], quick[4]]
@@ -247,7 +247,7 @@ def test_the_end_of_the_simulator_is_reported_once_for_each_simulator(made: Made
     assert made.told() == [stopped, {"kind": "ended", "status": 3}, stopped, {"kind": "ended", "status": -9}]
 
 
-def test_the_loop_runs_until_the_test_has_ended_and_handles_commands_in_order(
+def test_loop_handles_commands_in_order_until_the_test_ends(
     made: Made, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def arrive() -> None:
@@ -297,7 +297,7 @@ def test_if_nobody_reads_the_events_the_loop_ends(made: Made) -> None:
 
 
 @pytest.mark.parametrize("text", ['{"do": "stop"}\n', '{"do": "stop"}\n{"do": "st'])
-def test_after_the_last_line_the_loop_ends_and_a_hanging_middleware_is_killed(
+def test_hanging_middleware_is_killed_after_the_last_line(
     made: Made, text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made.guardian._group = Part(made.log, "group")  # type: ignore[assignment]
@@ -308,7 +308,7 @@ def test_after_the_last_line_the_loop_ends_and_a_hanging_middleware_is_killed(
 
 
 @pytest.mark.parametrize("known", [True, False])
-def test_the_end_of_the_test_is_noticed_if_the_kernel_can_wait_for_it(
+def test_end_of_the_test_is_noticed_through_the_kernel(
     made: Made, known: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def wait() -> None:
@@ -332,7 +332,7 @@ def test_the_guardian_exits_even_if_its_link_cannot_be_woken(made: Made) -> None
 
 
 @pytest.mark.parametrize("fails", [False, True])
-def test_the_process_ends_at_once_and_its_output_is_not_mixed_with_events(
+def test_process_ends_at_once_with_separate_output(
     made: Made, fails: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     begun: list[Any] = []

@@ -69,7 +69,7 @@ def names(log: Noted) -> list[str]:
     return [one[0] for one in log]
 
 
-def test_the_node_of_the_link_has_a_context_and_a_domain_of_its_own(log: Noted) -> None:
+def test_link_node_has_its_own_context_and_domain(log: Noted) -> None:
     made = Link(7, "/clock", print)
     context, init, node, executor = log[:4]
     assert (context[0], init) == (
@@ -137,7 +137,7 @@ def test_the_client_of_a_service_is_created_once_the_service_exists(log: Noted) 
     assert log == [("node.create_client", ("class of std_srvs/srv/Empty", "/step"), {})]
 
 
-def test_a_long_queue_of_messages_delays_an_answer_only_up_to_a_limit(log: Noted) -> None:
+def test_long_message_queue_delays_an_answer_only_briefly(log: Noted) -> None:
     said: list[dict[str, Any]] = []
     made = Link(7, "/clock", said.append)
     spins: list[float] = []
@@ -248,7 +248,7 @@ def test_closing_is_possible_after_the_node_has_ended(
     assert told == ["the episode is over"]
 
 
-def test_the_node_of_tarl_is_left_out_of_the_nodes_of_a_topic() -> None:
+def test_topic_nodes_exclude_the_node_of_tarl() -> None:
     assert link_ros1._others(["/sim", "/tarl_link", "/tarl_link2"]) == ["/sim", "/tarl_link2"]
     ends = [SimpleNamespace(node_name=name) for name in ("tarl_link", "sim")]
     assert module._others(ends) == ends[1:]

@@ -65,7 +65,7 @@ def test_episodes_that_lost_their_simulator_are_in_recording_result_page_and_sum
     assert "1 of 4 episodes lost its simulator and was run again" in page.read_text()
 
 
-def test_a_simulator_that_is_lost_in_each_run_ends_the_run_with_all_reasons(losing: pytest.Pytester) -> None:
+def test_simulator_lost_in_each_run_ends_with_all_reasons(losing: pytest.Pytester) -> None:
     (losing.path / "losses").write_text("3")
     told = losing.runpytest("--tarl-record", "--tarl-episodes=4").stdout.str()
     assert re.search(r"The simulator sim ended\. TARL ran the episode with seed \d+ 3 times", told)

@@ -228,7 +228,7 @@ def test_a_call_waits_for_its_service(linked: tuple[Link, list[dict[str, Any]], 
     assert 0 < first["asked"] == second["asked"]
 
 
-def test_the_time_of_the_clock_and_the_stamp_of_a_message_are_passed_on(
+def test_clock_time_and_message_stamp_are_passed_on(
     linked: tuple[Link, list[dict[str, Any]], Any],
 ) -> None:
     link, said, _ = linked

@@ -191,7 +191,7 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
     return Machine(monkeypatch)
 
 
-def test_the_command_gets_a_group_of_its_own_and_its_output_goes_to_stderr(machine: Machine) -> None:
+def test_command_has_its_own_group_and_writes_to_stderr(machine: Machine) -> None:
     made = Group(("sim", "a"), "/p", {"LEVEL": "3"})
     (first, (_, command, given)) = machine.log
     assert (first, command, given.pop("env")) == (("adopt",), ["sim", "a"], {**os.environ, "LEVEL": "3"})

@@ -76,7 +76,7 @@ def test_the_traceback_of_an_interrupt_is_left_out_of_the_output(kind: str) -> N
 
 
 @pytest.mark.parametrize("last", SHUT_DOWN)
-def test_errors_of_a_ros_that_was_shut_down_are_left_out_of_the_output(last: str) -> None:
+def test_errors_of_a_stopped_ros_are_left_out(last: str) -> None:
     frames = (
         'Traceback (most recent call last):\n  File "sim.py", line 1, in <module>\n    rclpy.spin(node)\n'
     )
@@ -87,7 +87,7 @@ def test_errors_of_a_ros_that_was_shut_down_are_left_out_of_the_output(last: str
     assert without_interrupts(own) == own
 
 
-def test_messages_that_the_signal_handler_logs_are_left_out_and_other_logged_errors_stay() -> None:
+def test_signal_handler_messages_are_left_out() -> None:
     failed = "rcl_trigger_guard_condition() failed: guard condition implementation is invalid, at guard_condition.c:170"
     handler = f"[ERROR] [1795828810.626488426] [rclpy.signals]: {failed}"
     own = f"[ERROR] [1795828810.626488426] [sim.signals]: {failed}"
@@ -103,9 +103,7 @@ def test_errors_while_the_simulator_ends_stay_in_the_output(kind: str) -> None:
 
 
 @pytest.mark.parametrize("killed", [False, True])
-def test_stopping_waits_for_the_guardian_but_not_for_a_guardian_that_has_ended(
-    killed: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_stopping_waits_for_a_running_guardian(killed: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(client, "PATIENCE", 10_000.0)  # s; a wait in vain would exceed the limit of the test
     guardian = client.Client()
     try:

@@ -27,9 +27,7 @@ from tests.plugin.external.conftest import (
 )  # fmt: skip
 
 
-def test_the_guardian_starts_the_command_and_the_nodes_get_the_time_of_the_simulator(
-    guardian: Guardian, ros: Ros
-) -> None:
+def test_guardian_starts_the_command_with_simulator_time(guardian: Guardian, ros: Ros) -> None:
     made = begun(SETUP, guardian, ros, ("/imu", "/odom"))
     ((start,)) = guardian.commands("start")
     assert (start["command"], start["folder"], start["clock"], start["ros"]) == (
@@ -57,7 +55,7 @@ def test_events_of_the_previous_simulator_are_ignored(guardian: Guardian, ros: R
         ([graph("", "/odom"), clock(0.0)], "no time on /clock"),
     ],
 )
-def test_the_error_about_a_simulator_that_is_not_ready_in_time_states_what_is_missing(
+def test_error_says_why_the_simulator_is_not_ready(
     guardian: Guardian, ros: Ros, events: list[dict[str, Any]], words: str
 ) -> None:
     guardian.react = lambda what, **_: [{"kind": "stopped"}, *events] if what == "start" else []
@@ -123,9 +121,7 @@ def test_a_running_simulator_drives_the_clock_and_topics_of_the_nodes(guardian: 
     assert made.clock == 6.5
 
 
-def test_after_a_simulator_ran_ahead_the_test_waits_only_until_the_end_of_the_new_step(
-    guardian: Guardian, ros: Ros
-) -> None:
+def test_test_waits_for_the_step_after_a_simulator_ran_ahead(guardian: Guardian, ros: Ros) -> None:
     made = begun(SETUP, guardian, ros)
     guardian.events.put(clock(9.0))
     made.advance(1.0)
@@ -220,9 +216,7 @@ def stepping(guardian: Guardian, *, silent: bool = False, stale: bool = False) -
     guardian.react = react
 
 
-def test_nodes_run_before_each_step_of_the_simulator_and_get_its_messages_after_the_step(
-    guardian: Guardian, ros: Ros
-) -> None:
+def test_nodes_run_before_each_simulator_step(guardian: Guardian, ros: Ros) -> None:
     heard: list[tuple[str, float, float]] = []
     ros.bus.observe(lambda topic, one: heard.append((topic, ros.now, one.data)))
     stepping(guardian)
@@ -260,7 +254,7 @@ def test_a_step_ends_only_with_a_new_message_on_each_required_topic(
         ([{"kind": "answer", "id": 1, "error": "no"}], "/step failed: no"),
     ],
 )
-def test_the_simulator_counts_as_lost_if_a_service_fails_or_does_not_answer(
+def test_simulator_is_lost_if_a_service_fails(
     guardian: Guardian, ros: Ros, answer: list[dict[str, Any]], words: str
 ) -> None:
     guardian.react = lambda what, **_: STARTED if what == "start" else answer if what == "call" else []

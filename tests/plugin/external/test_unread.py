@@ -79,7 +79,7 @@ def test_a_service_is_called_once_the_simulator_has_read_the_commands(
     assert len(waits) == 4
 
 
-def test_a_simulator_that_reads_nothing_delays_a_call_only_up_to_a_limit(
+def test_unread_messages_delay_a_call_only_briefly(
     linked: Linked,  # noqa: F811
     ends: tuple[socket.socket, socket.socket],
     monkeypatch: pytest.MonkeyPatch,

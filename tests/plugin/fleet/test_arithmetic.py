@@ -39,9 +39,7 @@ def ints(*values: int) -> Ints:
         (-inf, inf, "too few robots"),
     ],
 )
-def test_a_repair_helps_only_if_the_whole_interval_of_its_effect_is_above_zero(
-    low: float, high: float, verdict: str
-) -> None:
+def test_repair_helps_if_its_whole_interval_is_above_zero(low: float, high: float, verdict: str) -> None:
     assert repaired(reward_bound=bound(low, high)).verdict == verdict
     assert repaired(reward_bound=bound(low, high), strata=0).verdict == "not comparable"
 
@@ -98,9 +96,7 @@ def test_the_jackknife_of_a_plain_mean_is_its_classical_interval() -> None:
 
 
 @pytest.mark.parametrize(("world", "limit", "expected"), [(5.0, 4.9, 6), (5.0, 5.0, 8), (5.0, 6.0, 8)])
-def test_the_onset_of_a_robot_comes_from_the_test_with_the_most_evidence(
-    world: float, limit: float, expected: int
-) -> None:
+def test_onset_comes_from_the_test_with_most_evidence(world: float, limit: float, expected: int) -> None:
     told = status(evidence(2.0, 7), (), evidence(1.0, 4), evidence(3.0, 9))
     assert since(robot("r1", world, limit, told)) == expected
     assert since(robot("r1", world, limit)) == 0
@@ -125,7 +121,7 @@ def test_residuals_of_the_recorded_missions_are_zero_on_average() -> None:
     assert world.of_visit[known].tolist() == (variance * visits)[known].tolist()
 
 
-def test_the_noise_of_a_residual_map_is_at_least_the_noise_of_recorded_visits() -> None:
+def test_residual_map_noise_is_at_least_the_recorded_noise() -> None:
     recorded = fixture()
     world = residual_maps.designed(recorded)
     own = replace(recorded.sample, cells=((),) * (len(recorded.sample.cells) + 1))
@@ -140,7 +136,7 @@ def test_the_noise_of_a_residual_map_is_at_least_the_noise_of_recorded_visits() 
     assert halved.variance[known] == pytest.approx(world.variance[:-1][known])
 
 
-def test_the_e_processes_of_all_robots_share_one_array_that_is_split_by_robot() -> None:
+def test_robots_share_one_array_of_e_processes() -> None:
     processes = restarts.begun(np.array([1.0] * 6))
     peak = np.array([1.0, 2.0, 10.0, 11.0, 20.0, 21.0])  # a bound of both robots, two scores of each
     some = Watched(ints(4, 7), replace(processes, peak=peak), ints(1, 2, 3, 4), 1)

@@ -72,7 +72,7 @@ def test_bags_of_every_format_are_replayed_once_and_compared_with_the_recording(
     assert "4 missions of 4 robots" in capsys.readouterr().out
 
 
-def test_a_bag_that_is_truncated_or_does_not_fit_the_test_is_named_and_skipped(
+def test_truncated_or_unfit_bag_is_skipped_with_a_note(
     project: pytest.Pytester, capsys: pytest.CaptureFixture[str]
 ) -> None:
     good = write_bag(project.path / "good.bag", mission(1.0, 1))
@@ -89,7 +89,7 @@ def test_a_bag_that_is_truncated_or_does_not_fit_the_test_is_named_and_skipped(
     assert [row[0] for row in missions(project)] == ["good"]
 
 
-def test_the_error_says_whether_the_project_the_test_or_the_monitor_is_missing(
+def test_error_names_the_missing_project_test_or_monitor(
     project: pytest.Pytester, capsys: pytest.CaptureFixture[str]
 ) -> None:
     bag = write_bag(project.path / "r0.bag", mission(1.0, 1))

@@ -61,7 +61,7 @@ def test_robots_without_a_clear_cell_are_unclear_and_join_no_cluster() -> None:
     assert of([], np.zeros(12), CELLS, 0.05).found == ()
 
 
-def test_robots_of_a_data_set_that_share_a_drift_form_a_cluster_that_names_its_cells(tmp_path: Path) -> None:
+def test_robots_with_a_common_drift_form_a_cluster(tmp_path: Path) -> None:
     missions.fixture(tmp_path / "test.npz", missions.walks(120, 1))
     logs = []
     for robot in range(4):

@@ -99,7 +99,7 @@ def test_the_effects_of_a_factor_are_relative_to_the_mean_over_missions() -> Non
     assert site.variance == pytest.approx(float(np.var(reward)))
 
 
-def test_the_effects_of_a_version_and_a_season_that_always_coincide_cannot_be_separated() -> None:
+def test_effects_of_coinciding_factors_cannot_be_separated() -> None:
     robot, levels, reward, _ = missions(1, 40, 20, 1.0)
     levels[:, 0] = levels[:, 2] >= 2
     totals = summed(robot, levels, reward, (2, *SIZES[1:]))
@@ -118,7 +118,7 @@ def test_the_effects_of_a_version_and_a_season_that_always_coincide_cannot_be_se
     assert "season (month)" in said[3]
 
 
-def test_missions_without_a_repair_are_named_as_a_level_of_the_factor_repair() -> None:
+def test_missions_without_a_repair_are_a_level_of_their_own() -> None:
     repair = Component("repair", 0.5, 0.1, 0.9, 2, effects=(-0.25, 0.25))
     assert lowest(repair, ("", "guard-1")) == "no repair -0.25"
 
@@ -180,7 +180,7 @@ def test_the_interval_of_a_factor_loses_the_part_of_the_errors() -> None:
         (0, 0, "week", ["version", "site", "season"]),
     ],
 )
-def test_seasons_are_months_if_there_are_three_and_repairs_count_if_some_robots_have_none(
+def test_three_months_make_seasons_a_factor(
     months: int, repairs: int, season: str, factors: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     counts = {decomposition.BY["month"]: months, decomposition.BY["repair"]: repairs}

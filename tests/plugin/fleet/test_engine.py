@@ -43,7 +43,7 @@ def test_a_cluster_task_uses_one_thread_for_linear_algebra(monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
-def test_a_limited_number_of_tasks_runs_at_a_time_and_results_keep_their_order(workers: int) -> None:
+def test_limited_tasks_run_at_a_time_in_order(workers: int) -> None:
     ran: list[int] = []
 
     def tasks() -> Iterator[tuple[int]]:
@@ -89,7 +89,7 @@ class Executor:
         return future
 
 
-def test_at_most_two_tasks_per_thread_wait_on_a_cluster_and_closing_the_results_cancels_them(
+def test_two_tasks_per_thread_wait_on_a_cluster(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     executor: Any = Executor()
@@ -121,7 +121,7 @@ def test_errors_of_a_cluster_are_distinguished_from_errors_of_a_task() -> None:
         engine._result(cancelled)
 
 
-def test_an_argument_that_equals_a_key_of_the_task_graph_is_passed_on_unchanged() -> None:
+def test_argument_equal_to_a_graph_key_is_unchanged() -> None:
     odd = ["tarl-0", ("tarl-1", len), [print, ("tarl-0",)], {"tarl-0": 1}]
     with engine.local(1) as some:
         assert list(some.each(lambda one: one, ((one,) for one in odd))) == odd

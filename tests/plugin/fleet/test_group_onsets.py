@@ -27,7 +27,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> str:
     return str(folder / "data")
 
 
-def test_a_change_too_small_to_detect_in_one_robot_is_detected_for_its_whole_site(data: str) -> None:
+def test_small_change_is_detected_for_a_whole_site(data: str) -> None:
     found = answer(Question(data, by=("site",)))
     assert {one.name for one in (*found.onsets.drifted, *found.onsets.below)} == {"south"}
     assert found.meets("changed")

@@ -196,7 +196,7 @@ def test_hashed_names_are_equal_only_for_equal_salts(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("change", ["sensors", "bins", "test"])
-def test_a_log_of_another_recording_is_named_in_the_error_and_the_other_logs_are_ingested(
+def test_log_of_another_recording_is_named_and_skipped(
     change: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     test, logs = world(tmp_path)

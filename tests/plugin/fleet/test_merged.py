@@ -100,7 +100,7 @@ def test_recordings_that_cannot_be_merged_are_named_with_the_reason(
         merged([first, second])
 
 
-def test_logs_of_robots_are_merged_with_the_recording_of_the_test_that_they_repeat(tmp_path: Path) -> None:
+def test_robot_logs_are_merged_with_their_recording(tmp_path: Path) -> None:
     test = tmp_path / "test.npz"
     missions.fixture(test, missions.walks(20, 1))
     robots = [

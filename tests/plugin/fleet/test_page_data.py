@@ -74,7 +74,7 @@ def test_the_page_shows_the_period_of_the_missions_if_it_is_known() -> None:
         ),
     ],
 )
-def test_the_headline_counts_groups_that_always_differed_and_groups_that_changed_later_on(
+def test_headline_separates_old_from_new_group_differences(
     groups: tuple[str | None, ...], found: tuple[str, ...], expected: str
 ) -> None:
     watched = [robot(f"g{n}") for n in range(len(groups))]
@@ -96,7 +96,7 @@ def test_a_robot_that_is_named_twice_counts_once() -> None:
     assert shown["headline"] == "2 of 3 robots named."
 
 
-def test_a_cluster_has_links_to_thirty_robots_and_states_the_number_of_further_robots() -> None:
+def test_cluster_links_to_thirty_robots_and_counts_the_rest() -> None:
     names = tuple(f"r{n:02}" for n in range(32))
     found = Clusters((Cluster(names, PLACE, (-0.5, -1.0)), Cluster(names[:30], (), ())))
     first, second = variables(answer(clusters=found))["clusters"]
@@ -153,7 +153,7 @@ def test_components_of_unknown_variance_have_no_share() -> None:
     assert variables(answer())["components"] == []
 
 
-def test_the_page_shows_repairs_with_an_interval_or_the_reason_for_its_absence() -> None:
+def test_page_shows_repair_intervals_or_why_they_are_absent() -> None:
     helps, nothing = variables(
         answer(repairs=(effect(values=("wet",)), unknown()), accepted={"guard-1": "mud"})
     )["repairs"]
@@ -205,9 +205,7 @@ def test_the_page_stores_robots_in_columns_and_refers_to_them_by_index() -> None
 
 
 @pytest.mark.parametrize(("world", "limit", "mission"), [(5.0, 4.9, 7), (5.0, 5.0, 9), (5.0, 6.0, 9)])
-def test_the_onset_on_the_page_comes_from_the_test_with_the_most_evidence(
-    world: float, limit: float, mission: int
-) -> None:
+def test_page_onset_comes_from_the_test_with_most_evidence(world: float, limit: float, mission: int) -> None:
     told = status(evidence(2.0, 7, 3 * DAY), (), evidence(1.0, 4, DAY), evidence(3.0, 9, 5 * DAY))
     assert html._since(robot("r1", world, limit, told)) == (
         mission,
@@ -215,13 +213,13 @@ def test_the_onset_on_the_page_comes_from_the_test_with_the_most_evidence(
     )
 
 
-def test_a_robot_may_have_no_onset_and_an_onset_may_have_no_time() -> None:
+def test_robot_onset_and_its_time_may_be_absent() -> None:
     assert html._since(robot("r1")) is None
     assert html._since(robot("r1", 5.0, 6.0, status(evidence(2.0)))) is None
     assert html._since(robot("r1", 5.0, 6.0, status(evidence(2.0, 3)))) == (3, 0.0)
 
 
-def test_the_page_lists_the_cells_of_a_robot_with_the_largest_residuals_in_standard_errors() -> None:
+def test_page_lists_the_cells_with_the_largest_residuals() -> None:
     one = robot("r1", 9.0)
     known = ResidualMap(
         "r1",
@@ -295,7 +293,7 @@ def test_the_page_data_of_a_group_has_its_figures_and_onset() -> None:
     assert named["result"] is None
 
 
-def test_if_there_are_too_many_groups_the_page_shows_differing_groups_and_groups_with_the_lowest_reward(
+def test_long_group_list_shows_differing_and_worst_groups(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(html, "MOST_GROUPS", 3)

@@ -146,7 +146,7 @@ def test_tarl_fleet_and_the_comparison_of_a_log_give_the_same_verdict(folder: Pa
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_the_answer_is_independent_of_files_copies_order_threads_and_the_size_of_portions(
+def test_answer_is_independent_of_order_and_threads(
     folder: Path, found: Answer, seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     random = Random(seed)
@@ -299,9 +299,7 @@ def test_files_that_are_incomplete_or_foreign_are_named(folder: Path, tmp_path: 
             answer(Question(str(to)))
 
 
-def test_the_error_about_a_damaged_recording_in_the_data_set_names_its_path(
-    folder: Path, tmp_path: Path
-) -> None:
+def test_error_names_the_path_of_a_damaged_recording(folder: Path, tmp_path: Path) -> None:
     to = tmp_path / "data"
     add(folder, [0], to)
     recording = min((to / "recordings").glob("*.npz"))

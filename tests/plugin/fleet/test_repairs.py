@@ -64,7 +64,7 @@ def test_missions_of_other_weeks_are_not_compared() -> None:
     assert abs(few.reward) < 2.0
 
 
-def test_the_effect_is_the_difference_of_means_if_both_groups_are_equally_large() -> None:
+def test_effect_of_equal_groups_is_the_mean_difference() -> None:
     rng = np.random.default_rng(2)
     robot, total = np.arange(20), rng.normal(0, 1, 20)
     arm = robot % 2

@@ -96,9 +96,7 @@ def test_a_request_that_fails_once_is_repeated(s3: Faults, fleet: tuple[Order, s
 
 
 @pytest.mark.parametrize("fault", ["503", "expired", "half", "lost"])
-def test_a_failing_request_ends_ingest_with_one_sentence_and_the_next_run_completes_it(
-    s3: Faults, fleet: tuple[Order, str], fault: str
-) -> None:
+def test_failed_ingest_is_completed_by_the_next_run(s3: Faults, fleet: tuple[Order, str], fault: str) -> None:
     order, expected = fleet
     for left in (1, 3, 2):
         puts: list[str] = []

@@ -74,9 +74,7 @@ def test_without_columns_to_group_by_no_group_is_tested_for_changes() -> None:
         ("no difference", "no difference (p 0.03)"),
     ],
 )
-def test_a_degraded_group_states_its_loss_and_other_groups_state_the_p_value_of_their_drift(
-    result: str | None, expected: str
-) -> None:
+def test_degraded_group_states_its_loss_and_others_a_p_value(result: str | None, expected: str) -> None:
     assert words.verdict(group("north", result=result)) == expected
 
 
@@ -86,7 +84,7 @@ def test_the_table_names_the_region_with_new_cells() -> None:
     assert [*words.lines(found)][3].endswith("drifted (p 0.03)  x 2-3")
 
 
-def test_the_sentence_about_a_changed_group_uses_the_test_with_the_most_evidence() -> None:
+def test_changed_group_uses_the_test_with_most_evidence() -> None:
     told = status(
         evidence(2.0, 7, 3 * DAY), PLACE, evidence(1.0, 4, 2 * DAY), None, evidence(3.0, 9, 5 * DAY)
     )
@@ -112,7 +110,7 @@ def test_groups_with_more_evidence_come_first_and_the_rest_by_name() -> None:
 
 
 @pytest.mark.parametrize(("log2", "expected"), [(9.9, "955"), (10.0, "2^10"), (-1.0, "0.5"), (33.4, "2^33")])
-def test_evidence_is_a_number_below_a_thousand_and_a_power_of_two_above(log2: float, expected: str) -> None:
+def test_evidence_above_a_thousand_is_a_power_of_two(log2: float, expected: str) -> None:
     one = robot("r1", log2)
     found = answer(robots=robots(one, drifted=(one,)))
     assert f"  r1: 9 of 10 missions passed, evidence {expected}" in [*words.lines(found)]
@@ -270,7 +268,7 @@ def test_each_variance_component_is_printed_with_its_lowest_values() -> None:
     ]
 
 
-def test_no_value_is_named_as_the_lowest_if_the_variance_may_be_zero() -> None:
+def test_no_lowest_value_is_named_if_variance_may_be_zero() -> None:
     levels = ("a", "b", "c", "d")
     site = replace(component("site", 0.3), effects=(-0.1, 0.4, -0.2, -0.1))
     assert decomposition_words.lowest(site, levels) == "c -0.2, a -0.1"

@@ -32,7 +32,7 @@ ORDER = [4, 8, 12, 16, 20]
         ("(x > 0) until (y > 0)", [(0, 1.0), (6, -1.0)], 8),
     ],
 )
-def test_a_formula_is_lost_at_the_first_instant_after_which_no_future_can_satisfy_it(
+def test_formula_is_lost_when_no_future_can_satisfy_it(
     text: str, values: list[tuple[int, float]], lost: int | None
 ) -> None:
     line = Timeline(NAMES)

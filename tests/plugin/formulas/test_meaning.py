@@ -95,9 +95,7 @@ def test_robustness_does_not_depend_on_the_time_scale(
 
 @settings(max_examples=300, deadline=None)
 @given(trees, worlds())
-def test_robustness_is_positive_if_the_formula_holds_and_negative_if_it_is_violated(
-    tree: oracle.Tree, world: oracle.World
-) -> None:
+def test_robustness_is_positive_if_the_formula_holds(tree: oracle.Tree, world: oracle.World) -> None:
     read_formula = read(tree)
     if read_formula is not None:
         found = robustness(course(read_formula, samples(world)), world.end)
@@ -120,7 +118,7 @@ def test_running_robustness_equals_robustness_of_each_prefix(tree: oracle.Tree, 
 
 @settings(max_examples=300, deadline=None)
 @given(trees, worlds(), worlds())
-def test_a_formula_that_can_no_longer_be_satisfied_counts_as_violated_at_once(
+def test_unsatisfiable_formula_is_violated_at_once(
     tree: oracle.Tree, world: oracle.World, following: oracle.World
 ) -> None:
     read_formula = read(tree)

@@ -44,9 +44,7 @@ def rows(tank: pytest.Pytester) -> dict[str, dict[str, Any]]:
 
 
 @pytest.mark.parametrize("more", ["", 'reward="robustness",'])
-def test_bags_are_judged_by_their_topics_and_by_the_signals_that_the_monitor_observes(
-    tank: pytest.Pytester, more: str
-) -> None:
+def test_bags_are_judged_by_topics_and_observed_signals(tank: pytest.Pytester, more: str) -> None:
     required(tank, more)
     changed(tank, "test_tank", "@pytest.mark.tarl(\n", MONITOR)
     tank.runpytest("-q", *RECORD).assert_outcomes(passed=1, deselected=1)

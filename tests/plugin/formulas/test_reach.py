@@ -65,5 +65,5 @@ def test_every_part_of_a_formula_must_be_evaluated_within_the_episode(
 @pytest.mark.parametrize(
     "text", ["always[2:5] (x > 0)", "(x > 0) until[2:5] (y > 0)", "always (once[2:3] (x > 0))"]
 )
-def test_every_part_of_a_formula_can_be_evaluated_if_the_episode_never_ends(text: str) -> None:
+def test_endless_episode_evaluates_every_part_of_a_formula(text: str) -> None:
     assert unjudged(tree(text)) == ""

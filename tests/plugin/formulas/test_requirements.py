@@ -270,7 +270,7 @@ def test_the_error_for_a_missing_rtamt_names_the_install_command(
     assert install_command("stl") in told(run(pytester, 'requires=["always wet"]'))
 
 
-def test_the_error_for_a_python_that_is_too_new_for_rtamt_names_the_supported_versions(
+def test_error_for_rtamt_names_the_supported_python_versions(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from pytest_tarl.formulas import parsing

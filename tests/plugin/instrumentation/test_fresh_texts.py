@@ -84,11 +84,11 @@ def test_an_edited_module_is_executed_even_if_imported_indirectly(data: st.DataO
     edited(places, forms)
 
 
-def test_a_constant_that_an_installed_function_read_from_an_edited_file_is_computed_again() -> None:
+def test_constant_read_from_an_edited_file_is_recomputed() -> None:
     edited(["workspace", "site", "workspace"], ["number", "inside", "constant"])
 
 
-def test_an_edited_helper_of_which_another_module_still_uses_an_old_copy_is_reported(tmp_path: Path) -> None:
+def test_old_copy_of_an_edited_helper_is_reported(tmp_path: Path) -> None:
     node, leaf = laid_out(tmp_path, ["workspace"], [])
     kept: list[Any] = []
 

@@ -320,7 +320,7 @@ def running(job: threading.Thread) -> threading.Thread:
 @pytest.mark.parametrize(
     ("module", "direct"), [("pytest_tarl.ros.watchdog", True), ("pytest_timeout", True), ("node", False)]
 )
-def test_threads_of_test_tools_are_ignored_and_events_of_other_threads_are_separate(module, direct):
+def test_threads_of_test_tools_are_ignored(module, direct):
     go_on = threading.Event()
 
     def job() -> None:

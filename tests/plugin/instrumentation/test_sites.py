@@ -45,7 +45,7 @@ def test_context_steps_are_not_sites():
     assert codes(result) == ["a", "while b"]
 
 
-def test_a_taint_list_keeps_the_order_of_its_flow_instead_of_the_line_order():
+def test_taint_list_keeps_the_order_of_its_flow():
     assert codes(planned(flow(step(30, "first"), step(10, "second"), step(20, "third")))) == [
         "first",
         "second",
@@ -140,9 +140,7 @@ def test_sites_are_relocated_in_an_edited_text(after, expected):
         ("functools.partial(on_in)", False),
     ],
 )
-def test_a_taint_list_runs_no_statement_if_its_callback_is_a_publish_call_of_ros(
-    tmp_path: Path, callback: str, forwarded: bool
-) -> None:
+def test_publish_call_as_callback_runs_no_statement(tmp_path: Path, callback: str, forwarded: bool) -> None:
     found = analysed(
         tmp_path,
         node=f"""

@@ -68,9 +68,7 @@ def test_a_binomial_tail_is_the_sum_of_its_terms(n: int, k: int, p: float) -> No
 
 @given(st.integers(1, 30), st.integers(0, 30), st.floats(0.01, 0.99))
 @settings(deadline=None)
-def test_evidence_against_a_rate_is_a_mixture_of_likelihood_ratios_over_higher_rates(
-    n: int, passed: int, least: float
-) -> None:
+def test_evidence_mixes_likelihood_ratios_of_higher_rates(n: int, passed: int, least: float) -> None:
     passed = min(passed, n)
     rates = least + (1 - least) * (np.arange(20_000) + 0.5) / 20_000
     ratio = (rates / least) ** passed * ((1 - rates) / (1 - least)) ** (n - passed)
@@ -113,7 +111,7 @@ def test_anytime_bounds_are_wider_than_bounds_at_a_fixed_size(
 )
 @example([0.0] * 3 + [1.0] * 3, 0.0, 1.0, 0.8, False)
 @settings(deadline=None)
-def test_bounds_of_a_mean_contain_the_mean_and_scale_with_the_unit_of_the_reward(
+def test_bounds_of_a_mean_scale_with_the_reward_unit(
     shares: list[float], low: float, width: float, confidence: float, anytime: bool
 ) -> None:
     totals = [low + width * share for share in shares]
@@ -163,7 +161,7 @@ def test_bounds_of_a_shift_have_the_stated_coverage_for_skewed_totals(
     assert (held < 150).all()
 
 
-def test_the_bound_of_a_loss_in_a_declared_range_adds_the_bounds_of_both_worlds() -> None:
+def test_loss_bound_in_a_declared_range_adds_both_bounds() -> None:
     found = loss_between([0.9] * 50, [0.1] * 50, 0.95, Range(0, 1))
     assert found.exact
     assert 0.6 < found.low < 0.8 <= found.high

@@ -111,14 +111,14 @@ def test_verdicts_of_several_comparisons_are_corrected_separately() -> None:
     assert (second.p_loss, second.p_drift, second.result) == (0.3, 0.04, "drifted")
 
 
-def test_the_tolerated_loss_is_five_percent_of_the_reward_or_a_larger_stated_tolerance() -> None:
+def test_tolerated_loss_is_five_percent_or_the_stated_tolerance() -> None:
     sample = episodes([(0,)] * 2, [(0,)] * 4, reward=-2.0)  # totals -4 and -8
     assert tolerated(sample, None) == pytest.approx(0.3)
     assert tolerated(sample, 0.2) == pytest.approx(0.3)
     assert tolerated(sample, 0.4) == 0.4
 
 
-def test_the_region_of_the_paper_has_the_cells_with_at_least_half_of_the_largest_difference() -> None:
+def test_paper_region_has_at_least_half_of_the_largest_difference() -> None:
     offline = np.array([[1.0, 1.0], [1.0, nan], [0.0, 0.0], [5.0, 5.0]])
     online = np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 0.0], [nan, nan]])
     assert paper_region(offline, online).tolist() == [0, 1]
@@ -126,7 +126,7 @@ def test_the_region_of_the_paper_has_the_cells_with_at_least_half_of_the_largest
     assert paper_region(np.empty((0, 2)), np.empty((0, 2))).tolist() == []
 
 
-def test_there_is_a_slab_of_cells_for_each_bin_of_each_sensor_and_one_slab_for_all_cells() -> None:
+def test_each_sensor_bin_is_a_slab_of_cells() -> None:
     assert [slab.tolist() for slab in slabs([(0, 5), (0, 6), (1, 5)])] == [
         [0, 1],
         [2],
@@ -163,7 +163,7 @@ def test_each_difference_multiplies_the_wealth_of_a_bet() -> None:
     assert Bet(1.0, -3.0, (0.5, 0.25)).wealth([-3.0]) == pytest.approx(log(0.1 * 0.5))
 
 
-def test_the_stake_of_a_bet_grows_with_the_gap_and_is_bounded_by_the_worst_episode() -> None:
+def test_stake_of_a_bet_grows_with_the_gap() -> None:
     found = bet(1.0, -3.0, [0.5, -0.5])
     wanted = 1.0 / (1.5 * 0.5 + 1.0)  # a mean of 0: the gap is the margin; the variance is 0.5
     assert found.stakes == pytest.approx((min(wanted, 0.95 / 2.0), min(wanted, 0.5 / 2.0)))
@@ -259,7 +259,7 @@ def test_p_values_and_confidence_are_adjusted_for_several_checks() -> None:
         ("drifted", Region(((1,),)), False),
     ],
 )
-def test_a_check_ends_the_comparison_only_if_the_loss_and_its_region_are_found(
+def test_check_ends_a_comparison_only_with_loss_and_region(
     result: Any, region: Region, expected: bool
 ) -> None:
     assert certain(Difference(replace(VERDICT, result=result), region, {})) is expected
@@ -435,7 +435,7 @@ def effect(size: float, code: str = "x") -> OperandEffect:
     return OperandEffect(code, 1.0, 2.0, size)
 
 
-def test_repaired_culprits_come_first_and_other_culprits_are_ranked_by_their_gain_in_simulation() -> None:
+def test_repaired_culprits_rank_above_other_culprits() -> None:
     ranked = [(A, 1.0), (B, 0.5), (C, 0.25), (D, 0.0)]
     effects = {"A": [effect(1.0), effect(3.0, "y")], "B": [effect(9.0)], "C": []}
     found = culprits(ranked, effects, ["A"], 6.0)

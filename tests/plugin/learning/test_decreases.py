@@ -22,9 +22,7 @@ def outcomes(seed: int, episodes: int, *, failing: float, linked: bool) -> np.nd
 
 @pytest.mark.parametrize("linked", [False, True])
 @pytest.mark.parametrize("failing", [0.1, 0.3, 0.6])
-def test_at_most_the_share_alpha_of_all_groups_has_a_p_value_below_alpha(
-    failing: float, linked: bool
-) -> None:
+def test_at_most_alpha_of_equal_groups_get_a_small_p_value(failing: float, linked: bool) -> None:
     """If the worlds are equal, every group of episodes is as likely to be the deployed one."""
     for seed in range(3):
         every = outcomes(seed, 9, failing=failing, linked=linked)
@@ -36,7 +34,7 @@ def test_at_most_the_share_alpha_of_all_groups_has_a_p_value_below_alpha(
             assert (np.array(p_values) <= alpha + 1e-12).mean() <= alpha + 1e-12
 
 
-def test_if_all_missions_succeed_the_test_of_successes_does_not_change_the_p_value_of_the_loss() -> None:
+def test_success_test_does_not_change_the_p_value_of_the_loss() -> None:
     for seed in range(5):
         one, other = (outcomes(seed + at, 30, failing=0.0, linked=False) for at in (0, 100))
         alone = permuted_loss(one[:, 0], other[:, 0], generator(seed, "groups"))

@@ -51,9 +51,7 @@ def test_quantiles_of_students_distribution_equal_the_quantiles_of_scipy(
 
 
 @pytest.mark.parametrize(("passed", "episodes"), [(1, 4), (18, 20), (60, 200)])
-def test_at_the_bound_of_a_rate_the_evidence_against_the_rate_equals_the_threshold(
-    passed: int, episodes: int
-) -> None:
+def test_evidence_at_the_bound_equals_the_threshold(passed: int, episodes: int) -> None:
     bound = rate_sequence(passed, episodes, 0.9)
     least = [log(1.0 / risk) for risk in (0.1, 0.05)]  # one bound, or two that share the risk
     below = evidence_above(passed, episodes, bound.low)
@@ -117,7 +115,7 @@ def test_slices_sum_the_cells_of_the_region_that_both_worlds_visited() -> None:
 
 
 @pytest.mark.parametrize("dense", [True, False])
-def test_the_ridge_shrinks_the_weights_of_tiles_towards_zero_by_the_expected_amount(
+def test_ridge_shrinks_tile_weights_by_the_expected_amount(
     dense: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if not dense:

@@ -42,7 +42,7 @@ def test_the_bound_is_the_largest_mean_that_the_bets_refute(
     assert wealth(values, low * 1.001, risk, anytime) < log(1 / risk)
 
 
-def test_the_smallest_numbers_of_each_row_are_picked_even_if_some_are_equal() -> None:
+def test_smallest_numbers_of_each_row_are_picked_despite_ties() -> None:
     draws = np.array([[0.3, 0.1, 0.4, 0.2], [0.5, 0.5, 0.1, 0.5], [0.2, 0.2, 0.2, 0.2], [0.9, 0.1, 0.1, 0.9]])
     picked = _smallest(draws, 2)
     assert set(picked.ravel().tolist()) == {0.0, 1.0}
@@ -52,7 +52,7 @@ def test_the_smallest_numbers_of_each_row_are_picked_even_if_some_are_equal() ->
     assert picked[3].tolist() == [0.0, 1.0, 1.0, 0.0]
 
 
-def test_a_row_is_preceded_by_the_previous_row_of_its_cell_and_episode() -> None:
+def test_previous_row_has_the_same_cell_and_episode() -> None:
     episode = np.array([0, 0, 0, 0, 0, 0, 1, 1, 1])
     state = np.array([0, 1, 2, 3, 4, 5, 5, 6, 0])  # the start, then cells of two states each
     visits = Visits(episode, state, np.ones(9, np.int64), *(np.zeros(9) for _ in range(4)))

@@ -20,9 +20,7 @@ def found(p_drift: float, p_loss: float, loss: float = 2.0, cells: int = 1) -> D
 
 
 @pytest.mark.parametrize(("episodes", "looks"), [(40, 3), (40, 1), (200, 5), (12, 3), (3, 3)])
-def test_the_checks_together_spend_all_of_alpha_and_the_last_check_uses_all_episodes(
-    episodes: int, looks: int
-) -> None:
+def test_checks_together_spend_all_of_alpha(episodes: int, looks: int) -> None:
     plan = planned(episodes, looks)
     assert plan[-1].episodes == episodes
     assert sum(look.share for look in plan) == pytest.approx(1.0)
@@ -34,7 +32,7 @@ def test_a_comparison_of_forty_episodes_is_checked_after_ten_and_after_twenty() 
     assert [look.episodes for look in planned(40, 3)] == [10, 20, 40]
 
 
-def test_a_check_ends_the_run_once_the_loss_and_its_region_are_certain() -> None:
+def test_check_ends_the_run_once_loss_and_region_are_certain() -> None:
     assert certain(found(0.001, 0.001))
     assert not certain(found(0.001, 0.001, cells=0))
     assert not certain(found(0.001, 0.9))

@@ -77,7 +77,7 @@ def through_a_file(recorded: Sample) -> Sample:
 
 @given(Monitor, SIZES, st.integers(1, 4), st.integers(1, 9), st.integers(0, 2**20))
 @settings(max_examples=40, deadline=None)
-def test_a_verdict_from_a_file_is_bitwise_equal_to_the_verdict_from_memory(
+def test_verdict_from_a_file_equals_the_verdict_from_memory(
     kind: str, size: float, cells: int, most: int, seed: int
 ) -> None:
     offline, online = (world(seed + first, 12, kind, size, cells, most) for first in (0, 100))

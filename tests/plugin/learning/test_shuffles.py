@@ -44,7 +44,7 @@ def test_each_shuffle_sums_as_many_rows_as_the_group_has(kind: str) -> None:
             assert sums[:, 1].tolist() == expected
 
 
-def test_the_p_values_equal_the_p_values_from_a_full_table_of_shuffled_labels() -> None:
+def test_p_values_equal_those_of_all_shuffles() -> None:
     for seed in range(4):
         rng = generator(seed, "table")
         one, other = rng.normal(0.0, 1.0, 30), rng.normal(-0.4, 1.0, 20)
@@ -62,7 +62,7 @@ def test_the_p_values_equal_the_p_values_from_a_full_table_of_shuffled_labels() 
         assert found[largest] == pytest.approx(corrected)
 
 
-def test_p_values_below_the_level_do_not_change_if_undecisive_shuffles_are_left_out(
+def test_undecisive_shuffles_do_not_change_small_p_values(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def each(settled: float) -> list[list[float]]:
@@ -118,7 +118,7 @@ def test_intervals_of_shifts_enumerate_the_groups_of_small_samples(rows: int, ch
 
 
 @pytest.mark.parametrize("kind", ["normal", "binary", "skewed", "rounded"])
-def test_the_p_value_of_shifted_values_is_the_p_value_of_their_t_statistic(kind: str) -> None:
+def test_p_value_is_invariant_under_a_shift(kind: str) -> None:
     rng = generator(3, kind)
     draw = {
         "normal": lambda size: rng.normal(5.0, 1.0, size),

@@ -118,7 +118,7 @@ def test_columns_of_unequal_length_are_refused(part: str, name: str) -> None:
     ],
     ids=lambda wrong: next(iter(wrong)),
 )
-def test_a_number_of_episodes_or_cells_that_differs_from_the_declared_number_is_refused(
+def test_unexpected_number_of_episodes_or_cells_is_refused(
     wrong: dict[str, Any],
 ) -> None:
     assert not sound(replace(SAMPLE, **wrong))

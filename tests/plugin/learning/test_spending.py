@@ -17,9 +17,7 @@ LOOKS = (Look(10, 0.1), Look(20, 0.3), Look(40, 0.6))
 
 
 @given(st.integers(1, 12), st.integers(FEWEST, 300), st.integers(2, 5))
-def test_the_checks_spend_all_of_alpha_and_every_comparison_has_at_least_its_first_check(
-    comparisons: int, share: int, looks: int
-) -> None:
+def test_every_comparison_has_at_least_its_first_check(comparisons: int, share: int, looks: int) -> None:
     total = comparisons * share
     plan = schedule(total, comparisons, looks)
     assert sum(look.share for look in plan) == pytest.approx(1.0)
@@ -30,7 +28,7 @@ def test_the_checks_spend_all_of_alpha_and_every_comparison_has_at_least_its_fir
     assert share <= ends[-1] <= MOST * share
 
 
-def test_the_undecided_comparison_nearest_to_a_decision_continues_if_enough_episodes_are_left() -> None:
+def test_most_nearly_decided_comparison_continues() -> None:
     standings = [Standing(10, 0.3), Standing(20, 0.04, decided=True), Standing(20, 0.06), Standing(40, 0.01)]
     assert chosen(standings, LOOKS, 20) == 2  # the second is decided, the last has no checks left
     assert chosen(standings, LOOKS, 19) == 0

@@ -27,7 +27,7 @@ def test_without_tilings_the_table_is_used() -> None:
     assert tiled_chain(walks(), WALK, None).tolist() == chain_utility(walks(), WALK).tolist()
 
 
-def test_each_cell_lies_in_one_tile_per_grid_and_shares_it_only_with_neighbours() -> None:
+def test_each_cell_lies_in_one_tile_per_grid() -> None:
     tiles = tiled([(i,) for i in range(8)], [replace(PLACE, bins=8, tilings=4)])
     assert tiles is not None
     assert tiles.of.shape == (8, 4)

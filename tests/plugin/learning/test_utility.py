@@ -106,7 +106,7 @@ def test_expected_sarsa_averages_over_the_successors_seen_so_far() -> None:
     assert second == pytest.approx(2.0 + 0.5 * (4.0 - 2.0))
 
 
-def test_td_lambda_uses_the_whole_return_for_lambda_1_and_one_step_for_lambda_0() -> None:
+def test_td_lambda_covers_whole_return_and_single_step() -> None:
     whole, next_only = (TDLambda(2, gamma=0.5, alpha=0.5, trace=trace) for trace in (1.0, 0.0))
     for learner in (whole, next_only):
         learner.learn(sequence_of([START, 1, 2], [0.0, 1.0, 4.0]), [(0,)])

@@ -11,9 +11,7 @@ from pytest_tarl.monitoring.e_bh import adjusted, chosen
 
 
 @given(st.lists(st.floats(-5, 20), max_size=12), st.sampled_from([0.05, 0.2, 0.5]))
-def test_e_bh_rejects_as_many_hypotheses_as_have_e_values_that_are_large_enough_for_this_number(
-    logs: list[float], alpha: float
-) -> None:
+def test_e_bh_rejects_the_largest_valid_number_of_hypotheses(logs: list[float], alpha: float) -> None:
     values = 2.0 ** np.array(logs)
     largest = 0
     for k in range(1, len(logs) + 1):

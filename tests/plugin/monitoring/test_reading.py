@@ -190,7 +190,7 @@ def test_short_missions_are_taken_without_decoding_their_records(tmp_path: Path,
     assert not block.left()
 
 
-def test_the_records_used_in_these_tests_equal_the_records_that_the_writer_makes(tmp_path: Path) -> None:
+def test_hand_made_records_equal_written_records(tmp_path: Path) -> None:
     (walk,) = walks(1, 3)
     observer = Observer(SENSORS, tmp_path / "m.log", {"sites": [], "sensors": [one.name for one in SENSORS]})
     observer.begin()

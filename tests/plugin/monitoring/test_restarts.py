@@ -52,7 +52,7 @@ def test_the_remaining_weight_for_later_restarts_decreases_from_one() -> None:
 
 
 @pytest.mark.parametrize("bound", [Fraction(1, 2), Fraction(9, 10)])
-def test_expected_evidence_at_the_bound_is_one_and_alarms_are_as_rare_as_alpha(
+def test_alarms_at_the_bound_are_as_rare_as_alpha(
     bound: Fraction,
 ) -> None:
     length, alpha = 10, 0.25

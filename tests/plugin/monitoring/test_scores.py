@@ -49,9 +49,7 @@ missions = st.builds(
 
 
 @given(some=st.lists(missions, min_size=1, max_size=6))
-def test_totals_and_steps_of_the_chain_equal_the_totals_and_steps_of_a_recording(
-    fitted: Scale, some: list[Walk]
-) -> None:
+def test_chain_totals_equal_recorded_totals(fitted: Scale, some: list[Walk]) -> None:
     ours = sampled(fitted, columns(fitted, some))
     kept = [
         represented(merge([sample(trace(one), n, one.passed, ())], fitted.cells))

@@ -65,7 +65,7 @@ def test_a_watch_continued_from_its_state_ends_with_the_same_bytes(world: Path, 
     (world / "parts.npz").unlink()
 
 
-def test_the_state_is_saved_only_if_missions_were_counted_after_the_last_save(
+def test_state_is_saved_only_after_new_missions(
     world: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     saves: list[int] = []
@@ -100,9 +100,7 @@ def test_the_seed_decides_how_ties_are_broken(world: Path, tmp_path: Path) -> No
     assert not np.array_equal(first.monitor.processes.stake, second.monitor.processes.stake)
 
 
-def test_a_saved_state_is_refused_if_the_recording_or_alpha_or_the_seed_differs(
-    world: Path, tmp_path: Path
-) -> None:
+def test_saved_state_of_another_recording_is_refused(world: Path, tmp_path: Path) -> None:
     read(begun(world, tmp_path / "s.npz"))
     for changes, says in (({"alpha": 0.1}, "begun with --alpha 0.05"), ({"seed": 3}, "begun with --seed 0")):
         with pytest.raises(MonitorError, match=says):

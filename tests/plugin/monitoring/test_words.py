@@ -136,7 +136,7 @@ def test_bounds_scores_and_guarantees_are_described_in_words() -> None:
     )
 
 
-def test_a_status_has_an_alarm_if_a_bound_is_missed_or_the_world_drifted() -> None:
+def test_status_has_an_alarm_after_a_missed_bound_or_drift() -> None:
     for found, below, drifted in (
         (status(), False, False),
         (status(world=LOUD), False, True),
@@ -168,9 +168,7 @@ def test_the_json_of_a_watch_has_evidence_onset_alarm_and_cells() -> None:
 
 
 @given(st.lists(st.integers(1, 7), max_size=30), st.integers(2, 9))
-def test_the_time_of_every_nth_mission_is_kept_however_the_missions_are_batched(
-    portions: list[int], most: int
-) -> None:
+def test_every_nth_time_is_kept_for_any_batching(portions: list[int], most: int) -> None:
     most *= 2
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(moments, "MOST", most)
@@ -206,7 +204,7 @@ def recording(**told: Any) -> Any:
     return fixture
 
 
-def test_a_recording_gives_a_bound_on_the_mean_only_with_a_declared_range() -> None:
+def test_mean_bound_needs_a_declared_range() -> None:
     assert stated.bounds(recording(varied=False)) == ()
     assert stated.bounds(recording(varied=True)) == (stated.Bound("success", 0.8, 0.95),)
     declared = stated.bounds(recording(declared=(0.0, 5.0)))
@@ -216,7 +214,7 @@ def test_a_recording_gives_a_bound_on_the_mean_only_with_a_declared_range() -> N
     assert 0.5 < older.least < 0.9  # Clopper and Pearson of 9 of 10
 
 
-def test_a_bet_gains_with_each_failure_and_loses_its_stake_with_each_success() -> None:
+def test_bet_gains_with_failures_and_loses_with_successes() -> None:
     found = e_process.factors(0.75, np.array([1.0, 0.0, 0.75]))
     assert found.shape == (3, restarts.BETS)
     shares_ = np.array(e_process.SHARES)
@@ -242,7 +240,7 @@ def test_alpha_is_divided_among_bounds_missions_and_cells(
     assert sum(expected) == pytest.approx(1.0)
 
 
-def test_bounds_and_scores_of_a_robot_have_fixed_columns_in_the_shared_array() -> None:
+def test_bounds_of_a_robot_have_fixed_array_columns() -> None:
     assert judging.columns(2, 3, 4, 1).tolist() == [1, 5, 8 + 3, 8 + 4, 8 + 5]
     found = judging.begun(np.array([1.0, 2.0, 3.0]), 1, 2)
     assert found.threshold.tolist() == [1.0, 1.0, 2.0, 3.0, 2.0, 3.0]
@@ -302,9 +300,7 @@ def test_new_cells_are_named_after_two_missions_visited_them(monitor: Monitor) -
     assert module.status(found).new == ((8, 0), (9, 1))
 
 
-def test_if_there_are_many_new_cells_only_the_known_new_cells_are_counted(
-    monitor: Monitor, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_known_new_cells_are_counted(monitor: Monitor, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(monitor_module, "MOST_NEW", 2)
     one = replace(changed(monitor), new={})
     nothing = np.zeros(0)

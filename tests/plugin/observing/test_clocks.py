@@ -49,7 +49,7 @@ def test_a_jump_of_the_wall_clock_changes_only_the_dates(
 
 
 @pytest.mark.parametrize("asleep", [5.0, 8 * 3600.0])
-def test_a_pause_longer_than_the_option_idle_begins_a_new_mission_without_losing_steps(
+def test_long_pause_begins_a_new_mission_without_losing_steps(
     asleep: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock = Clock(1000.0)

@@ -78,7 +78,7 @@ def test_a_mission_without_marks_ends_with_the_node(
     assert (raised is error) is (comes_out or error is None)
 
 
-def test_a_sensor_without_a_topic_is_refused_because_nothing_sets_it_on_a_robot(
+def test_sensor_without_a_topic_is_refused_on_a_robot(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     node = tmp_path / "node.py"
@@ -93,7 +93,7 @@ def test_a_sensor_without_a_topic_is_refused_because_nothing_sets_it_on_a_robot(
 
 
 @pytest.mark.parametrize("more", [{"mission": "/mission"}, {"idle": 1.0}])
-def test_the_start_of_the_node_begins_no_mission_if_a_topic_begins_missions(
+def test_node_start_is_no_mission_if_a_topic_begins_missions(
     more: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert ended(tmp_path, monkeypatch, None, **more)[0] == []

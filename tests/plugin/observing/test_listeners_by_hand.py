@@ -19,7 +19,7 @@ PLACE = Sensor("place", topic="/place", field="x", low=0, high=10, bins=5)
 SPEED = Sensor("speed", topic="/speed", field="x", low=0, high=2, bins=2)
 
 
-def test_a_topic_has_the_type_of_the_command_line_or_of_the_recording() -> None:
+def test_topic_type_comes_from_the_command_line_or_recording() -> None:
     topics = Topics(
         {"/r": "a/msg/A", "/place": "b/msg/B"}, reward="/r", mission="/m", own={"/place": "c/msg/C"}
     )
@@ -155,9 +155,7 @@ def test_each_topic_is_passed_on_to_the_observer(library: dict[str, Any], name: 
 
 
 @pytest.mark.parametrize("name", ["rospy", "rclpy"])
-def test_with_the_option_idle_each_published_message_shows_that_the_node_is_active(
-    library: dict[str, Any], name: str
-) -> None:
+def test_published_messages_mark_the_node_as_active(library: dict[str, Any], name: str) -> None:
     observer: Any = Told()
     kind = library["rospy" if name == "rospy" else "rclpy.publisher"].Publisher
     before = kind.publish

@@ -76,9 +76,7 @@ def test_each_mission_contains_every_step_event_and_cell(recorded: Path) -> None
     assert set(first.sites) >= {site.id for one in fixture.lists for site in one.sites}
 
 
-def test_a_log_of_a_drifted_world_is_degraded_and_a_log_of_the_nominal_world_is_not(
-    recorded: Path, pytester: pytest.Pytester
-) -> None:
+def test_only_the_log_of_a_drifted_world_is_degraded(recorded: Path, pytester: pytest.Pytester) -> None:
     drive(order(recorded, log=recorded / "clogged.log"), [0.05] * 8)
     result = pytester.runpytest_inprocess("--tarl-online", "--tarl-log=clogged.log")
     result.stdout.fnmatch_lines(["*test_fills[[]online[]]: degraded*"])
@@ -101,9 +99,7 @@ def test_a_mission_without_an_end_is_skipped_with_a_note(recorded: Path, pyteste
     result.stdout.fnmatch_lines(["*1 mission has no end or no reward in missions.log: skipped*"])
 
 
-def test_without_a_reward_topic_the_function_judge_of_the_marker_gives_the_rewards(
-    recorded: Path, pytester: pytest.Pytester
-) -> None:
+def test_judge_gives_the_rewards_without_a_reward_topic(recorded: Path, pytester: pytest.Pytester) -> None:
     drive(order(recorded, reward="", step=0.001), [0.05] * 8, pause=0.003)
     options = ("--tarl-online", "--tarl-log=.tarl/missions.log")
     pytester.runpytest_inprocess(*options).stdout.fnmatch_lines(["*The log holds no rewards*judge=*"])

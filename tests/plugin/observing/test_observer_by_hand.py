@@ -106,7 +106,7 @@ def test_an_observer_opens_its_log_with_the_format_and_the_rotation(observe: Obs
     assert (one.running, one.problem) == (False, "")
 
 
-def test_a_step_has_the_values_of_all_sensors_and_the_cell_that_was_current(observe: Observe) -> None:
+def test_step_has_all_sensor_values_and_the_current_cell(observe: Observe) -> None:
     one, sent = observe(PLACE, SPEED)
     one.told(PLACE, message(9.0))
     one.begin()
@@ -149,7 +149,7 @@ def test_a_sensor_whose_value_becomes_unusable_makes_the_cell_unknown(observe: O
         (lambda one: one.signalled(Signal("tilt", topic="/t", field="x"), message([1])), "Signal 'tilt': "),
     ],
 )  # fmt: skip
-def test_the_first_error_of_a_sensor_value_is_kept_and_does_not_reach_the_node(
+def test_sensor_error_is_kept_and_hidden_from_the_node(
     observe: Observe, told: Callable[[Observer], None], problem: str
 ) -> None:
     one, sent = observe(PLACE, signals=[Signal("tilt", topic="/t", field="x")], following=True)
@@ -208,9 +208,7 @@ def test_with_formulas_the_times_of_steps_and_changes_count_from_the_begin(
     assert sent.messages[-1][1]["changes"] == [[1.0, "tilt", 2.0], [0.0, "place", 4.0]]
 
 
-def test_an_active_node_begins_a_mission_that_ends_when_it_has_been_idle(
-    observe: Observe, clock: Clock
-) -> None:
+def test_mission_ends_when_the_node_has_been_idle(observe: Observe, clock: Clock) -> None:
     one, sent = observe(PLACE, idle=10.0)
     one.active()
     one.active()

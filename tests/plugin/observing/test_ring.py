@@ -23,9 +23,7 @@ def ends(size: int) -> tuple[Ring, Ring]:
 
 
 @given(st.integers(9, 64), st.lists(st.integers(0, 60) | st.none(), max_size=40))
-def test_pieces_arrive_in_order_and_are_refused_only_if_the_ring_lacks_space(
-    size: int, steps: list[int | None]
-) -> None:
+def test_pieces_are_refused_only_if_the_ring_is_full(size: int, steps: list[int | None]) -> None:
     writer, reader = ends(size)
     waiting: list[bytes] = []
     held = 0
@@ -57,7 +55,7 @@ def test_a_piece_whose_bytes_are_not_visible_yet_is_read_later(at: int) -> None:
     assert reader.read() == b"first"
 
 
-def test_a_counter_whose_header_is_not_yet_written_is_not_read_as_a_piece() -> None:
+def test_counter_without_a_header_is_not_a_piece() -> None:
     writer, reader = ends(64)
     writer._counters[0] = 7
     assert reader.read() is None

@@ -53,7 +53,7 @@ def test_draining_in_pieces_records_the_same_as_draining_once() -> None:
     np.testing.assert_array_equal(np.concatenate([chunk.reward for chunk in chunks]), trace.reward)
 
 
-def test_a_buffer_cut_into_several_pieces_gives_the_same_result_as_one_cut() -> None:
+def test_cutting_a_buffer_does_not_change_the_result() -> None:
     whole, pieces = Emptied(), Emptied()
     cuts, done = [], 0
     for end in (1, 2, 17, 30, 31, 59, 60):
@@ -100,7 +100,7 @@ def test_an_event_is_complete_only_when_its_flow_value_has_arrived() -> None:
     assert (chunk.site.tolist(), chunk.flow.tolist()) == ([3], [1.5])
 
 
-def test_no_event_of_a_concurrent_thread_is_lost_while_the_buffer_is_drained() -> None:
+def test_draining_the_buffer_loses_no_concurrent_event() -> None:
     recorder = Emptied()
     count, over = 20_000, threading.Event()
 

@@ -107,7 +107,7 @@ def test_steps_are_collected_into_one_record_until_the_mission_ends() -> None:
     assert (log.records[3]["readings"], log.records[3]["cells"]) == ([[]], [[4]])
 
 
-def test_with_formulas_a_record_has_the_times_of_its_steps_and_the_changes() -> None:
+def test_record_with_formulas_has_step_times_and_changes() -> None:
     log = written(
         ("steps", cut(1.0), [], 0, ([0.5], [[0.25, "tilt", 1.0]])),
         ("steps", cut(2.0), [], 0, ([1.5], [[1.25, "tilt", 2.0]])),
@@ -293,7 +293,7 @@ def test_the_writer_syncs_after_each_period(monkeypatch: pytest.MonkeyPatch) -> 
     assert log.log == ["sync"]
 
 
-def test_messages_are_taken_one_after_the_other_as_soon_as_they_are_complete() -> None:
+def test_messages_are_taken_when_they_are_complete() -> None:
     log: Any = Log()
     one = Writer(log, {}, Rotation())
     texts = [marshal.dumps(("mission", float(number)), 2) for number in range(3)]

@@ -66,9 +66,7 @@ rospy.spin()
     ],
     ids=["class", "function", "script"],
 )
-def test_the_first_possible_place_of_a_subscription_is_the_call_that_starts_the_node(
-    text: str, beside: str, node: str
-) -> None:
+def test_subscription_is_placed_at_the_call_that_starts_the_node(text: str, beside: str, node: str) -> None:
     analysis: Any = SimpleNamespace(flows=[], sources={"pilot.py": text})
     site: Any = None
     first, *_ = anchors(analysis, site, "pilot.py")
@@ -159,7 +157,7 @@ node.create_subscription(Float64, "/c", print, 1)
 """
 
 
-def test_calls_on_a_node_in_main_in_init_and_outside_of_functions_come_first_among_the_places() -> None:
+def test_calls_in_main_and_init_are_the_first_places() -> None:
     analysis: Any = SimpleNamespace(flows=[], sources={"pilot.py": USED})
     site: Any = None
     found = [ast.unparse(one.statement).partition("(")[0] for one in anchors(analysis, site, "pilot.py")]

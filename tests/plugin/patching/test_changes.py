@@ -31,7 +31,7 @@ def test_a_patch_can_be_applied_to_its_own_file_and_undone() -> None:
 
 
 @pytest.mark.parametrize("lines", range(3, 12))
-def test_if_a_hunk_matches_twice_the_place_with_the_offset_of_the_previous_hunk_is_changed(
+def test_ambiguous_hunk_uses_the_previous_offset(
     lines: int,
 ) -> None:
     above = b"".join(b"# %d\n" % n for n in range(lines))

@@ -25,16 +25,14 @@ def operand(value: float) -> Operand:
         (offset(0.3), 0.0, 0.5, -0.3),
     ],
 )
-def test_a_step_changes_a_constant_on_its_scale_and_can_be_recovered_from_the_change(
-    chart: Chart, value: float, step: float, moved: float
-) -> None:
+def test_step_on_a_scale_can_be_recovered(chart: Chart, value: float, step: float, moved: float) -> None:
     mutation = stepped(operand(value), step, chart, mutations)
     assert mutation is not None
     assert mutation.value == pytest.approx(moved, rel=1e-3)
     assert chart.step(value, moved) == pytest.approx(step)
 
 
-def test_a_step_of_one_and_a_step_that_changes_the_sign_are_not_applied() -> None:
+def test_step_that_changes_the_sign_is_not_applied() -> None:
     for chart in (SHARE, offset(0.3)):
         assert stepped(operand(0.9), 1.0, chart, mutations) is None
         assert stepped(operand(0.9), -1.0, chart, mutations) is None
@@ -44,9 +42,7 @@ def test_a_step_of_one_and_a_step_that_changes_the_sign_are_not_applied() -> Non
 @pytest.mark.parametrize(
     ("step", "moved"), [(1.0, 0.0), (1.5, 0.5), (5.0, 4.0), (0.5, -1.0), (0.2, -4.0), (2 / 3, -0.5)]
 )
-def test_a_step_moves_a_constant_by_equal_multiples_of_its_size_up_and_down(
-    step: float, moved: float
-) -> None:
+def test_steps_up_and_down_are_equal_multiples_of_the_size(step: float, moved: float) -> None:
     assert distance(step) == pytest.approx(moved)
     assert step_to(moved) == pytest.approx(step)
 

@@ -77,9 +77,7 @@ if __name__ == "__main__":
         ("self.ki", "ki", 0.75),
     ],
 )
-def test_a_changed_entry_keeps_its_key_and_a_changed_parameter_keeps_its_name(
-    tmp_path: Path, use: str, name: str, value: float
-) -> None:
+def test_changed_entry_keeps_its_key(tmp_path: Path, use: str, name: str, value: float) -> None:
     path = tmp_path / "mast.py"
     path.write_text(NODE.format(use=use))
     analysis = analyse([path], root=tmp_path)
@@ -120,9 +118,7 @@ rospy.spin()
         ("entries.get(rospy.get_name(), 0.28)", ""),
     ],
 )
-def test_the_default_of_an_entry_is_the_definition_and_the_key_of_the_entry_is_the_parameter(
-    tmp_path: Path, definition: str, name: str
-) -> None:
+def test_default_of_an_entry_is_its_definition(tmp_path: Path, definition: str, name: str) -> None:
     path = tmp_path / "mast.py"
     path.write_text(ENTRIES.format(definition=definition))
     analysis = analyse([path], root=tmp_path)
@@ -341,7 +337,7 @@ def test_changing_each_found_number_scales_the_parameter_by_the_wanted_factor(a,
         assert value == pytest.approx(factor * whole, abs=1e-6)
 
 
-def test_a_number_in_a_call_in_a_list_is_named_after_its_element() -> None:
+def test_number_in_a_listed_call_is_named_after_its_element() -> None:
     text = NODE.format(use="LATE[1]").replace("REACH:", 'LATE = [0.1, float("0.5")]\nREACH:')
     source = document("mast.py", text)
     literal = next(

@@ -93,7 +93,7 @@ def test_files_without_a_manifest_and_other_files_are_skipped(tmp_path: Path) ->
     assert told(tmp_path, SECOND.format(""), "", "speed: 1\n", "pkg/params.yaml") == []
 
 
-def test_a_package_is_named_once_for_all_its_files_and_by_its_path_if_it_is_in_another_folder(
+def test_package_is_named_once_for_all_its_files(
     tmp_path: Path,
 ) -> None:
     manifest = tmp_path / "pkg" / "package.xml"

@@ -208,9 +208,7 @@ def test_the_condition_checks_for_none_unless_the_surrounding_code_excludes_none
         ),
     ],
 )
-def test_if_only_a_callback_sets_an_attribute_a_condition_uses_it_only_where_the_code_also_reads_it(
-    text: str, bound: bool
-) -> None:
+def test_condition_uses_an_attribute_only_where_the_code_reads_it(text: str, bound: bool) -> None:
     assert (choose(text, ("self.p",)) is not None) is bound
 
 
@@ -223,9 +221,7 @@ def test_if_only_a_callback_sets_an_attribute_a_condition_uses_it_only_where_the
         ("def step(p): HERE = 1", True),
     ],
 )
-def test_if_only_a_callback_sets_a_global_a_condition_uses_it_only_where_the_code_also_reads_it(
-    text: str, bound: bool
-) -> None:
+def test_condition_uses_a_global_only_where_the_code_reads_it(text: str, bound: bool) -> None:
     assert (choose(text, ("p",)) is not None) is bound
 
 
@@ -252,6 +248,6 @@ def test_a_condition_on_an_angle_may_cross_the_end_of_its_range(
     assert [eval(code, {"yaw": value}) for value in outside] == [False] * len(outside)
 
 
-def test_the_condition_that_crosses_the_end_is_written_relative_to_its_low_end() -> None:
+def test_wrapping_condition_is_relative_to_its_low_end() -> None:
     assert turned(135.0, -90.0, -180.0, 180.0) == "(yaw - 135.0) % 360.0 < 135.0"
     assert turned(-0.5, -0.75, -1.0, 1.0) == "(yaw + 0.5) % 2.0 < 1.75"

@@ -135,9 +135,7 @@ def test_names_are_found_in_every_kind_of_binding(source: Document) -> None:
         ("w", "INNER", False),
     ],
 )
-def test_a_name_counts_as_bound_if_it_is_local_or_assigned_at_import(
-    source: Document, code: str, at: str, bound: bool
-) -> None:
+def test_local_or_imported_name_is_bound(source: Document, code: str, at: str, bound: bool) -> None:
     assert is_bound(source, place(source, at), code) is bound
 
 
@@ -163,7 +161,7 @@ def test_names_that_the_statement_reads_count_as_bound_in_it() -> None:
         ("gain", "HERE", set(), False),
     ],
 )
-def test_the_first_value_of_a_name_is_the_value_that_the_module_assigns(
+def test_first_value_of_a_name_is_its_module_value(
     source: Document, code: str, at: str, values: set[object], fresh: bool
 ) -> None:
     if code == "gain":  # a name of the class is no global one; its own binding is inside the class
@@ -205,9 +203,7 @@ def test_used_names_include_the_names_of_all_scopes_and_the_builtins(source: Doc
         ("class", set(), "class_reading"),
     ],
 )
-def test_an_unused_name_that_resembles_the_requested_name_and_is_not_a_keyword_is_chosen(
-    base: str, taken: set[str], found: str
-) -> None:
+def test_unused_name_similar_to_the_request_is_chosen(base: str, taken: set[str], found: str) -> None:
     assert free(base, taken) == found
 
 
@@ -265,9 +261,7 @@ CHECKED = [
 
 @pytest.mark.filterwarnings("ignore::SyntaxWarning")
 @pytest.mark.parametrize(("text", "checked"), CHECKED, ids=[text for text, _ in CHECKED])
-def test_a_statement_counts_as_checked_if_it_runs_only_after_the_value_is_set(
-    text: str, checked: bool
-) -> None:
+def test_statement_after_the_assignment_is_checked(text: str, checked: bool) -> None:
     source = document("a.py", "def f():\n" + "".join(f"    {line}\n" for line in text.split("\n")))
     assert is_checked(source, place(source), "x") is checked
 

@@ -47,7 +47,7 @@ def found(text: str, key: str = "gain") -> list[tuple[str, object, float]]:
         ("DeclareLaunchArgument('k', '4')\n{'gain': float(LaunchConfiguration('k'))}", [("'4'", 4, 1.0)]),
     ],
 )  # fmt: skip
-def test_a_number_that_is_the_whole_value_of_a_parameter_has_a_share_of_one(
+def test_number_that_is_the_whole_parameter_has_share_one(
     text: str, expected: list[tuple[str, object, float]]
 ) -> None:
     assert found(text) == expected
@@ -75,7 +75,7 @@ def test_a_number_that_is_the_whole_value_of_a_parameter_has_a_share_of_one(
         ("{'gain': 0.0 + 3.0}", [("3.0", 3.0, 1.0)]),
     ],
 )
-def test_the_share_of_a_number_is_its_relative_change_that_doubles_the_parameter(
+def test_share_is_the_relative_change_that_doubles_the_parameter(
     text: str, expected: list[tuple[str, object, float]]
 ) -> None:
     assert found(text) == expected
@@ -109,7 +109,7 @@ def test_an_expression_without_a_number_to_change_is_computed(expression: str) -
         "DeclareLaunchArgument('k')\n{'gain': LaunchConfiguration('k')}",
     ],
 )
-def test_no_number_is_found_through_a_name_that_has_several_values_or_no_value(text: str) -> None:
+def test_ambiguous_name_leads_to_no_number(text: str) -> None:
     assert found(text) == []
 
 

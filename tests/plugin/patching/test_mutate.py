@@ -77,9 +77,7 @@ def test_infinite_values_give_no_mutation(value: float, factor: float) -> None:
 @pytest.mark.parametrize(
     ("value", "factor", "expected"), [(0.5, 2.2, 2.2), (None, 0.4, 0.4), (0.0, 2.2, 1.2), (True, 3.0, False)]
 )
-def test_a_named_constant_is_scaled_or_moved_by_a_step_at_its_use(
-    value: Any, factor: float, expected: Any
-) -> None:
+def test_named_constant_is_scaled_or_moved_at_its_use(value: Any, factor: float, expected: Any) -> None:
     found = mutations(constant(value, literal=False), factor)
     assert found is not None
     assert found.value == expected
@@ -133,7 +131,7 @@ def test_the_number_at_a_definition_follows_the_change_at_the_use(mutation: Muta
     assert (found, type(found)) == (pytest.approx(expected), type(expected))
 
 
-def test_a_step_on_a_chart_is_a_factor_that_leads_back_to_the_step() -> None:
+def test_step_on_a_scale_has_a_matching_factor() -> None:
     share = constant(0.9)
     made = stepped(share, 5.0, SHARE, mutations)  # the distance from 1 becomes a fifth
     assert made is not None
@@ -151,7 +149,7 @@ def test_a_step_on_a_chart_is_a_factor_that_leads_back_to_the_step() -> None:
     assert (zero.value, step_of(zero)) == (1.0, pytest.approx(5.0))
 
 
-def test_without_a_chart_or_a_value_a_step_is_a_factor_and_has_no_scale() -> None:
+def test_step_without_a_scale_is_a_factor() -> None:
     plain = stepped(constant(0.9), 2.0, None, mutations)
     assert plain == mutations(constant(0.9), 2.0)
     assert plain is not None

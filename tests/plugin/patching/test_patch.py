@@ -167,9 +167,7 @@ def test_the_command_that_applies_a_patch_is_usually_short(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("nested", ["src/driver", "elsewhere/../src/driver"])
-def test_a_patch_of_a_repository_inside_the_workspace_is_applied_in_that_repository(
-    tmp_path: Path, nested: str
-) -> None:
+def test_patch_of_a_nested_repository_is_applied_there(tmp_path: Path, nested: str) -> None:
     root = tmp_path / "workspace"
     (root / "elsewhere").mkdir(parents=True)
     inner = repository(root / nested)

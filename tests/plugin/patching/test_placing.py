@@ -51,7 +51,7 @@ def repository_with_secret(repository: Path) -> Path:
     return repository
 
 
-def test_a_patch_elsewhere_is_placed_from_the_working_directory_up_to_the_repository(
+def test_patch_is_placed_between_folder_and_repository(
     repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     node = repository / "pkg" / "src" / "node.py"

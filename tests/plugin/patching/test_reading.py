@@ -83,7 +83,7 @@ def result(found: reading.Patch) -> dict[str, Any]:
     return dict(one)
 
 
-def test_the_rule_of_a_repair_is_documented_and_no_rule_of_the_linter(tmp_path: Path) -> None:
+def test_repair_rule_is_documented_but_not_a_lint_rule(tmp_path: Path) -> None:
     rule = result(patch(tmp_path, NODE, NODE.replace("y = 2", "y = 4")))["ruleId"]
     assert rule not in known_rules()
     assert f"the rule `{rule}`" in (ROOT / "docs" / "ci.md").read_text()

@@ -408,7 +408,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 @pytest.mark.parametrize(
     "node", ["shuttle/traveller.py", "shuttle/traveller_swapped.py", "line_follower/line_follower.py"]
 )
-def test_a_condition_can_be_added_to_the_change_of_every_constant_of_the_examples(node: str) -> None:
+def test_every_constant_change_of_the_examples_accepts_a_condition(node: str) -> None:
     analysis = analyse([EXAMPLES / node], root=EXAMPLES)
     operands = [operand for step in analysis.sites for operand in analysis.operands(step.site)]
     assert len(operands) > 2

@@ -147,9 +147,7 @@ class Node:
         ),
     ],
 )
-def test_an_unnamed_value_is_assigned_to_a_name_before_the_statement_that_uses_it(
-    statement: str, at: str, lines: list[str]
-) -> None:
+def test_unnamed_value_is_assigned_before_its_statement(statement: str, at: str, lines: list[str]) -> None:
     limited = "self.last_value += max(-0.1, min(0.1, value - self.last_value))"
     before = HOLDER.format(statement=statement)
     source = document("node.py", before)
@@ -169,9 +167,7 @@ def test_an_unnamed_value_is_assigned_to_a_name_before_the_statement_that_uses_i
         ("while self.gain * error > 1.0: error -= 1.0", "self.gain * error"),
     ],
 )
-def test_a_value_that_may_not_be_evaluated_is_not_moved_to_an_assignment_before_the_statement(
-    statement: str, at: str
-) -> None:
+def test_conditionally_evaluated_value_stays_in_its_statement(statement: str, at: str) -> None:
     before = HOLDER.format(statement=statement)
     source = document("node.py", before)
     form = Form(template(SHIPPED / "rate_limit.toml"))
@@ -210,9 +206,7 @@ def test_state_is_declared_before_the_first_statement_that_uses_it(
     ("expression", "written"),
     [("margin", "margin + (self.length or 0.0)"), ("2.0 * gap", "2.0 * gap + (self.length or 0.0)")],
 )
-def test_the_expression_for_a_sensor_that_may_be_missing_has_one_pair_of_parentheses(
-    expression: str, written: str
-) -> None:
+def test_expression_for_a_missing_sensor_has_one_pair_of_parentheses(expression: str, written: str) -> None:
     source = document("node.py", f"close = gap < {expression}\n")
     node = source.find(span(source.text, expression))
     edits = form_edits(source, node, Form(template(SHIPPED / "sum.toml")), {}, "", "self.length or 0.0")

@@ -279,7 +279,7 @@ def test_a_value_used_in_another_module_is_stored_in_that_module(importing: str,
     assert ros.published == [12.0, 5.0]
 
 
-def test_the_patch_subscribes_in_a_class_that_the_node_does_not_import_directly() -> None:
+def test_patch_subscribes_in_an_indirectly_imported_class() -> None:
     library = LIBRARY.replace(
         "class Controller:\n",
         'class Controller:\n    def __init__(self):\n        """Be ready."""\n        self.on = True\n\n',
@@ -313,7 +313,7 @@ def test_a_topic_of_unknown_type_is_refused(topics: dict[str, str]) -> None:
         repaired({"node.py": SCRIPT}, topics=topics)
 
 
-def test_a_sensor_used_in_a_method_and_in_a_function_is_stored_for_both() -> None:
+def test_sensor_is_stored_for_a_method_and_a_function() -> None:
     text = ROSPY_CLASS.replace("driver = Driver()", "def step(d):\n    return 7 * d\n\n\ndriver = Driver()")
     sources = {"node.py": text}
     analysis = HandMade(sources, subscribing(sources, "node.py", NODES["rospy class"][2], "rospy.Subscriber"))

@@ -71,7 +71,7 @@ def test_a_template_has_defaults_for_what_its_file_omits(tmp_path: Path) -> None
     )
 
 
-def test_templates_are_sorted_by_cost_and_then_by_name_and_the_templates_of_the_project_come_last(
+def test_templates_are_sorted_by_cost_and_name(
     tmp_path: Path,
 ) -> None:
     (tmp_path / "tarl_templates").mkdir()

@@ -33,7 +33,7 @@ def test_the_check_allows_the_changed_line_to_differ() -> None:
     nothing_lost("node.py", NODE, NODE.replace("vel = GAIN * delta", "vel = 2.2 * GAIN * delta"), {8})
 
 
-def test_a_change_may_add_a_name_to_an_import_but_not_remove_a_name() -> None:
+def test_change_may_add_but_not_remove_an_imported_name() -> None:
     node = "from std_msgs.msg import Float64, String  # messages\n" + NODE
     nothing_lost("node.py", node, node.replace("import Float64", "import Bool, Float64"), {9})
     with pytest.raises(RepairError, match="import String"):

@@ -39,7 +39,7 @@ def test_a_refused_candidate_is_reported_if_no_other_candidate_is_left() -> None
     assert furthest(refused, NONE) is refused
 
 
-def test_a_candidate_that_passed_in_the_drifted_world_ranks_above_a_candidate_that_failed_there() -> None:
+def test_candidate_that_passed_ranks_above_a_failed_one() -> None:
     weak, costly = Refused(SOME, "gain too small", 9.0), Refused(ANOTHER, "nominal gets worse")
     assert furthest(weak, costly) is costly
     assert furthest(costly, weak) is costly
@@ -141,7 +141,7 @@ class Field:
         ("bad as designed", "worse later than the original"),
     ],
 )
-def test_after_a_failure_the_next_candidate_is_tried_and_the_history_gives_the_reason(
+def test_failed_candidate_is_followed_by_the_next(
     line_up: Sequence[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
@@ -190,7 +190,7 @@ def test_the_refused_candidate_is_reported_regardless_of_the_reason(monkeypatch:
 
 
 @pytest.mark.parametrize(("budget", "reason"), [(0, "budget"), (1, "gain too small"), (2, "gain too small")])
-def test_the_budget_is_the_reason_only_if_no_candidate_was_refused_before_it_ended(
+def test_budget_is_the_reason_only_without_a_refusal(
     budget: int, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
@@ -206,7 +206,7 @@ def test_the_budget_is_the_reason_only_if_no_candidate_was_refused_before_it_end
     assert refused.candidate == (field.candidates[0] if budget else None)
 
 
-def test_a_condition_is_narrower_if_it_has_all_parts_of_the_other_condition_and_more() -> None:
+def test_narrower_condition_has_all_parts_and_more() -> None:
     wet, dark = (Conjunct(Sensor(name, topic=f"/{name}", field="data"), 1, 1) for name in ("wet", "dark"))
     one, other, both = Guard((wet,)), Guard((dark,)), Guard((dark, wet))
     assert _narrower(both, one)
@@ -253,7 +253,7 @@ def examined(
     return [one.candidate.guard for one in examiner.tried], accepted.candidate.guard if accepted else None
 
 
-def test_a_condition_is_tried_if_the_change_harms_the_designed_world_without_a_condition(
+def test_condition_is_tried_if_the_change_harms_the_designed_world(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, _ = GUARDS
@@ -289,7 +289,7 @@ def test_no_condition_is_tried_if_the_change_gains_too_little_everywhere(
     assert examined({always: kind, wet: "good"}, monkeypatch) == ([always], None)
 
 
-def test_no_other_condition_is_tried_if_a_condition_that_holds_exactly_under_the_drift_does_not_suffice(
+def test_exact_condition_is_the_last_condition_tried(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, _ = GUARDS
@@ -300,7 +300,7 @@ def test_no_other_condition_is_tried_if_a_condition_that_holds_exactly_under_the
     assert examined(kinds, monkeypatch, never=wet) == ([always, wet, dark], dark)
 
 
-def test_a_narrower_condition_is_skipped_if_the_reward_is_too_low_under_the_wider_condition(
+def test_narrower_condition_is_skipped_after_a_low_reward(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, both = GUARDS
@@ -325,7 +325,7 @@ def test_one_mission_shows_whether_a_change_is_equally_harmful_under_another_con
     assert [drifted for guard, drifted in ran if guard == wet] == [True, False]
 
 
-def test_a_condition_is_not_tried_on_another_value_that_gains_too_little_without_a_condition(
+def test_value_that_gains_too_little_gets_no_condition(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, both = GUARDS
@@ -441,7 +441,7 @@ class Taxed(Window):
 @pytest.mark.parametrize(
     ("structural", "factor", "accepted"), [(True, 3.0, 1.5), (True, 1.7, 1.7), (False, 3.0, 3.0)]
 )
-def test_a_structural_change_that_loses_much_of_the_margin_as_designed_is_reduced_before_its_test(
+def test_structural_change_with_large_loss_is_reduced_before_its_test(
     structural: bool, factor: float, accepted: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     field: Any = Taxed(1.5, 9.0)
@@ -501,7 +501,7 @@ def test_a_value_whose_missions_succeed_but_earn_too_little_is_moved_back(low: f
     assert low <= accepted_factor(field, (2.6,)) < 1.9
 
 
-def test_a_value_that_was_moved_back_gets_a_condition_if_it_harms_the_designed_world(
+def test_moved_value_gets_a_condition_if_it_does_harm(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     wet = Guard((Conjunct(Sensor("wet", topic="/wet", field="data"), 1, 1),))
@@ -543,9 +543,7 @@ class Narrow(Window):
 
 @settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.5, 3.5), st.floats(0.9, 0.97))
-def test_a_value_that_loses_few_missions_is_replaced_by_a_value_that_loses_no_mission(
-    low: float, share: float
-) -> None:
+def test_value_that_loses_no_mission_is_preferred(low: float, share: float) -> None:
     field: Any = Narrow(low, 1.25 * low)
     assert low <= accepted_factor(field, (low * share,)) <= 1.25 * low
 
@@ -569,7 +567,7 @@ def test_later_candidates_first_run_the_missions_that_a_refused_candidate_lost(
     assert not second.fresh
 
 
-def test_a_candidate_within_a_few_percent_of_an_examined_candidate_is_not_examined(
+def test_candidate_close_to_an_examined_one_is_skipped(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(
@@ -587,7 +585,7 @@ def test_a_candidate_within_a_few_percent_of_an_examined_candidate_is_not_examin
     assert [one.candidate for one in examiner.tried] == [again[0], again[3]]
 
 
-def test_no_constant_uses_up_all_acceptance_tests_and_every_candidate_stays_in_the_queue(
+def test_acceptance_tests_are_shared_among_constants(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Seven values of one constant hold only on known seeds; the right one after them still gets its test."""

@@ -73,9 +73,7 @@ def spot(text: str, code: str, kind: str = "value") -> Spot:
         ("goal.x - at.x", "goal.q - at.q", None),
     ],
 )
-def test_two_expressions_are_twins_if_they_differ_only_in_the_names_of_their_axes(
-    one: str, other: str, axes: tuple[str, str] | None
-) -> None:
+def test_twins_differ_only_in_axis_names(one: str, other: str, axes: tuple[str, str] | None) -> None:
     text = f"def f():\n    a = {one}\n    b = {other}\n"
     assert axes_of(spot(text, one), spot(text, other)) == axes
 

@@ -49,7 +49,7 @@ def proposed(best: float, *rejected: tuple[float, int], grid: float = 1e-6) -> t
 
 
 @pytest.mark.parametrize("best", [1.18, 1.19, 1.20])
-def test_a_value_close_to_two_rejected_values_is_proposed_if_it_restores_their_missions(best: float) -> None:
+def test_value_between_two_rejected_values_is_proposed(best: float) -> None:
     found, _ = proposed(best, (1.144, SHORT), (1.24, LONG))
     assert found[0] == pytest.approx((1.144 * 1.24) ** 0.5, rel=0.002)
 

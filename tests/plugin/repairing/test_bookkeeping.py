@@ -106,7 +106,7 @@ def test_each_kind_of_bookkeeping_number_is_recognised(line: str, code: str, exp
     assert judged(line, code) is expected
 
 
-def test_a_user_function_that_has_the_name_of_a_ros_function_is_not_bookkeeping() -> None:
+def test_user_function_with_a_ros_name_is_not_bookkeeping() -> None:
     assert judged("level = Buffer(12)", "12")
     assert not judged("level = Buffer(12)", "12", "class Buffer:\n    pass\n")
 

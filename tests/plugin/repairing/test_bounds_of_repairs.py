@@ -51,7 +51,7 @@ def accepted(*nominal: Outcome) -> Accepted:
     return Accepted(CANDIDATE, Acceptance(True, "", (), nominal))
 
 
-def test_the_recorded_bounds_of_the_designed_world_are_kept_if_the_repair_changes_nothing_there() -> None:
+def test_ineffective_repair_keeps_the_recorded_bounds() -> None:
     mutants: Any = Mutants()
     found, count = guaranteed(mutants, accepted())
     assert count == 4
@@ -72,7 +72,7 @@ def test_without_recorded_bounds_the_designed_world_has_none() -> None:
     assert found["repaired"].success.confidence > 0.8  # the default
 
 
-def test_a_repair_that_has_an_effect_in_the_designed_world_runs_there_on_the_same_seeds() -> None:
+def test_effective_repair_runs_on_the_designed_seeds() -> None:
     mutants: Any = Mutants()
     found, count = guaranteed(mutants, accepted(Outcome(1.0, passed=True)))
     assert count == 8
@@ -102,8 +102,6 @@ def test_the_bounds_of_equal_episodes_are_marked_as_not_varied() -> None:
     ("declared", "exact"),
     [((0.0, 3.0), True), ((-1.0, 4.0), True), ((0.5, 3.0), False), ((0.0, 2.5), False), (None, False)],
 )
-def test_a_declared_range_makes_the_mean_exact_if_all_totals_are_in_it(
-    declared: tuple[float, float] | None, exact: bool
-) -> None:
+def test_declared_range_makes_the_mean_bound_exact(declared: tuple[float, float] | None, exact: bool) -> None:
     found, _ = guaranteed(Mutants(declared=declared), accepted())  # type: ignore[arg-type]
     assert found["repaired"].mean.exact is exact

@@ -39,9 +39,7 @@ def world(best: float, width: float) -> Trials:
 
 @settings(max_examples=40)
 @given(st.floats(0.3, 3.0), st.floats(0.85, 1.18), st.sampled_from([LITERAL, NAMED]))
-def test_a_value_moves_towards_the_middle_of_its_good_values_until_the_reward_is_nearly_as_designed(
-    best: float, off: float, constant: object
-) -> None:
+def test_value_moves_towards_the_middle_of_good_values(best: float, off: float, constant: object) -> None:
     trials = world(best, 0.3)
     mutation = mutations(constant, best * off)  # type: ignore[arg-type]
     assume(mutation is not None)  # a factor of 1 changes nothing
@@ -75,7 +73,7 @@ def test_values_are_compared_on_the_seeds_on_which_the_candidate_has_run() -> No
     assert trials.spent == SEEDS
 
 
-def test_a_value_does_not_move_to_a_value_that_earns_more_but_fails_missions() -> None:
+def test_value_does_not_move_to_a_failing_value() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         found = factor(candidate.mutations[0]) or 0.0
         return Outcome(8.0 + found / 2.0, passed=found < 2.9)
@@ -88,7 +86,7 @@ def test_a_value_does_not_move_to_a_value_that_earns_more_but_fails_missions() -
     assert 2.2 < reached < 2.9
 
 
-def test_a_value_does_not_move_to_a_value_that_loses_missions_of_a_rejected_value() -> None:
+def test_value_does_not_move_to_one_that_loses_missions() -> None:
     trials = world(4.0, 0.5)
     found = Candidate((Mutation(LITERAL, 5.0),), ALWAYS)
     assert centred(found, trials, mutations, GOAL, REFERENCE) != found
@@ -124,7 +122,7 @@ def powered(power: float, usual: float) -> Candidate:
     )
 
 
-def test_the_exponent_of_a_template_stays_on_its_grid_while_its_typical_value_is_moved() -> None:
+def test_template_exponent_stays_on_its_grid() -> None:
     moved_to = moved(powered(-1.0, 0.9), 1.3, mutations)
     assert moved_to is not None
     assert [one.value for one in moved_to.mutations] == [-1.0, pytest.approx(1.17)]
@@ -149,9 +147,7 @@ def test_a_value_stays_one_step_away_from_failing_values() -> None:
 
 
 @pytest.mark.parametrize(("designed", "kept"), [(9.5, True), (9.9, False)])
-def test_a_value_is_not_fitted_to_seeds_on_which_the_designed_missions_also_earn_little(
-    designed: float, kept: bool
-) -> None:
+def test_value_is_not_fitted_to_seeds_that_are_hard_as_designed(designed: float, kept: bool) -> None:
     trials = world(2.0, 0.3)
     trials.design = lambda seed: Outcome(designed, True)
     mutation = mutations(LITERAL, 2.5)

@@ -30,7 +30,7 @@ def effect(code: str, best: float, gain: float) -> OperandEffect:
         ({SITE: [effect("LIMIT", 2.0, 1.0)]}, [("0.8", 4.0, 5.0), ("LIMIT", 2.0, 1.0)]),
     ],
 )
-def test_the_gain_of_the_repair_is_shown_if_the_search_did_not_measure_that_change(
+def test_repair_gain_is_shown_even_if_unmeasured(
     known: dict[str, list[OperandEffect]], shown: list[tuple[str, float, float]]
 ) -> None:
     candidate = Candidate(Unit((KP,)).mutations(mutations, 5.0), ALWAYS)
@@ -39,7 +39,7 @@ def test_the_gain_of_the_repair_is_shown_if_the_search_did_not_measure_that_chan
     assert found["other"][0].code == "X"
 
 
-def test_a_change_of_several_constants_is_not_shown_as_the_effect_of_one_line() -> None:
+def test_joint_change_is_not_the_effect_of_one_line() -> None:
     several = Candidate(Unit((KP, operand(5, "2.0", 2.0))).mutations(mutations, 5.0), ALWAYS)
     assert with_confirmed({}, several, [6.0], [1.0]) == {}
 

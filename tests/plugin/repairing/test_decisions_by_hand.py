@@ -58,7 +58,7 @@ def order(online: list[float], sizes: tuple[str, ...] = (), **changes: Any) -> O
     return Order(**usual | changes)
 
 
-def test_the_goal_has_the_failing_episodes_their_lengths_and_the_mean_length_in_the_designed_world() -> None:
+def test_goal_has_failing_episodes_and_designed_mean_length() -> None:
     found = order([5.0, 10.0, 6.0]).goal
     assert found.pairs == (Pair(52, 6.0, 12), Pair(50, 5.0, 10))
     assert (found.steps, found.ranged, found.online) == (10.5, False, 7.0)
@@ -155,7 +155,7 @@ def test_a_smoother_form_of_a_candidate_is_accepted_in_its_place(monkeypatch: py
 
 
 @pytest.mark.parametrize("kind", ["lucky on known seeds", "bad as designed"])
-def test_a_constant_follows_a_sensor_if_its_value_fits_only_some_missions_or_one_world(
+def test_constant_follows_a_sensor_if_it_fits_only_some_missions(
     monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
     one, field, trials = examiner([kind, "good"], monkeypatch)
@@ -172,7 +172,7 @@ def test_a_constant_follows_a_sensor_if_its_value_fits_only_some_missions_or_one
     assert asked == field.candidates[:1]
 
 
-def test_no_better_value_is_sought_for_a_candidate_that_loses_the_missions_of_a_rejected_candidate(
+def test_candidate_with_known_losses_is_not_improved(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     one, field, trials = examiner(["good"], monkeypatch)
@@ -208,7 +208,7 @@ def test_a_candidate_is_refused_if_another_test_gets_worse(monkeypatch: pytest.M
     assert (good.beside.held, one.spent) == (("test_b as recorded",), good.acceptance.episodes + 7)
 
 
-def test_the_report_shows_how_a_repair_for_a_permanent_drift_behaves_in_the_old_world(
+def test_report_shows_the_repair_in_the_old_world(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     one, field, _ = examiner(["bad as designed"], monkeypatch, permanent=True)
@@ -231,7 +231,7 @@ def test_the_report_shows_how_a_repair_for_a_permanent_drift_behaves_in_the_old_
         ("fails too often", (0.0, 0.0), "fails too often"),
     ],
 )
-def test_a_repair_that_earns_less_than_the_unrepaired_program_is_reported_as_such(
+def test_repair_that_earns_less_is_reported(
     monkeypatch: pytest.MonkeyPatch, reason: Any, totals: tuple[float, ...], expected: str
 ) -> None:
     one, _, _ = examiner(["good"], monkeypatch)
@@ -378,7 +378,7 @@ class Phases:
         return [one[0] for one in self.log]
 
 
-def test_each_search_has_its_own_budget_and_structural_changes_follow_if_nothing_is_accepted(
+def test_structural_changes_follow_if_nothing_is_accepted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     phases = Phases(monkeypatch, None, None)
@@ -404,7 +404,7 @@ def test_each_search_has_its_own_budget_and_structural_changes_follow_if_nothing
         (None, None, {"localize": "full", "searches": ("sweep",)}, ["search", "structure", "rank"]),
     ],
 )
-def test_the_search_for_a_repair_ends_when_it_is_interrupted_and_ranks_statements_only_on_request(
+def test_interrupted_search_ends_without_a_ranking(
     monkeypatch: pytest.MonkeyPatch, accepts: Any, interrupts: Any, options: Any, expected: list[str]
 ) -> None:
     phases = Phases(monkeypatch, accepts, interrupts)

@@ -100,7 +100,7 @@ def test_a_failing_mission_is_compared_with_its_own_designed_reward() -> None:
 
 
 @pytest.mark.parametrize("share", [0.05, 0.12, 0.3])
-def test_if_few_missions_lose_reward_a_repair_may_earn_less_on_these_missions(share: float) -> None:
+def test_repair_may_earn_less_on_a_few_missions(share: float) -> None:
     road: Any = Road(share)
     goal, margin = enriched(road, Trials(never, 300)), road.order.reference.margin
     losing = len(road.order.goal.pairs) / 40
@@ -147,9 +147,7 @@ def test_the_search_for_failing_missions_stays_within_any_budget(
 
 
 @pytest.mark.parametrize(("less", "found"), [(0.01, True), (0.0, False)])
-def test_a_mission_fails_if_it_earns_less_than_the_designed_mission_by_more_than_the_slack(
-    less: float, found: bool
-) -> None:
+def test_mission_fails_if_its_loss_exceeds_the_slack(less: float, found: bool) -> None:
     """The first recorded mission that visits the bins of failed ones loses reward; the others lose nothing."""
     road: Any = Road(0.12)
     slack, first = road.order.reference.mean - road.order.goal.near, list[int]()

@@ -177,7 +177,7 @@ def unhelpful(_: Candidate, __: int) -> Outcome:
     return Outcome(1.0, passed=False)
 
 
-def test_seeds_of_missions_with_a_loss_run_in_both_worlds_and_count_towards_the_budget(
+def test_seeds_with_a_loss_run_in_both_worlds(
     tmp_path: Path,
 ) -> None:
     order, rollout = missions(tmp_path)
@@ -273,7 +273,7 @@ def test_early_changes_wait_longer_while_a_constant_gains_a_part(tmp_path: Path)
     assert early.spent > 0
 
 
-def test_early_changes_run_once_after_constants_were_tried_and_leave_their_budget_unchanged(
+def test_early_changes_run_once_after_the_constants(
     tmp_path: Path,
 ) -> None:
     order, rollout = missions(tmp_path)
@@ -378,7 +378,7 @@ def measured(order: Any, symptom: str) -> dict[str, dict[str, float]]:
         ("jumps", ["c - 5.0", "b + 4.0", "a * 3.0"]),  # sent: next to the publish call first
     ],
 )
-def test_a_template_is_tried_at_three_expressions_on_the_side_where_the_value_is_wrong(
+def test_template_is_tried_at_three_expressions_on_the_wrong_side(
     tmp_path: Path, symptom: str, expected: list[str]
 ) -> None:
     order = of_many(tmp_path)
@@ -386,7 +386,7 @@ def test_a_template_is_tried_at_three_expressions_on_the_side_where_the_value_is
     assert [one.removeprefix("flip of ") for one in found] == expected
 
 
-def test_the_argument_of_a_publish_call_has_the_symptoms_of_the_statement_before_it_and_comes_last(
+def test_published_argument_comes_last_with_earlier_symptoms(
     tmp_path: Path,
 ) -> None:
     order = of_many(tmp_path)

@@ -136,9 +136,7 @@ def changed(order: Any, one: ParameterInFile, factor: float) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_a_parameter_with_a_computed_name_is_changed_in_the_section_of_its_node(
-    form: str, tmp_path: Path
-) -> None:
+def test_parameter_with_a_computed_name_is_changed_in_its_section(form: str, tmp_path: Path) -> None:
     order = order_of(tmp_path, FORMS[form])
     found = in_files(order)
     one = found["gain_left"]
@@ -147,7 +145,7 @@ def test_a_parameter_with_a_computed_name_is_changed_in_the_section_of_its_node(
     assert texts == {"config/params.yaml": YAML.replace("  gain_left: 2.0  #", "  gain_left: 5.0  #")}
 
 
-def test_a_parameter_of_zero_moves_on_the_scale_of_parameters_whose_names_begin_alike(tmp_path: Path) -> None:
+def test_zero_parameter_moves_on_the_scale_of_similar_parameters(tmp_path: Path) -> None:
     order = order_of(tmp_path, FORMS["loop"])
     one = in_files(order)["offset_left"]
     assert one.size == 0.25

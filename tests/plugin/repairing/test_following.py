@@ -69,7 +69,7 @@ def test_a_constant_that_shrinks_as_the_sensor_grows_has_a_negative_exponent() -
     assert forms(list(following(order((1,), (6,), SPEED), smaller)))[0][2]["power"] < 0.0
 
 
-def test_a_falling_sensor_scales_the_constant_only_below_the_designed_value_of_the_sensor() -> None:
+def test_falling_sensor_scales_only_below_the_designed_value() -> None:
     (found,) = forms(list(following(order((6,), (1,), SPEED), FOUR_TIMES)))
     assert found[0] == "below"
     assert found[2]["power"] == pytest.approx(-0.945, abs=0.01)
@@ -97,7 +97,7 @@ def test_zeros_booleans_and_combinations_of_constants_do_not_follow_a_sensor(can
     assert list(following(order((1,), (6,), SPEED), candidate)) == []
 
 
-def test_a_sensor_with_negative_values_or_the_same_values_in_both_worlds_is_not_followed() -> None:
+def test_negative_or_constant_sensor_is_not_followed() -> None:
     signed = replace(SPEED, low=-10, high=10)
     assert list(following(order((6,), (9,), signed), FOUR_TIMES)) == []
     assert list(following(order((6,), (6,), SPEED), FOUR_TIMES)) == []
@@ -109,7 +109,7 @@ def test_after_a_permanent_change_one_value_suffices() -> None:
     assert list(following(asked, FOUR_TIMES)) == []
 
 
-def test_a_constant_can_follow_a_variable_of_the_node_in_place_of_a_sensor(
+def test_constant_can_follow_a_node_variable(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(module, "variables", lambda *_: [("self.speed", 1.0, 4.0), ("self.way", 1.0, 9.0)])

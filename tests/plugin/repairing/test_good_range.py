@@ -71,7 +71,7 @@ def test_a_value_stays_if_the_values_inside_the_range_earn_less() -> None:
     assert moved(trials, 3.9) == pytest.approx(3.9)
 
 
-def test_the_seed_on_which_most_candidates_fell_short_shows_where_the_range_ends() -> None:
+def test_hardest_seed_shows_where_the_range_ends() -> None:
     trials = world(1.5, 1e9)
     trials.misses[3] = 2
     moved(trials, 2.2)

@@ -7,7 +7,7 @@ import pytest
 from tests.plugin.tank import ONLINE, RECORD, result
 
 
-def test_the_patch_the_page_and_the_result_state_the_bounds_of_the_repaired_program(
+def test_patch_page_and_result_state_the_repair_bounds(
     tank: pytest.Pytester,
 ) -> None:
     tank.runpytest(*RECORD)

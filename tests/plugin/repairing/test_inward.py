@@ -106,13 +106,13 @@ def test_a_smaller_change_may_need_no_condition() -> None:
     assert without_condition((3.0, 3.6), 3.0, 9.0)[0] == power(0.75)  # the first value is too small
 
 
-def test_a_value_that_works_without_its_condition_is_moved_to_the_middle_of_the_good_values() -> None:
+def test_unconditional_value_moves_to_the_middle_of_good_values() -> None:
     assert without_condition((1.4, 3.0), 1.4, 9.0)[0] == power(0.375)
     assert without_condition((2.1, 4.0), 2.1, 9.0)[0] == power(0.625)
     assert without_condition((2.1, 4.0), 2.1, 9.0, "nominal gets worse")[0] == power(0.5)
 
 
-def test_a_change_that_does_harm_in_the_designed_world_is_made_smaller_a_few_times() -> None:
+def test_harmful_change_is_reduced_a_few_times() -> None:
     assert without_condition((1.0, 9.0), 1.0, 1.4, "nominal gets worse")[0] == power(0.375, 0.1875)
     proposed, ran = without_condition((9.0, 8.0), 9.0, 9.0)
     assert proposed == []

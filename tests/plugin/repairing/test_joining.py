@@ -50,7 +50,7 @@ def test_a_conflict_is_reported_with_its_line_and_both_patches_stay(robot: Path)
 
 
 @pytest.mark.parametrize("other", ["node.py", "user.py"])
-def test_changing_a_constant_at_its_definition_and_at_a_use_is_a_conflict(robot: Path, other: str) -> None:
+def test_definition_and_use_changes_conflict(robot: Path, other: str) -> None:
     (robot / "user.py").write_text(NODE.replace("GAIN = 5", "from node import GAIN"))
     git("add", "-A", cwd=robot)
     git("commit", "-qm", "another module uses it", cwd=robot)

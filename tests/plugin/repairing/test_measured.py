@@ -99,7 +99,7 @@ def test_constants_with_the_same_measured_factor_change_together_and_then_alone(
     assert found[:3] == [{"FLEXOR_ON": 0.45, "EXTENSOR_ON": 0.45}, {"FLEXOR_ON": 0.45}, {"EXTENSOR_ON": 0.45}]
 
 
-def test_a_constant_with_the_unit_of_a_value_changes_by_the_difference_of_that_value(tmp_path: Path) -> None:
+def test_constant_changes_by_the_difference_of_a_like_value(tmp_path: Path) -> None:
     found = suggested(tmp_path, {LEVEL: (40.0, 54.0)}, {LEVEL: (42.0, 56.0)})
     assert {"TARGET": 1.28} in found  # 50 + 14
     assert {"TRIM": -2.5} not in found  # a changed sign is no measured step
@@ -134,7 +134,7 @@ def test_the_number_of_suggestions_is_limited(tmp_path: Path) -> None:
     assert len(suggested(tmp_path, every)) == MOST
 
 
-def test_a_value_that_vanishes_or_was_zero_has_no_factor_but_a_difference(tmp_path: Path) -> None:
+def test_vanished_value_has_a_difference_but_no_factor(tmp_path: Path) -> None:
     assert suggested(tmp_path, {PUSH: (2.0, 0.0)}) == []
     assert suggested(tmp_path, {PUSH: (0.0, 2.0)}) == []
     found = suggested(tmp_path, {LEVEL: (20.0, 0.0)})

@@ -59,7 +59,7 @@ def sensed(designed: Any, drifted: Any) -> float:
         ([""], ["aa"], 0.0),
     ],
 )
-def test_the_overlap_of_a_sensor_is_the_share_of_steps_in_the_same_bins(
+def test_sensor_overlap_is_the_share_of_steps_in_common_bins(
     designed: list[str], drifted: list[str], expected: float
 ) -> None:
     assert sensed(designed, drifted) == pytest.approx(expected)
@@ -119,7 +119,7 @@ def test_symptoms_are_measured_in_steps_in_which_both_missions_have_values(tmp_p
     assert set(found.strengths[site(order, "self.range = ")]) == set(SYMPTOMS)
 
 
-def test_steps_before_the_first_message_and_after_the_shorter_mission_have_no_cell(tmp_path: Path) -> None:
+def test_steps_outside_both_missions_have_no_cell(tmp_path: Path) -> None:
     order, _ = recorded(tmp_path, lambda *_: {})
     found = signs(order, mission_pairs(order, Trials(unhelpful, 100)))
     assert found.cells == ((((7,), (1,)), ((7,), (1,))),) * 2
@@ -194,7 +194,7 @@ def test_changes_begin_with_a_fixed_number_of_episodes(early: Early) -> None:
     assert list(charged(early, 1).candidates()) == [scaled(2.0), scaled(3.0)]
 
 
-def test_the_episodes_of_the_changes_are_counted_together_with_the_episodes_of_the_mission_pairs(
+def test_episodes_of_changes_and_pairs_are_counted_together(
     early: Early,
 ) -> None:
     found = charged(early, FROM).candidates()

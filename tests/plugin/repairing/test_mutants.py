@@ -108,9 +108,7 @@ def test_an_episode_that_breaks_earns_the_worst_recorded_total(texts: list[Any],
 
 
 @pytest.mark.parametrize("changes", [{}, {"stuck": True}])
-def test_an_episode_that_ran_the_previous_text_of_a_file_ends_the_search(
-    texts: list[Any], changes: dict[str, Any]
-) -> None:
+def test_episode_that_ran_the_old_text_ends_the_search(texts: list[Any], changes: dict[str, Any]) -> None:
     stale = replace(SOUND, older=(Path("/p/node.py"), Path("/p/gains.py")), **changes)
     with pytest.raises(StaleTextError, match=r"^node\.py, gains\.py: the candidate was written"):
         mutants(Rollout(stale)).run(CANDIDATE, 4, "mud")
@@ -123,7 +121,7 @@ def test_a_candidate_that_cannot_be_written_raises_the_error(texts: list[Any]) -
     assert rollout.plans == []
 
 
-def test_another_test_runs_with_or_without_the_candidate_and_has_its_own_worst_total(
+def test_other_test_has_its_own_worst_total(
     texts: list[Any],
 ) -> None:
     of, other = mutants(Rollout()), Rollout()

@@ -111,9 +111,7 @@ def scopes(text: str) -> Callable[[str, str], str]:
         ("selfish = 1\n", "selfish", ""),
     ],
 )
-def test_the_scope_of_a_name_is_the_file_the_class_or_the_function(
-    text: str, code: str, expected: str
-) -> None:
+def test_scope_of_a_name_is_the_file_class_or_function(text: str, code: str, expected: str) -> None:
     assert scopes(text)(code, "Node.run") == expected
 
 

@@ -66,7 +66,7 @@ def guard(low: float, high: float, sensor: Sensor = X) -> Any:
     )
 
 
-def test_the_first_recorded_episodes_in_which_the_condition_holds_are_run_with_their_own_seeds() -> None:
+def test_first_episodes_under_the_condition_are_run_with_their_seeds() -> None:
     mutants = Mutants([neighbour()])
     found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
     assert [seed for _, seed in mutants.ran] == [FIRST + 2 * n for n in range(3, 3 + EPISODES)]
@@ -83,7 +83,7 @@ def test_only_episodes_in_which_the_condition_holds_are_run() -> None:
     assert [seed for _, seed in mutants.ran] == [FIRST + 76, FIRST + 78]
 
 
-def test_no_episode_runs_if_the_condition_never_holds_and_the_result_says_so() -> None:
+def test_condition_that_never_holds_runs_no_episode() -> None:
     mutants = Mutants([neighbour()])
     found = beside(mutants, guard(9.0, 10.0))  # type: ignore[arg-type]
     assert (mutants.ran, found.episodes, found.lost) == ([], 0, ())
@@ -97,9 +97,7 @@ def test_the_first_episodes_run_if_the_recording_lacks_the_sensor() -> None:
 
 
 @pytest.mark.parametrize(("change", "lost"), [(-0.5, False), (-0.51, True), (3.0, False)])
-def test_a_mission_is_lost_if_it_earns_less_than_recorded_by_more_than_the_margin(
-    change: float, lost: bool
-) -> None:
+def test_mission_is_lost_if_its_loss_exceeds_the_margin(change: float, lost: bool) -> None:
     found = beside(Mutants([neighbour()], change), guard(7.0, 8.0))  # type: ignore[arg-type]
     assert bool(found.lost) is lost
     assert bool(found.held) is not lost
@@ -132,7 +130,7 @@ def test_a_test_with_its_own_drift_is_compared_with_the_unrepaired_node() -> Non
     assert "6.5 without the repair under the same drift" in found.held[0]
 
 
-def test_losses_in_the_old_world_of_other_tests_are_allowed_under_a_permanent_drift() -> None:
+def test_permanent_drift_allows_losses_of_other_tests() -> None:
     found = beside(Mutants([neighbour()], -9.0, permanent=True), guard(7.0, 8.0))  # type: ignore[arg-type]
     assert (found.lost, "the old world, in which losses are allowed" in found.held[0]) == ((), True)
     under = beside(Mutants([neighbour(drift="mud")], -9.0, permanent=True), guard(7.0, 8.0))  # type: ignore[arg-type]

@@ -119,7 +119,7 @@ def test_only_numbers_that_take_part_in_the_missions_are_changed(
     assert world.told(moved) == ([note] if left else [])
 
 
-def test_a_changed_number_and_a_factor_on_the_same_value_become_one_change(tmp_path: Path) -> None:
+def test_changed_number_and_factor_become_one_change(tmp_path: Path) -> None:
     world = Prepared(tmp_path, {SQUARE})
     operand = world.mutation.operand
     (span,) = [one for one in operand.definitions if one.line == SQUARE]

@@ -145,7 +145,7 @@ def test_a_candidate_moves_to_its_definition_within_a_dozen_episodes() -> None:
     assert _placed(mutants, judge, ONE) == (ONE, 12)
 
 
-def test_episodes_that_place_a_candidate_run_in_the_drifted_world_and_are_counted() -> None:
+def test_placing_episodes_run_under_drift_and_are_counted() -> None:
     mutants, judge, found = of_partial({ONE: (5.0, 0.0)})
     totals: list[float] = []
 

@@ -111,7 +111,7 @@ def searched(
     return made[0], purse
 
 
-def test_the_first_accepted_candidate_is_the_repair_and_later_searches_give_curves_only(
+def test_first_accepted_candidate_is_the_repair(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     found = _Findings()
@@ -197,7 +197,7 @@ def test_a_structural_search_gets_the_symptoms_and_outcomes_of_the_previous_sear
     assert examiner.turns == 2  # it may use as many tests as the search before
 
 
-def test_a_constant_accepted_in_the_structural_search_is_not_counted_as_a_structure(
+def test_constant_from_a_structural_search_is_no_structure(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     found, _, _ = restructured(monkeypatch, None, structural=False)
@@ -283,7 +283,7 @@ def test_an_interrupted_ranking_keeps_its_curve_and_its_episodes(monkeypatch: py
         (False, True, "not shown", "not shown"),
     ],
 )
-def test_if_no_candidate_was_tested_the_reason_for_refusal_states_why_the_search_ended(
+def test_refusal_reason_states_why_the_search_ended(
     interrupted: bool, late: bool, reason: Any, expected: str
 ) -> None:
     examiner: Any = Examiner(refused=Refused(None, reason))
@@ -299,7 +299,7 @@ def noted(monkeypatch: pytest.MonkeyPatch, found: _Findings, of: Any = None, **p
     return [*_notes(mutants(of), examiner, found, Watch(of))]
 
 
-def test_notes_state_the_omitted_parts_and_the_reason_for_the_end_of_the_search(
+def test_notes_state_omissions_and_why_the_search_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     placing = SimpleNamespace(notes=lambda one: [f"at {one.mutations[0].value}"] * 2)
@@ -326,7 +326,7 @@ def test_notes_state_the_omitted_parts_and_the_reason_for_the_end_of_the_search(
         assert cut not in noted(monkeypatch, _Findings(), **quiet)
 
 
-def test_a_search_that_runs_out_of_time_names_the_budget_with_which_it_can_be_repeated(
+def test_timed_out_search_names_a_sufficient_budget(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     of = order()
@@ -377,7 +377,7 @@ def test_a_template_states_which_factors_weaken_its_parameter(
     assert structures.weaker(one, factor) is expected
 
 
-def test_examining_a_candidate_may_take_more_episodes_than_its_group_of_templates_has(tmp_path: Path) -> None:
+def test_examination_may_exceed_the_episodes_of_a_template_group(tmp_path: Path) -> None:
     structures = Structures.__new__(Structures)
     order: Any = SimpleNamespace(root=tmp_path, goal=None)
     structures.order = order

@@ -101,7 +101,7 @@ def tripled(of: Placing, guard: Guard = ALWAYS) -> Candidate:
     return Candidate((Mutation(gains(of)[0], 3.0),), guard)
 
 
-def test_a_change_is_moved_to_the_definition_if_the_reward_is_the_same_there(tmp_path: Path) -> None:
+def test_change_moves_to_the_definition_if_the_reward_is_equal(tmp_path: Path) -> None:
     of, trials = placing(tmp_path), Scripted(lambda moved, seed: 9.5)
     candidate = tripled(of)
     found: Any = of(candidate, trials)  # type: ignore[arg-type]
@@ -112,7 +112,7 @@ def test_a_change_is_moved_to_the_definition_if_the_reward_is_the_same_there(tmp
     assert {seed for _, seed in trials.ran} == {10}  # the first seed shows that the outcomes are equal
 
 
-def test_a_change_that_earns_another_reward_at_the_definition_must_reach_the_goal_on_three_seeds(
+def test_change_at_the_definition_needs_three_good_seeds(
     tmp_path: Path,
 ) -> None:
     of, trials = placing(tmp_path), Scripted(lambda moved, seed: 9.5 if moved else 10.0)
@@ -124,9 +124,7 @@ def test_a_change_that_earns_another_reward_at_the_definition_must_reach_the_goa
 
 @pytest.mark.parametrize("edit", ["auto", "definition"])
 @pytest.mark.parametrize("bad", [10, 11, 12])
-def test_if_a_change_fails_at_the_definition_it_stays_at_the_use_and_a_note_is_added(
-    tmp_path: Path, bad: int, edit: str
-) -> None:
+def test_failed_move_to_the_definition_leaves_a_note(tmp_path: Path, bad: int, edit: str) -> None:
     # on the other seeds, the change earns the same at both places
     of = placing(tmp_path, edit)
     trials = Scripted(
@@ -166,7 +164,7 @@ def test_a_definition_without_effect_is_not_changed(tmp_path: Path, edit: str) -
     assert trials.ran == [(True, 10)]  # the answer is kept
 
 
-def test_a_change_that_cannot_be_written_at_the_definition_stays_at_its_use(tmp_path: Path) -> None:
+def test_unwritable_definition_keeps_the_change_at_its_use(tmp_path: Path) -> None:
     def script(moved: bool, seed: int) -> float:
         if moved:
             raise RepairError("no")
@@ -177,7 +175,7 @@ def test_a_change_that_cannot_be_written_at_the_definition_stays_at_its_use(tmp_
     assert of(candidate, trials) == candidate  # type: ignore[arg-type]
 
 
-def test_conditional_changes_and_changes_that_must_stay_at_the_use_are_not_moved(tmp_path: Path) -> None:
+def test_conditional_changes_stay_at_the_use(tmp_path: Path) -> None:
     sensor = Sensor("x", topic="/x", field="data", low=0, high=1, bins=2)
     trials = Scripted(lambda moved, seed: 9.5)
     of = placing(tmp_path)
@@ -228,7 +226,7 @@ def turned(folder: Path, first: str, second: str) -> tuple[Any, list[tuple[str, 
     return found, [(place.name, place.line, float(value)) for place, value in places.items()]
 
 
-def test_uses_of_a_parameter_are_moved_to_the_numbers_that_all_calls_pass(tmp_path: Path) -> None:
+def test_parameter_change_moves_to_the_passed_numbers(tmp_path: Path) -> None:
     found, places = turned(tmp_path, "0.1", "0.1")
     assert places == [("speed", 13, 0.2), ("speed", 17, 0.2)]
     texts = rewrite(analyse([Path("keeper.py")]), found.mutations, ALWAYS, {}, {})
@@ -307,7 +305,7 @@ def test_a_changed_number_and_a_factor_on_its_use_become_one_change(tmp_path: Pa
     assert texts["keeper.py"] == HELPER.format(first="0.0", second="0.3")
 
 
-def test_a_parameter_stays_changed_at_its_uses_if_a_call_passes_no_number(tmp_path: Path) -> None:
+def test_parameter_stays_changed_if_a_call_passes_no_number(tmp_path: Path) -> None:
     of = placing(tmp_path, text=HELPER.format(first="0.1", second="rospy.get_time()"))
     uses = [one for one in operands(of.order) if one.site.qualname.endswith("turn")]
     assert not any(defined(of.order.analysis, one) for one in uses)
@@ -324,7 +322,7 @@ def test_two_uses_with_different_values_are_not_moved_to_one_definition(tmp_path
     assert {mutation.place.line for mutation in found.mutations} == {4}
 
 
-def test_if_only_definitions_may_be_edited_every_named_constant_must_have_a_definition(
+def test_definition_only_edits_need_a_definition_of_every_constant(
     tmp_path: Path,
 ) -> None:
     def literal(of: Placing) -> Any:

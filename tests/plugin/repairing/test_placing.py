@@ -114,7 +114,7 @@ def test_a_named_constant_is_changed_where_it_is_defined(
         ("gains.json", '{"pid": {\n  "gain": 2.0\n}}\n', "json.load(file)", '+  "gain": '),
     ],
 )
-def test_a_constant_from_a_file_that_the_node_loads_is_changed_in_this_file(
+def test_loaded_constant_is_changed_in_its_file(
     worn: pytest.Pytester, name: str, text: str, load: str, line: str
 ) -> None:
     (worn.path / name).write_text(text)
@@ -202,7 +202,7 @@ FILES = {
 
 
 @pytest.mark.parametrize(("name", "default"), list(zip(FILES, ["", ", 0.7"] * 2, strict=True)))
-def test_a_parameter_is_changed_in_the_file_that_this_test_gets_it_from(
+def test_parameter_is_changed_in_the_file_of_this_test(
     worn: pytest.Pytester, name: str, default: str
 ) -> None:
     _, loading, removed = FILES[name]
@@ -240,7 +240,7 @@ def test_a_parameter_that_the_test_passes_is_reported_and_never_edited(worn: pyt
     assert "the test itself passes it (parameters=…, argv=…), and TARL never edits tests" in told
 
 
-def test_a_parameter_of_a_launch_file_is_not_reported_as_passed_by_the_test(worn: pytest.Pytester) -> None:
+def test_launch_parameter_is_not_reported_as_passed_by_the_test(worn: pytest.Pytester) -> None:
     node(worn, gain='rospy.get_param("~gain", 0.7)')
     files = {
         "package.xml": "<package><name>water</name></package>",
@@ -275,7 +275,7 @@ def test_a_definition_that_other_code_depends_on_stays_unchanged(worn: pytest.Py
 
 
 @slow
-def test_other_uses_of_a_changed_constant_are_listed_and_the_tests_of_these_uses_run(
+def test_other_uses_of_a_changed_constant_are_listed_and_tested(
     worn: pytest.Pytester,
 ) -> None:
     node(worn, before="from settings import GAIN\n", use="GAIN")
@@ -353,7 +353,7 @@ def test_a_number_from_which_a_launch_file_computes_a_parameter_is_changed(worn:
     assert " * base}" in added
 
 
-def test_a_note_names_the_expression_in_which_a_launch_file_has_no_number_to_change(
+def test_note_names_a_launch_expression_without_a_number(
     worn: pytest.Pytester,
 ) -> None:
     where, told, _ = launched(worn, "pick()")

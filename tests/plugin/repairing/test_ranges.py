@@ -34,7 +34,7 @@ def ranged(tank: pytest.Pytester) -> pytest.Pytester:
     return tank
 
 
-def test_episodes_draw_from_the_range_and_a_repair_works_over_the_whole_range(
+def test_repair_works_over_the_whole_range(
     ranged: pytest.Pytester,
 ) -> None:
     changed(ranged, "test_tank", "    draws = ", "    print('SIZE', tarl_drift)\n    draws = ")
@@ -78,7 +78,7 @@ def test_the_parts_of_a_dictionary_have_ranges_of_their_own(ranged: pytest.Pytes
 
 
 @slow
-def test_a_repair_that_fits_a_part_of_the_range_is_refused_and_reported(ranged: pytest.Pytester) -> None:
+def test_repair_that_fits_part_of_the_range_is_refused(ranged: pytest.Pytester) -> None:
     changed(ranged, "test_tank", "Drift.range(0.1, 0.3)", "Drift.range(0.1, 0.3, permanent=True)")
     changed(ranged, "test_tank", "        tarl.reward(", BURST)
     ranged.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
@@ -90,7 +90,7 @@ def test_a_repair_that_fits_a_part_of_the_range_is_refused_and_reported(ranged: 
 
 @slow
 @pytest.mark.usefixtures("quick_acceptance")
-def test_the_result_of_a_repair_does_not_depend_on_the_number_of_workers(ranged: pytest.Pytester) -> None:
+def test_repair_does_not_depend_on_the_number_of_workers(ranged: pytest.Pytester) -> None:
     ranged.runpytest(*RECORD)
     ranged.runpytest(*REPAIR)
     first = result(ranged)

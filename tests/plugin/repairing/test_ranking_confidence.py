@@ -51,7 +51,7 @@ def test_a_ranking_states_by_how_much_the_first_line_leads() -> None:
     assert "the budget ended" not in told
 
 
-def test_the_first_line_is_not_called_the_best_if_other_lines_gain_more() -> None:
+def test_first_line_is_not_best_if_others_gain_more() -> None:
     assert "one line gains more than the first line in the drifted world (-" in ranking_confidence(
         ORDER, EFFECTS, accepted(BIAS), raced()
     )
@@ -71,7 +71,7 @@ def test_lines_repaired_together_are_reported_together() -> None:
     )
 
 
-def test_a_ranking_states_that_it_is_incomplete_or_that_no_repair_was_found() -> None:
+def test_ranking_states_that_it_is_incomplete() -> None:
     told = ranking_confidence(ORDER, EFFECTS, None, ranked(4))
     assert told.startswith("no accepted repair confirms the first line; ")
     assert told.endswith("the budget ended before all were ranked")
@@ -106,9 +106,7 @@ SPAN = "-0.50 to +1.25 per episode, about 95 %, 9 common seeds"
         ({"ahead": 2, "level": 1}, f"; 2 lines gain more than the first line in the drifted world ({SPAN})"),
     ],
 )
-def test_the_report_states_how_many_lines_compete_with_the_first_line_of_the_ranking(
-    changes: dict[str, Any], end: str
-) -> None:
+def test_report_counts_the_competitors_of_the_first_line(changes: dict[str, Any], end: str) -> None:
     assert certain(**changes) == TOLD + end
 
 

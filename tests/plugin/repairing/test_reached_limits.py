@@ -110,7 +110,7 @@ def test_a_limit_is_relaxed_so_that_its_comparison_has_its_designed_result(
         (RARE, [], False),
     ],
 )
-def test_a_limit_counts_as_reached_if_it_is_reached_more_often_than_as_designed_with_the_same_seed(
+def test_limit_is_reached_more_often_than_as_designed(
     designed: Sequence[float], drifted: Sequence[float], expected: bool, tmp_path: Path
 ) -> None:
     rest = {NEAR: [0.0]}  # a trace is never empty
@@ -118,7 +118,7 @@ def test_a_limit_counts_as_reached_if_it_is_reached_more_often_than_as_designed_
     assert ("MOST_TURNS" in {code for code, _ in found}) is expected
 
 
-def test_limits_that_are_new_since_the_earlier_mission_come_first_in_order_of_time(tmp_path: Path) -> None:
+def test_new_limits_come_first_in_order_of_time(tmp_path: Path) -> None:
     usual = {TURNS: RARE, TIME: RARE, NEAR: RARE}
     drifted = {TURNS: [1.0], TIME: [0.0, 0.0, 0.0, 1.0], NEAR: [0.0, 1.0]}
     first = [code for code, _ in limits(tmp_path, usual, drifted) if code.isupper()]

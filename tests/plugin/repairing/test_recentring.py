@@ -98,7 +98,7 @@ def nearer(window: tuple[float, float], lost: tuple[tuple[int, float], ...] = ()
 
 
 @pytest.mark.parametrize("low", [1.3, 1.6, 1.9])
-def test_a_value_that_costs_too_much_in_the_designed_world_is_reduced_while_it_still_succeeds(
+def test_costly_value_is_reduced_while_it_succeeds(
     low: float,
 ) -> None:
     (by,) = nearer((low, 3.0))

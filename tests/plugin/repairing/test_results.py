@@ -68,7 +68,7 @@ def test_a_candidate_with_few_runs_rarely_becomes_the_best_so_far() -> None:
     assert found.gain(one) == pytest.approx((4.0 + 2.0) / 2)
 
 
-def test_the_best_candidate_is_reported_unless_a_candidate_was_refused_on_fresh_seeds() -> None:
+def test_best_candidate_is_reported_unless_refused() -> None:
     one, fresh = scaled(2.0), Refused(scaled(3.0), "not shown", 1.0, 5)
     found = watch((one, 0, 4.0), (one, 1, 6.0))
     nothing = Refused(None, "budget")
@@ -79,7 +79,7 @@ def test_the_best_candidate_is_reported_unless_a_candidate_was_refused_on_fresh_
     assert found.progress("sweep") == "sweep (best so far +4.5 of 8)"
 
 
-def test_a_candidate_with_one_good_mission_of_three_or_more_counts_as_unconfirmed() -> None:
+def test_one_good_mission_of_three_leaves_a_candidate_unconfirmed() -> None:
     one, two, far, examined = (scaled(by) for by in (2.0, 3.0, 4.0, 5.0))
     runs = [(two, 0, 8.0), (two, 1, 1.0)]  # twice only
     for candidate, first in ((one, 8.0), (far, 7.9), (examined, 9.0)):
@@ -132,7 +132,7 @@ def test_the_ledger_finds_similar_candidates_and_counts_tests_of_the_same_operan
         (scaled(3.0), scaled(2.0, of=OTHER), False),
     ],
 )
-def test_a_candidate_is_stronger_if_it_changes_the_same_constants_more_in_the_same_direction(
+def test_stronger_candidate_changes_the_same_constants_more(
     one: Candidate, other: Candidate, expected: bool
 ) -> None:
     assert further(one, other) is expected
@@ -188,7 +188,7 @@ def test_a_change_of_sign_and_a_small_step_are_not_bisected() -> None:
     assert Between(scaled(1.06), mutations).middle() is not None
 
 
-def test_the_parameter_of_a_structural_change_is_bisected_down_to_a_share_of_its_value() -> None:
+def test_parameter_of_a_structural_change_is_bisected() -> None:
     made = template(SHIPPED / "low_pass.toml")
     form = Form(made, made.parameters[0].name)
     between = Between(
@@ -223,7 +223,7 @@ def test_a_value_is_moved_only_if_it_belongs_to_a_single_site() -> None:
     assert found == pytest.approx([2.5, 1.6, 2.24, 1.78])
 
 
-def test_two_candidates_that_differ_in_one_value_are_compared_by_the_ratio_of_the_values() -> None:
+def test_candidates_with_one_different_value_are_compared_by_ratio() -> None:
     assert ratio_of(scaled(3.0), scaled(2.0)) == pytest.approx(1.5)
     for other in (scaled(2.0, WET), scaled(2.0, of=OTHER), scaled(-2.0)):
         assert ratio_of(scaled(3.0), other) is None
@@ -249,9 +249,7 @@ MARGIN = Reference([10.0, 10.0], 1.0, 1.0, 0.0)
     ("by", "expected"),
     [(2.0, 2.6), (1.2, 1.2 * 1.3**3), (6.0, 6.0 / 1.3**2), (5.2, 4.0), (4.4, 4.4), (3.4, 3.4), (0.5, 0.5)],
 )
-def test_a_value_is_increased_while_it_loses_more_than_a_third_of_the_margin(
-    by: float, expected: float
-) -> None:
+def test_value_increases_while_it_loses_much_of_the_margin(by: float, expected: float) -> None:
     """A mission earns 10 minus 0.8 times |log2(factor / 3.4)|, and fails if the factor is below 1."""
 
     def run(one: Candidate, seed: int) -> Outcome:
@@ -271,7 +269,7 @@ def acceptance(losses: dict[int, float], failed: Sequence[int] = (), **changes: 
     return replace(one, **changes)
 
 
-def test_a_mission_counts_as_lost_if_its_loss_exceeds_the_slack_of_the_search() -> None:
+def test_mission_is_lost_if_its_loss_exceeds_the_slack() -> None:
     missed, one = Missed(), scaled(2.0)
     goal = replace(GOAL, passing=True)
     losses = dict.fromkeys(range(20, 40), 0.0) | {21: 2.0, 22: 2.1, 23: 9.0}
@@ -305,9 +303,7 @@ def test_a_candidate_fails_again_if_it_loses_most_of_the_latest_missions(
     assert not Missed().again(scaled(2.0), trials, GOAL)
 
 
-def test_a_candidate_is_better_than_a_refused_candidate_if_it_passes_all_missions_that_the_latter_lost() -> (
-    None
-):
+def test_better_candidate_passes_all_missions_that_another_lost() -> None:
     refused = scaled(2.0)
     missed = Missed(few={refused: [(1, 8.0), (2, 7.0)]})
     for totals, expected in (((8.0, 7.0), True), ((7.9, 9.0), False), ((9.0, 6.9), False)):
@@ -316,7 +312,7 @@ def test_a_candidate_is_better_than_a_refused_candidate_if_it_passes_all_mission
 
 
 @given(st.lists(st.integers(-5, 5), min_size=1, max_size=40))
-def test_the_missions_that_represent_a_test_are_evenly_spaced_by_rank_of_loss(losses: list[int]) -> None:
+def test_representative_missions_are_evenly_spaced_by_loss(losses: list[int]) -> None:
     found = _spread(acceptance(dict(enumerate(map(float, losses)))))
     assert len(found) == min(5, len(losses))
     told = [one.loss for one in found]
@@ -334,7 +330,7 @@ def examined(*tried: tuple[Candidate, Reason], furthest: Candidate | None = None
     return SimpleNamespace(tried=entries, refused=Refused(furthest, "not shown"))
 
 
-def test_promising_candidates_are_the_best_refused_candidate_and_the_candidates_that_gained_most() -> None:
+def test_promising_candidates_include_the_best_refused_one() -> None:
     best, little, harmful, unseen = scaled(2.0), scaled(3.0), scaled(4.0), scaled(9.0)
     more = scaled(5.0)
     found = watch(
@@ -345,7 +341,7 @@ def test_promising_candidates_are_the_best_refused_candidate_and_the_candidates_
     assert [*_promising(examined(furthest=best), found)] == [best, harmful, more]
 
 
-def test_the_loss_in_the_designed_world_is_the_mean_over_three_recorded_missions() -> None:
+def test_designed_loss_is_the_mean_of_three_recorded_missions() -> None:
     def mutants(permanent: bool = False) -> Any:
         sample = SimpleNamespace(seeds=(4, 5, 6, 7), total=np.array([10.0, 11.0, 12.0, 13.0]))
         order = SimpleNamespace(permanent=permanent, fixture=SimpleNamespace(sample=sample))
@@ -368,7 +364,7 @@ def test_the_loss_in_the_designed_world_is_the_mean_over_three_recorded_missions
         (10.0, -2.01, 0, False),
     ],
 )
-def test_a_partial_repair_costs_at_most_the_margin_or_a_fifth_of_its_gain(
+def test_partial_repair_costs_at_most_the_margin(
     gained: float, low: float, failures: int, expected: bool
 ) -> None:
     mutants: Any = SimpleNamespace(order=SimpleNamespace(reference=MARGIN))
@@ -398,7 +394,7 @@ def of_partial(effects: dict[Candidate, tuple[float, float]]) -> tuple[Any, Any,
     return SimpleNamespace(order=order, foresee=lambda *_: None, run=run), judge, found
 
 
-def test_a_change_that_costs_little_of_its_gain_is_a_partial_repair_if_no_harmless_change_helps() -> None:
+def test_cheap_change_is_a_partial_repair() -> None:
     costly, ruinous, harmless = scaled(2.0), scaled(3.0), scaled(4.0)
     effects = {costly: (10.0, -1.9), ruinous: (12.0, -9.0)}
     found, spent = partial.best(*of_partial(effects))
@@ -482,14 +478,14 @@ def test_a_drift_without_a_range_is_tested_once() -> None:
         ((1, 2), (), "", ""),
     ],
 )
-def test_a_candidate_that_works_at_one_end_of_a_range_is_described_by_its_sizes(
+def test_candidate_for_one_end_is_described_by_its_sizes(
     near: tuple[int, ...], far: tuple[int, ...], part: str, expected: str
 ) -> None:
     runs = {seed: Outcome(8.0, True) for seed in near} | {seed: Outcome(7.9, True) for seed in far}
     assert fits_a_part(ranged(part), runs) == expected
 
 
-def test_the_sizes_for_which_a_repair_holds_or_fails_are_listed_in_words() -> None:
+def test_sizes_where_a_repair_holds_are_listed() -> None:
     one, two, three = BANDS
     assert bands_in_words(Ranged((), (one, two), (three,))) == (
         "it works for sizes 0 to 1 and sizes 1 to 2, but not for sizes 2 to 3"
@@ -498,12 +494,12 @@ def test_the_sizes_for_which_a_repair_holds_or_fails_are_listed_in_words() -> No
 
 
 @pytest.mark.usefixtures("drawn")
-def test_a_repair_over_a_range_reports_the_drift_sizes_of_its_acceptance_test() -> None:
+def test_range_repair_reports_the_sizes_of_its_acceptance_test() -> None:
     (found,) = repaired_sizes(ranged(), Ranged((5, 15))).values()
     assert found.of == {"online": (1.0,), "repaired": (0.5, 1.5)}
 
 
-def test_the_goal_of_a_search_is_the_designed_reward_minus_tolerance_and_spread() -> None:
+def test_search_goal_is_the_designed_reward_minus_tolerance() -> None:
     online = [Pair(1, 5.0), Pair(2, 8.5), Pair(3, 6.0), Pair(4, 10.0)]
     reference = Reference([9.0, 11.0], 0.95, 1.5, 0.0)
     found = goal(online, reference, 20.0)
@@ -545,7 +541,7 @@ def test_a_step_on_a_logarithmic_scale_is_reported_as_a_factor() -> None:
     assert factor(step) == pytest.approx(2.0, rel=0.01)
 
 
-def test_the_episodes_for_a_partial_gain_are_paired_by_seed_and_the_bounds_share_alpha(
+def test_partial_gains_are_paired_by_seed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(partial, "EPISODES", 4)

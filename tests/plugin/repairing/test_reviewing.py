@@ -77,9 +77,7 @@ def test_a_condition_without_a_threshold_has_no_jump() -> None:
         ),
     ],
 )
-def test_a_constant_that_changes_by_a_factor_of_eight_or_more_is_pointed_out(
-    mutations: list[Mutation], expected: str
-) -> None:
+def test_eightfold_change_of_a_constant_is_pointed_out(mutations: list[Mutation], expected: str) -> None:
     told = [one.partition(": ")[0] for one in large(Candidate(tuple(mutations), ALWAYS))]
     assert told == ([expected] if expected else [])
 

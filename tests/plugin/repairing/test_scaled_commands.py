@@ -43,7 +43,7 @@ def scaled(name: str, code: str, within: str, field: str = "", value: float = 1.
         ("gain", "turn", "z = turn", "", [4, 3]),
     ],
 )
-def test_a_factor_on_a_command_is_proposed_with_the_statements_that_compute_the_command(
+def test_command_factor_comes_with_the_computing_statements(
     name: str, code: str, within: str, field: str, lines: list[int]
 ) -> None:
     found = scaled(name, code, within, field)

@@ -49,9 +49,7 @@ rospy.spin()
 """
 
 
-def test_values_near_one_and_small_offsets_have_a_second_scale_but_gains_do_not(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_value_near_one_has_a_second_scale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "balance.py").write_text(NODE)
     analysis = analyse([tmp_path / "balance.py"], root=tmp_path)
     sizes = {"pitch": 0.3, "level": 0.2, "error": 0.1, "far": 0.5}
@@ -93,7 +91,7 @@ rospy.spin()
     ("topic", "field", "expected"),
     [("/stick", "data", {"TRIM": offset(150.0)}), ("/other", "data", {}), ("/stick", "other", {})],
 )
-def test_a_zero_that_is_added_to_a_reading_has_the_scale_of_the_sensor(
+def test_zero_offset_of_a_reading_has_the_sensor_scale(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, topic: str, field: str, expected: dict[str, Any]
 ) -> None:
     """The published value, about 0.1, has another unit, because a function makes it from the sum."""
@@ -108,7 +106,7 @@ def test_a_zero_that_is_added_to_a_reading_has_the_scale_of_the_sensor(
     assert {one.code: chart for one, chart in charts(order, operands).items()} == expected
 
 
-def test_two_values_near_one_are_similar_if_their_distances_to_one_are_similar() -> None:
+def test_values_near_one_are_compared_by_distance_to_one() -> None:
     span = Span("node.py", 3, 5, 3, 9)
     share = Operand(SiteId("node", "run", "line 3"), span, "0.95", 0.95, span)
 

@@ -102,17 +102,13 @@ FALLING = np.array([1.2, 0.6, 0.2, 0.05, 0.008])  # an angle that a base turns t
 STUCK, LESS_STUCK = np.array([1.2, 0.5, 0.06, 0.06]), np.array([0.9, 0.04, 0.04])
 
 
-def test_a_tolerance_that_only_designed_missions_reach_moves_beyond_the_end_values_of_the_drifted_missions() -> (
-    None
-):
+def test_tolerance_reached_only_as_designed_is_widened() -> None:
     by = reaching(0.01, [(FALLING, LESS_STUCK), (FALLING, STUCK)])
     assert by == pytest.approx(0.06 * MARGIN / 0.01)
     assert reaching(-0.01, [(-FALLING, -STUCK)]) == pytest.approx(0.06 * MARGIN / 0.01)
 
 
-def test_a_threshold_that_only_designed_missions_exceed_moves_below_the_maximum_of_the_drifted_missions() -> (
-    None
-):
+def test_threshold_exceeded_only_as_designed_is_lowered() -> None:
     faded, more_faded = np.array([0.0, 20.0, 60.0]), np.array([0.0, 50.0])
     by = reaching(100.0, [(np.array([0.0, 40.0, 130.0]), faded), (np.array([0.0, 120.0]), more_faded)])
     assert by == pytest.approx(50.0 / MARGIN / 100.0)

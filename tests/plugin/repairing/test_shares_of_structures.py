@@ -38,9 +38,7 @@ def commands(order: Any) -> list[Spot]:
 
 
 @pytest.mark.parametrize(("share", "left"), SHARES)
-def test_each_change_of_a_command_gets_a_few_episodes_and_all_together_get_at_most_a_third(
-    tmp_path: Path, share: int, left: int
-) -> None:
+def test_command_changes_get_at_most_a_third_of_the_episodes(tmp_path: Path, share: int, left: int) -> None:
     of = structures(of_many(tmp_path))
     group = of._at_commands(templates(tmp_path), commands(of.order))
     assert len(group.operands) >= 2
@@ -82,9 +80,7 @@ def groups(of: Structures) -> list[_Group]:
 
 
 @pytest.mark.parametrize(("share", "left"), SHARES)
-def test_changes_with_symptoms_and_changes_at_the_best_statement_get_half_of_the_episodes(
-    tmp_path: Path, share: int, left: int
-) -> None:
+def test_changes_with_symptoms_get_half_of_the_episodes(tmp_path: Path, share: int, left: int) -> None:
     order = of_many(tmp_path)
     here = site(order, "b = ")
     of = structures(
@@ -103,7 +99,7 @@ def test_changes_with_symptoms_and_changes_at_the_best_statement_get_half_of_the
 
 
 @pytest.mark.parametrize(("share", "left"), SHARES)
-def test_changes_by_a_sensor_that_separates_the_worlds_get_at_least_fifty_episodes_and_at_most_a_third(
+def test_changes_by_a_telling_sensor_get_fifty_episodes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, share: int, left: int
 ) -> None:
     order = order_of(tmp_path)
@@ -132,7 +128,7 @@ def template(name: str, on: str = "value", cost: int = 1, parameters: tuple[Para
     return Template(name, name, on, cost, f"-{{x}} + {names}" if names else "-{x}", parameters=parameters)
 
 
-def test_templates_of_equal_cost_form_one_group_at_the_first_expressions_and_one_at_the_others(
+def test_templates_of_equal_cost_form_two_groups(
     tmp_path: Path,
 ) -> None:
     order = of_many(tmp_path)
@@ -201,9 +197,7 @@ def test_each_group_gets_a_share_by_its_number_of_parameters(
     assert of.effects() == {"all": [0, 1, 2], **{f"site {number}": [number] for number in range(3)}}
 
 
-def test_a_group_ends_when_its_candidates_have_used_up_its_share_and_the_shares_of_later_groups(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_group_ends_when_its_share_is_used_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     of, three = made(tmp_path, 120)
     # the limit of the first group is 120 - 0.6·100 = 60 episodes
     assert int(KEPT * 100) == 60
@@ -248,9 +242,7 @@ def test_after_an_examination_the_share_grows_by_its_episodes(
     assert (of.trials.budget, of.trials.reserve) == (120, 0)
 
 
-def test_a_group_that_has_spent_its_share_is_followed_by_the_next_group_and_the_last_group_ends_the_search(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_next_group_follows_a_group_without_episodes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     of, three = made(tmp_path, 120)
     sweeps = Sweeps(monkeypatch, [-1], [3, -1], [4])
     assert len(list(of._searched(three))) == 2
@@ -289,9 +281,7 @@ def test_early_changes_spend_at_most_twice_their_episodes_and_restore_the_budget
     assert (trials.budget, trials.reserve, trials.worth) == (300, 9, of.order.goal)
 
 
-def test_episodes_that_the_caller_spends_on_an_early_change_are_not_counted_twice(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_early_change_episodes_are_counted_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     of = structures(order_of(tmp_path), 300)
     trials = of.trials
     budgets: list[int] = []
@@ -312,9 +302,7 @@ def test_episodes_that_the_caller_spends_on_an_early_change_are_not_counted_twic
     assert trials.budget == 300
 
 
-def test_early_changes_by_a_sensor_need_a_varying_sensor_or_a_range_of_sizes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_early_sensor_changes_need_a_varying_sensor(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for ranged, varies, expected in ((False, False, []), (True, False, [SENSOR]), (False, True, [SENSOR])):
         of = structures(order_of(tmp_path))
         of.order.goal = replace(of.order.goal, ranged=ranged)
@@ -338,7 +326,7 @@ def formed(of: Structures, parameter: Parameter, *more: Parameter, on: str = "va
     return lambda factor: of.mutate(operand(1, "x", 2.0), factor)
 
 
-def test_a_parameter_is_moved_by_a_factor_and_only_the_first_parameter_can_keep_its_value(
+def test_parameter_moves_by_a_factor(
     tmp_path: Path,
 ) -> None:
     of = structures(order_of(tmp_path))
@@ -373,9 +361,7 @@ def test_a_parameter_on_a_grid_takes_only_its_multiples(
 
 
 @pytest.mark.parametrize(("grid", "expected"), [(0.5, 0.94), (1.0, 1.0)])
-def test_an_exponent_that_nearly_earns_enough_is_moved_in_hundredths_but_a_count_is_not(
-    tmp_path: Path, grid: float, expected: float
-) -> None:
+def test_exponent_is_fine_tuned_but_a_count_is_not(tmp_path: Path, grid: float, expected: float) -> None:
     of = structures(order_of(tmp_path))
     moved = formed(of, Parameter("k", 1.0, grid=grid))
     assert moved(0.94).value == 1.0
@@ -437,7 +423,7 @@ def test_a_parameter_is_listed_with_the_fixed_parameters_of_the_same_change(tmp_
         ({"a": [None], "b": [2.0]}, ("b",)),
     ],
 )
-def test_statements_respond_if_a_known_constant_gains_a_fifth_of_the_wanted_gain(
+def test_statement_responds_if_a_constant_gains_a_fifth(
     effects: dict[str, list[float | None]], expected: tuple[str, ...]
 ) -> None:
     given = {

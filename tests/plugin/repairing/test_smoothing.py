@@ -43,7 +43,7 @@ def names(found: list[Candidate]) -> list[str]:
     return [one.mutations[0].form.template.name for one in found if one.mutations[0].form is not None]
 
 
-def test_a_sensor_is_added_where_it_is_about_as_large_as_the_change() -> None:
+def test_sensor_is_added_where_its_size_matches_the_change() -> None:
     found = list(smoothed(order(0, 3), Candidate((Mutation(NAMED, 1.5),), LONG)))  # 0.5 → 0.75 at 0.35
     assert names(found) == ["sum", "scale"]
     assert all(one.guard == ALWAYS for one in found)
@@ -51,7 +51,7 @@ def test_a_sensor_is_added_where_it_is_about_as_large_as_the_change() -> None:
 
 
 @pytest.mark.parametrize("factor", [1.1, 0.5, 5.0])
-def test_a_change_whose_size_or_direction_does_not_match_a_sensor_is_only_scaled(factor: float) -> None:
+def test_change_unlike_any_sensor_is_only_scaled(factor: float) -> None:
     found = list(smoothed(order(0, 3), Candidate((Mutation(NAMED, factor),), LONG)))
     assert names(found) == ["scale"]
 
@@ -66,9 +66,7 @@ def test_a_change_whose_size_or_direction_does_not_match_a_sensor_is_only_scaled
         (Candidate((Mutation(operand(5, "True", True), value=False),), LONG), 0),
     ],
 )
-def test_nothing_is_smoothed_without_a_jump_or_a_sensor_that_rests_at_zero(
-    candidate: Candidate, designed: int
-) -> None:
+def test_smoothing_needs_a_jump_or_a_resting_sensor(candidate: Candidate, designed: int) -> None:
     assert list(smoothed(order(designed, 3), candidate)) == []
 
 
@@ -78,7 +76,7 @@ def visited(*bins: tuple[int, float]) -> Any:
     return SimpleNamespace(cells=[(place,) for place, _ in bins], chain=chain)
 
 
-def test_the_size_of_a_change_is_compared_with_the_sensor_mean_where_the_condition_holds() -> None:
+def test_change_size_is_compared_with_the_sensor_mean() -> None:
     asked = order(0, 3)
     # 0.35 for 30 steps and 0.75 for 10 steps; the condition does not hold in the other bins
     asked.online.recorded.sample = visited((3, 30.0), (7, 10.0), (0, 500.0), (2, 100.0), (10, 70.0))
@@ -93,7 +91,7 @@ def test_a_change_under_a_condition_that_never_held_is_not_smoothed() -> None:
 
 
 @pytest.mark.parametrize(("away", "smooth"), [(10.0, True), (10.1, False)])
-def test_a_sensor_rests_at_zero_if_it_is_near_zero_in_nine_of_ten_steps(away: float, smooth: bool) -> None:
+def test_resting_sensor_is_near_zero_in_nine_of_ten_steps(away: float, smooth: bool) -> None:
     asked = order(0, 3)
     asked.fixture.sample = visited((0, 50.0), (5, away), (0, 40.0))
     assert bool(list(smoothed(asked, Candidate((Mutation(NAMED, 1.5),), LONG)))) is smooth
@@ -102,8 +100,6 @@ def test_a_sensor_rests_at_zero_if_it_is_near_zero_in_nine_of_ten_steps(away: fl
 @pytest.mark.parametrize(
     ("factor", "summed"), [(1.35, True), (1.349, False), (2.4, True), (2.41, False), (0.65, False)]
 )
-def test_a_plain_sum_is_tried_if_change_and_sensor_differ_by_at_most_a_factor_of_two(
-    factor: float, summed: bool
-) -> None:
+def test_plain_sum_is_tried_within_a_factor_of_two(factor: float, summed: bool) -> None:
     found = list(smoothed(order(0, 3), Candidate((Mutation(NAMED, factor),), LONG)))  # 0.35 / 2 to 0.35 * 2
     assert ("sum" in names(found)) is summed

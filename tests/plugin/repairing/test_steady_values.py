@@ -92,11 +92,11 @@ def test_a_constant_gets_only_templates_that_do_more_than_another_value(order: A
     assert tried(order, "max(LEAST, 0.5 * self.pace)").isdisjoint({"low_pass", "at_most", "limit"})
 
 
-def test_a_constant_that_is_added_to_a_variable_gets_no_template_with_state(order: Any) -> None:
+def test_constant_added_to_a_variable_gets_no_stateful_template(order: Any) -> None:
     assert not tried(order, "self.slack") & STATEFUL
 
 
-def test_a_value_that_never_varied_gets_no_template_that_starts_from_the_first_value(order: Any) -> None:
+def test_value_that_never_varied_gets_no_first_value_template(order: Any) -> None:
     assert tried(order, "2.0 * msg.angular.z") >= STATEFUL
     still = tried(order, "2.0 * msg.angular.z", (site(order, "turn = 2.0"),))
     assert still & STATEFUL == {"integral", "rate_limit"}
@@ -126,7 +126,7 @@ def test_templates_with_a_sensor_or_without_parameters_are_always_tried() -> Non
     assert has_effect(known["gain"], False, True, False)
 
 
-def test_a_value_is_steady_if_it_never_varied_within_a_mission_of_either_world(order: Any) -> None:
+def test_steady_value_never_varies_within_a_mission(order: Any) -> None:
     places = plan(order.analysis).places
     number = {place.id: at for at, place in enumerate(places)}
     pace, turn = number[site(order, "cmd.linear.x")], number[site(order, "turn = 2.0")]

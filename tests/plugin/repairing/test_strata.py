@@ -138,7 +138,7 @@ def test_a_repair_for_one_end_of_the_range_is_described(runs: Any, said: str) ->
     assert fits_a_part(order("", drawn=DRAWN), runs) == said
 
 
-def test_the_description_names_the_part_of_the_drift_if_it_has_a_name() -> None:
+def test_description_names_a_named_part_of_the_drift() -> None:
     drawn = {seed: {"mud": one[""]} for seed, one in DRAWN.items()}
     said = fits_a_part(order("mud", drawn=drawn), {1: True, 2: True, 3: False})  # type: ignore[dict-item]
     assert said == "it works for sizes of mud from 1 to 2, but not for 4 to 4"

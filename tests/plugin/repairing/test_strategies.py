@@ -98,7 +98,7 @@ def test_among_equally_readable_changes_constants_of_the_first_slices_come_first
     assert early.index("self.bias in 26") < early.index("3.5 in 24")  # a name is changed before a literal
 
 
-def test_the_constants_of_several_objects_of_a_class_are_changed_where_the_objects_are_made(
+def test_constants_of_several_objects_change_at_their_construction(
     order: Any,
 ) -> None:
     found = codes(operands(order))
@@ -134,9 +134,7 @@ def made(monkeypatch: pytest.MonkeyPatch, order: Any, method: str, *guards: Guar
     return strategy(mutants, method, guards, trials)  # type: ignore[return-value]
 
 
-def test_a_sweep_gets_the_constants_that_were_set_aside_and_whether_structural_changes_follow(
-    monkeypatch: pytest.MonkeyPatch, order: Any
-) -> None:
+def test_sweep_gets_the_constants_that_were_set_aside(monkeypatch: pytest.MonkeyPatch, order: Any) -> None:
     found = made(monkeypatch, order, "sweep", WET, ALWAYS)
     assert found.given[1:3] == ("mutate", (WET, ALWAYS))
     assert found.given[4] == "goal"
@@ -157,7 +155,7 @@ def test_each_search_gets_the_conditions_that_it_can_use(monkeypatch: pytest.Mon
     assert made(monkeypatch, order, "mine:Bayes", ALWAYS, WET).given[4] == (ALWAYS,)
 
 
-def test_the_seed_of_a_plug_in_depends_on_its_name_and_the_seed_of_the_run(
+def test_plug_in_seed_depends_on_its_name_and_the_run_seed(
     monkeypatch: pytest.MonkeyPatch, order: Any
 ) -> None:
     def seed(name: str) -> int:

@@ -40,9 +40,7 @@ TABLE = "def elevation(far):\n    return far * 0.5\n\n\ndef name(far):\n    retu
 
 
 @pytest.mark.parametrize(("designed", "drifted", "tells"), [(0, 5, True), (5, 0, True), (3, 3, False)])
-def test_a_sensor_is_offered_to_templates_if_its_values_differ_between_the_worlds(
-    designed: int, drifted: int, tells: bool
-) -> None:
+def test_sensor_that_differs_between_worlds_is_offered(designed: int, drifted: int, tells: bool) -> None:
     assert telling(order(designed, drifted)) == ([TOOL] if tells else [])
 
 
@@ -81,7 +79,7 @@ def visits(designed: list[float], drifted: list[float]) -> Any:
         ([], [5.0, 5.0], False),
     ],
 )
-def test_a_sensor_varies_if_the_drifted_world_uses_at_least_one_and_a_half_times_its_bins(
+def test_varying_sensor_uses_half_as_many_more_bins(
     designed: list[float], drifted: list[float], expected: bool
 ) -> None:
     assert varies(visits(designed, drifted), TOOL) is expected
@@ -97,13 +95,13 @@ def test_a_sensor_varies_if_the_drifted_world_uses_at_least_one_and_a_half_times
         ([], [1.0], False),
     ],
 )
-def test_a_sensor_separates_the_worlds_if_at_most_a_quarter_of_the_steps_is_in_common_bins(
+def test_separating_sensor_shares_a_quarter_of_the_steps_at_most(
     designed: list[float], drifted: list[float], tells: bool
 ) -> None:
     assert bool(telling(visits(designed, drifted))) is tells
 
 
-def test_the_typical_size_of_a_sensor_is_also_known_for_the_designed_world() -> None:
+def test_typical_sensor_size_is_known_for_the_designed_world() -> None:
     sensor = Sensor("tool", topic="/tool", field="data", low=0, high=1, bins=10)
     asked = order(0, 5, sensor)
     assert usual(asked, sensor, asked.fixture.sample) == pytest.approx(0.05)
@@ -178,7 +176,7 @@ def test_statements_that_respond_come_first(tmp_path: Path, monkeypatch: pytest.
         assert first.source.source(first.node) == code
 
 
-def test_a_statement_responds_if_one_of_its_constants_gained_a_fifth_of_the_wanted_gain() -> None:
+def test_statement_responds_if_one_constant_gains_a_fifth() -> None:
     effects = {"a": (effect(1.0), effect(2.1)), "b": (effect(6.0),), "c": (effect(1.9),), "d": ()}
     assert structural._responding(effects, 10.0) == ("b", "a")
     assert structural._responding({"a": (effect(0.0),)}, 0.0) == ()

@@ -77,7 +77,7 @@ def test_calls_of_functions_that_returned_numbers_count_as_arguments() -> None:
     assert found("out.publish(self.f(a), 1)", returned=("g",)) == []
 
 
-def test_a_returned_value_is_a_place_for_templates_on_the_line_of_its_statement_only() -> None:
+def test_returned_value_is_a_template_place_on_its_own_line() -> None:
     text = "def f(a):\n    b = a + 1\n    return a - 1"
     assert found(text, line=3) == [("a - 1", "value")]
     assert found(text, line=2) == [("a + 1", "value")]
@@ -152,9 +152,7 @@ def test_the_distance_to_a_publish_call_is_the_shortest_of_all_flows() -> None:
         ("b", "xb", "bca"),
     ],
 )
-def test_templates_are_tried_first_at_statements_that_responded_and_then_at_the_other_statements(
-    culprits: str, responding: str, names: str
-) -> None:
+def test_responding_statements_get_templates_first(culprits: str, responding: str, names: str) -> None:
     given = order([A, B, C], culprits=tuple(culprits))
     away = _away(given)  # c, b, a from the publish call backwards
     found = _steps(given, away, [f"a:<module>:{name}" for name in responding])
@@ -200,9 +198,7 @@ def g():
         ("m.p.x", "one(1)", False),
     ],
 )
-def test_two_values_of_one_function_that_differ_only_in_their_axis_form_a_pair(
-    first: str, second: str, paired: bool
-) -> None:
+def test_values_that_differ_only_in_axis_form_a_pair(first: str, second: str, paired: bool) -> None:
     one, other = spot(first), spot(second)
     assert pairs([one, other], 9) == ([(one, other)] if paired else [])
 
@@ -219,7 +215,7 @@ def test_the_number_of_pairs_is_limited() -> None:
     assert pairs(spots, 0) == []
 
 
-def test_a_field_that_several_statements_build_is_a_place_at_its_publish_call() -> None:
+def test_field_built_by_several_statements_changes_at_its_publish_call() -> None:
     text = "def f(self, x):\n    self.m.data = x\n    self.m.data += 0.5\n    self.pub.publish(self.m)\n"
     source = document("a.py", text)
     here = list(_fields(source, Span("a.py", 4, 5, 4, 29)))

@@ -263,7 +263,7 @@ def test_the_patch_of_a_law_of_a_constant_runs(name: str, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("name", ["limit", "low_pass", "rate_limit", "integral"])
 @pytest.mark.parametrize("body", BODIES)
-def test_a_template_is_found_for_every_form_of_expression_that_computes_the_value(
+def test_every_form_of_expression_has_a_template(
     name: str, body: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     world = World(name, tmp_path, BODIES[body])
@@ -273,7 +273,7 @@ def test_a_template_is_found_for_every_form_of_expression_that_computes_the_valu
 
 
 @pytest.mark.parametrize("usual", [0.8, 0.9, 1.15, 1.3])
-def test_a_wrong_typical_value_that_the_bins_give_for_a_sensor_is_adjusted(
+def test_wrong_typical_value_of_a_sensor_is_adjusted(
     usual: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     world = World("power", tmp_path)

@@ -54,7 +54,7 @@ if __name__ == "__main__":
         ("unknown", 1.0),
     ],
 )
-def test_the_typical_size_of_an_expression_is_computed_from_the_recorded_values_of_its_parts(
+def test_typical_expression_size_comes_from_recorded_parts(
     text: str, size: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "tap.py").write_text(NODE)

@@ -72,7 +72,7 @@ def test_modules_that_the_marker_names_are_searched_anyway(project: Path) -> Non
     assert sentences(project, sources, ("node.py", 5, "control.turn()")) == []
 
 
-def test_files_are_looked_for_beside_the_module_and_in_its_parents_up_to_the_root(project: Path) -> None:
+def test_files_are_sought_beside_the_module_and_in_its_parents(project: Path) -> None:
     code = "import control\nfrom gains import kp\nfrom ..inner import ki\nfrom ... import filters\n"
     steps = [
         ("pkg/deep/node.py", line, f"{name}()")

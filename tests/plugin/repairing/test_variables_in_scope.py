@@ -65,7 +65,7 @@ def asked(folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Any, Operand]:
     return order, used
 
 
-def test_attributes_of_the_class_and_earlier_names_of_the_function_hold_their_values(
+def test_class_attributes_and_earlier_names_are_in_scope(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     order, used = asked(tmp_path, monkeypatch)

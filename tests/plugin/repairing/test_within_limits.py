@@ -174,7 +174,7 @@ def test_a_term_of_a_sensor_is_added_before_the_limits(
     assert whole.code.startswith("scale by speed of MASS * push(e")
 
 
-def test_a_term_is_added_to_the_whole_value_if_the_size_within_is_unknown() -> None:
+def test_term_of_unknown_size_is_added_to_the_whole_value() -> None:
     source: Any = document("a.py", "def f(ex, ey):\n    a = min(1.0, ex)\n    b = min(1.0, ey)\n")
     first, second = (one for one in source.expressions.values() if isinstance(one, ast.Call))
     site: Any = SimpleNamespace()

@@ -89,7 +89,7 @@ def test_the_definition_in_the_code_comes_first(placing: Any) -> None:
     assert not placing._why  # a constant of the code needs no explanation
 
 
-def test_only_values_of_the_same_kind_and_a_limited_number_of_files_are_tried(placing: Any) -> None:
+def test_values_of_the_same_kind_are_tried_in_a_few_files(placing: Any) -> None:
     numbers = [place(number) for number in range(1, 9)]
     placing.places = [place(20, value=True), *numbers]
     trials, tried = effective(place(20, value=True))

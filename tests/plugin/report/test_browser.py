@@ -192,7 +192,7 @@ def test_every_list_has_a_tab_with_its_figures(follower_seen):
     ]
 
 
-def test_panels_are_in_a_row_on_a_wide_screen_and_stacked_on_a_narrow_screen(shuttle_seen, follower_seen):
+def test_panels_are_stacked_on_a_narrow_screen(shuttle_seen, follower_seen):
     assert shuttle_seen.found["across"] > 2
     assert follower_seen.found["across"] == 1
 

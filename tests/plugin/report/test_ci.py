@@ -16,7 +16,7 @@ SITE = SitePlace("node:vel", "src/a,b:node.py", 30, "vel = (\n    5 * delta)", "
 QUIET = Verdict("no difference", 0.4, 0.6, 0.1, 0.2, 0.5)
 
 
-def test_a_degraded_test_has_its_verdict_loss_region_culprit_and_patch_as_junit_properties(
+def test_junit_properties_hold_verdict_culprit_and_patch(
     shuttle: Comparison,
 ) -> None:
     assert ci.properties(shuttle) == (
@@ -56,7 +56,7 @@ def test_the_annotation_at_the_line_contains_the_whole_conclusion(
     )
 
 
-def test_a_drift_without_loss_gives_a_warning_that_names_the_slices_as_its_evidence(varied: Varied) -> None:
+def test_drift_without_loss_warns_with_its_slices(varied: Varied) -> None:
     drifted = Verdict("drifted", 0.001, 0.5, 0.0, 0.4, 0.5)
     one = varied(
         verdict=drifted, drift=None, culprits=(Culprit(SITE, 0.0, "slices"),), repair=None, region=Region()
@@ -68,9 +68,7 @@ def test_a_drift_without_loss_gives_a_warning_that_names_the_slices_as_its_evide
     assert "Where:" not in told
 
 
-def test_a_refused_repair_is_not_mentioned_and_a_patch_only_if_it_was_written(
-    varied: Varied, shuttle: Comparison
-) -> None:
+def test_patch_is_mentioned_only_if_it_was_written(varied: Varied, shuttle: Comparison) -> None:
     repair = shuttle.repair
     assert repair is not None
     assert "Accepted" not in ci.annotation(varied(repair=replace(repair, accepted=False)), Path.cwd())

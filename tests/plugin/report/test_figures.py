@@ -33,7 +33,7 @@ def test_terrain_splits_the_figure_of_the_shuttle_into_two_rows(shuttle):
     assert found["sites"][5] == [30, "vel = 5 * delta", "traveller.py"]
 
 
-def test_a_figure_has_a_value_for_each_executed_site_and_position_and_null_elsewhere(shuttle):
+def test_figure_has_null_for_sites_that_did_not_run(shuttle):
     true = figure(shuttle)["rows"][1]
     cell = shuttle.cells.index((12, 1))
     assert true["online"][5][12] == pytest.approx(shuttle.lists[0].online[cell, 5], rel=1e-4)
@@ -41,7 +41,7 @@ def test_a_figure_has_a_value_for_each_executed_site_and_position_and_null_elsew
     assert figure(shuttle)["rows"][0]["offline"][0][0] is None
 
 
-def test_each_row_of_a_figure_shows_its_regions_as_intervals_of_the_position(shuttle):
+def test_figure_row_shows_its_regions_as_intervals(shuttle):
     false, true = figure(shuttle)["rows"]
     assert (false["region"], true["region"]) == (
         [],
@@ -50,7 +50,7 @@ def test_each_row_of_a_figure_shows_its_regions_as_intervals_of_the_position(shu
     assert len(false["paper"]) == 1
 
 
-def test_each_row_of_a_figure_shows_a_value_of_the_category_that_explains_most_of_the_region(two_lists):
+def test_figure_row_shows_the_category_that_explains_most(two_lists):
     assert [two_lists.sensors[d].name for d in (plane(two_lists).position, plane(two_lists).split)] == [
         "x",
         "light",
@@ -133,7 +133,7 @@ def test_unknown_slices_have_a_row_without_a_value(shuttle):
 
 
 @pytest.mark.parametrize("values", [[-3.0, 8.0], [1e-7], [-1e6, -2e6], [], [0.0], [math.nan, 2.0]])
-def test_scales_include_zero_and_all_values_and_have_few_ticks_at_round_numbers(values):
+def test_scales_include_zero_and_have_round_ticks(values):
     made = scale(values)
     for value in [0.0, *(v for v in values if math.isfinite(v))]:
         assert 0 <= made.at(value) <= 100

@@ -34,7 +34,7 @@ def test_markup_in_code_is_escaped():
     assert "<script" not in code_html("x = '</code><script>alert(1)</script>'")
 
 
-def test_patch_lines_have_their_line_numbers_in_the_old_and_in_the_new_file():
+def test_patch_lines_have_old_and_new_line_numbers():
     found = [(line.kind, line.old, line.new, text(line.html)) for line in patch_lines(DIFF)]
     assert found == [
         ("file", None, None, "--- a/node.py"),

@@ -120,7 +120,7 @@ def test_the_page_contains_the_patch_and_the_command_that_applies_it(shuttle):
     assert "tarl apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch" in text
 
 
-def test_a_constant_scaled_by_a_sensor_is_not_shown_with_the_exponent_as_its_value(shuttle):
+def test_exponent_is_not_shown_as_the_constant(shuttle):
     law = OperandEffect("KP", 4.0, -1.7, 2.5, what="KP follows light")
     culprits = (replace(shuttle.culprits[0], operands=(law,)), *shuttle.culprits[1:])
     text = Page(render(replace(shuttle, culprits=culprits))).text
@@ -211,7 +211,7 @@ def test_ranges_and_minus_signs_are_typeset(plain, set_in_type):
     assert typeset(plain) == set_in_type
 
 
-def test_the_page_explains_the_test_and_cites_the_paper_in_a_footnote_only(shuttle):
+def test_page_cites_the_paper_only_in_a_footnote(shuttle):
     page = render(replace(shuttle, purpose="Bring one parcel <from G1> to G2."))
     assert '<p class="purpose">Bring one parcel &lt;from G1&gt; to G2.</p>' in page
     body = page[page.index("<body>") : page.index('<script type="application/json"')]

@@ -70,9 +70,7 @@ def test_an_accepted_patch_is_applied_and_a_permanent_drift_recorded(
 
 
 @pytest.mark.parametrize("folder", ["src/robot/", "../robot/"])
-def test_the_path_of_a_patch_is_relative_to_the_folder_where_pytest_was_started(
-    varied: Varied, folder: str
-) -> None:
+def test_patch_path_is_relative_to_the_start_folder(varied: Varied, folder: str) -> None:
     one = varied(test=TEST, target=f"{folder}{TEST}")
     assert [*next_commands.next_steps(one)] == [
         f"tarl apply {folder}.tarl/patches/test-delivers-mud-1a2b3c4d.patch"

@@ -110,9 +110,7 @@ def test_paths_and_test_ids_break_at_their_parts() -> None:
         ([((1, 3),)], [((1, 3),)]),
     ],
 )
-def test_boxes_of_an_angle_with_four_bins_meet_between_the_last_bin_and_the_first(
-    cover: list[regions.Box], joined: list[regions.Box]
-) -> None:
+def test_boxes_of_an_angle_meet_at_its_ends(cover: list[regions.Box], joined: list[regions.Box]) -> None:
     assert list(regions.closed(cover, 0, 4)) == joined
 
 
@@ -128,7 +126,7 @@ def test_ranges_are_joined_if_they_touch_or_overlap() -> None:
     assert regions.runs([(5, 5), (1, 2), (3, 3), (7, 9), (8, 8)]) == [(1, 3), (5, 5), (7, 9)]
 
 
-def test_a_wide_line_is_cut_at_the_width_and_never_below_sixteen_characters() -> None:
+def test_wide_line_is_cut_but_never_below_sixteen_characters() -> None:
     code = "0123456789" * 4
     assert words.one_line(code, 40) == code
     assert words.one_line(code, 39) == code[:38] + "…"

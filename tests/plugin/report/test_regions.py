@@ -42,7 +42,7 @@ RING = st.sets(st.tuples(st.integers(0, 2), st.integers(0, 7), st.integers(0, 1)
 
 
 @given(RING)
-def test_boxes_that_meet_at_the_ends_of_the_range_of_an_angle_are_joined(cells):
+def test_boxes_at_both_ends_of_an_angle_are_joined(cells):
     cover = boxes(cells)
     joined = closed(cover, 1, 8)
     assert {(x, angle % 8, z) for x, angle, z in inside(joined)} == cells
@@ -51,7 +51,7 @@ def test_boxes_that_meet_at_the_ends_of_the_range_of_an_angle_are_joined(cells):
     assert not [box for box in joined if box[1][0] == 0 and (box[0], box[2]) in ends]
 
 
-def test_the_joined_box_of_an_angle_extends_beyond_the_end_of_the_range():
+def test_joined_angle_box_extends_beyond_the_range_end():
     assert closed((((4, 4), (0, 1)), ((4, 4), (6, 7))), 1, 8) == (((4, 4), (6, 9)),)
 
 
@@ -156,7 +156,7 @@ def test_ranges_below_and_above_the_sensor_are_open():
     assert words([(10, 0)], seen=[(-1, 1), (0, 0), (10, 0)]) == "x above 10 m, terrain false"
 
 
-def test_the_number_of_boxes_does_not_depend_on_the_order_of_the_sensors():
+def test_number_of_boxes_does_not_depend_on_sensor_order():
     row, column = [(0, 0), (1, 0), (2, 0)], [(1, 1), (1, 2)]
     assert boxes(row + column) == (((0, 2), (0, 0)), ((1, 1), (1, 2)))
     assert boxes([(b, a) for a, b in row + column]) == (((0, 0), (0, 2)), ((1, 2), (1, 1)))

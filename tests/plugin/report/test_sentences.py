@@ -75,7 +75,7 @@ def test_the_line_is_named_once_for_all_edits_of_it() -> None:
     )
 
 
-def test_the_best_rejected_candidate_is_shown_with_its_reward_if_it_was_run() -> None:
+def test_best_rejected_candidate_is_shown_with_its_reward() -> None:
     assert repair_words.best_words(Repair(False, "", EDITS)) == f"{WORDS} everywhere"
     run = Repair(False, "", EDITS, mean=2.5, episodes=7)
     assert repair_words.best_words(run) == f"{WORDS} everywhere (2.50 per episode, mean of 7)"
@@ -215,7 +215,7 @@ def test_a_region_names_known_new_and_avoided_cells(varied: Varied) -> None:
     assert words.paper_region_words(varied(paper_region=((12, 1),))) == "x 5.0-5.4 m, terrain true"
 
 
-def test_a_path_is_relative_to_the_root_if_it_is_below_the_root() -> None:
+def test_path_below_the_root_is_relative() -> None:
     root = Path("/project")
     assert words.place("/project/src/a.py", 3, root) == "src/a.py:3"
     assert words.place("/other/a.py", 3, root) == "/other/a.py:3"

@@ -11,7 +11,7 @@ from pytest_tarl.report.shares import Share, sentence
 SHARE = Share(total=100, comparisons=3, looks=((8, 0.0321), (20, 0.0004)), decided=True, missing=12, left=40)
 
 
-def test_the_note_states_the_number_of_episodes_the_even_share_and_every_check() -> None:
+def test_note_states_the_even_share_and_every_check() -> None:
     assert sentence(SHARE) == (
         "ran 20 of the 100 episodes for 3 comparisons (an even share is 33): decided, so the rest go to the others. "
         "Uncorrected p-value: 0.032 after 8, 0.0004 after 20 episodes."

@@ -17,7 +17,7 @@ COMPARISON: Any = SimpleNamespace(
 )
 
 
-def test_each_size_belongs_to_one_interval_and_the_last_interval_includes_its_end() -> None:
+def test_each_size_belongs_to_one_interval() -> None:
     found = list(sizes.rows(COMPARISON))
     assert [(row.band.low, row.band.high, row.before, row.after, row.episodes) for row in found] == [
         (0.0, 1.0, 7.0, None, (2, 0)),
@@ -35,7 +35,7 @@ def test_each_line_names_an_interval_of_the_range_and_its_rewards() -> None:
     assert all("repaired" not in line for line in sizes.lines(unrepaired))
 
 
-def test_the_drawing_puts_the_highest_reward_on_top_and_the_range_across_its_width() -> None:
+def test_drawing_puts_the_highest_reward_on_top() -> None:
     (plot,) = sizes.plots(COMPARISON)
     assert plot.part == "mud"
     assert plot.offline == 0.0
@@ -56,7 +56,7 @@ def test_equal_rewards_are_drawn_on_one_line() -> None:
     assert {y for _, y in plot.points["online"]} == {0.0}
 
 
-def test_a_range_that_does_not_begin_at_zero_is_drawn_from_its_lower_end() -> None:
+def test_range_above_zero_is_drawn_from_its_lower_end() -> None:
     worn = Sizes("worn", 0.5, 0.9, {"online": (0.5, 0.6, 0.9)})
     (plot,) = sizes.plots(
         SimpleNamespace(sizes={"worn": worn}, totals={"offline": (4.0,), "online": (3.0, 2.0, 1.0)})  # type: ignore[arg-type]

@@ -68,7 +68,7 @@ def test_long_code_is_shortened_but_its_evidence_is_kept(two_lists):
     assert len(first) <= 96
 
 
-def test_code_that_does_not_fit_beside_its_location_is_on_the_next_line(two_lists):
+def test_code_too_long_for_its_location_goes_to_the_next_line(two_lists):
     lines = told(two_lists, 80).splitlines()
     place, code = next((a, b) for a, b in pairwise(lines) if " 1. " in a)
     assert place.endswith("src/follower/node.py:63  (self.kp × 2.2: +3.40)")
@@ -83,7 +83,7 @@ def test_a_path_that_is_longer_than_the_line_stays_whole(shuttle):
     assert f"{long}:30" in text
 
 
-def test_a_topic_that_is_unknown_is_named_by_the_place_of_its_call(shuttle):
+def test_unknown_topic_is_named_by_its_call(shuttle):
     (only,) = shuttle.lists
     source = "(rclpy.create_subscription at src/relay/relay.py:148)"
     named = replace(only, taint_list=replace(only.taint_list, source=source))
@@ -95,7 +95,7 @@ def test_without_a_repair_the_suggested_next_command_searches_for_a_repair(unrep
     assert told(unrepaired).splitlines()[-1] == f"  next     {command}"
 
 
-def test_without_a_difference_the_detectable_loss_is_stated_and_no_line_is_blamed(unchanged):
+def test_detectable_loss_is_stated_without_a_difference(unchanged):
     text = told(unchanged, 200)
     assert "No difference was found" in text
     assert "a loss of 0.71 per episode would have been" in text
@@ -122,7 +122,7 @@ def test_absolute_paths_are_shown_relative_to_the_root(varied, shuttle):
     assert "1. src/a.py:3  x = 1  (no operand helps)" in told(varied(culprits=(culprit,)))
 
 
-def test_a_constant_scaled_by_a_sensor_is_not_shown_with_the_exponent_as_its_value(varied, shuttle):
+def test_terminal_does_not_show_the_exponent_as_the_constant(varied, shuttle):
     law = OperandEffect("KP", 4.0, -1.7, 2.5, what="KP follows light")
     text = told(varied(culprits=(replace(shuttle.culprits[0], operands=(law,)),)))
     assert "(KP follows light: +2.50)" in text
@@ -168,13 +168,13 @@ def culprit_lines(varied, width: int, code: str) -> list[str]:
     return [line[11:] for line in shown[first:last]]
 
 
-def test_code_uses_the_whole_line_and_is_shortened_if_it_is_one_character_longer(varied):
+def test_code_is_shortened_beyond_the_line_width(varied):
     # 100 columns: 11 for the label, 9 for `1. p.py:5`, 2 spaces, the code, 2 spaces, 14 for `(by its slice)`
     assert culprit_lines(varied, 100, "x" * 62) == [f"1. p.py:5  {'x' * 62}  (by its slice)"]
     assert culprit_lines(varied, 100, "x" * 63) == [f"1. p.py:5  {'x' * 61}…  (by its slice)"]
 
 
-def test_code_moves_to_a_line_of_its_own_if_fewer_than_24_characters_fit(varied):
+def test_code_with_little_room_gets_its_own_line(varied):
     assert culprit_lines(varied, 62, "x" * 50) == [f"1. p.py:5  {'x' * 23}…  (by its slice)"]
     assert culprit_lines(varied, 61, "x" * 23) == [f"1. p.py:5  {'x' * 23}  (by its slice)"]
     # 61 columns without the label and `1. `

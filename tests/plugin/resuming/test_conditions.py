@@ -53,7 +53,7 @@ def found(project: Path, node: str = "../robot", **options: Any) -> dict[str, An
     )
 
 
-def test_the_files_are_the_files_of_the_nodes_of_the_recorded_statements_and_of_the_test(
+def test_files_are_those_of_the_nodes_and_the_test(
     project: Path,
 ) -> None:
     files = set(found(project)) - SETTINGS

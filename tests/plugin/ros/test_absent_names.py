@@ -16,9 +16,7 @@ PARTS = {
 
 
 @pytest.mark.parametrize("kind", PARTS)
-def test_a_missing_name_of_any_module_is_an_attribute_error_and_an_import_error(
-    start: Start, kind: str
-) -> None:
+def test_missing_name_is_an_attribute_error_and_an_import_error(start: Start, kind: str) -> None:
     ros = start(f"""
         import importlib
         import {kind}

@@ -151,7 +151,7 @@ def test_a_waiting_goal_is_recalled_by_a_newer_goal(scene: Scene) -> None:
         (("b", 2.0), True, True),
     ],
 )
-def test_a_cancel_request_selects_a_goal_by_id_or_goals_by_stamp_or_all_goals(
+def test_cancel_request_selects_goals_by_id_or_stamp(
     scene: Scene, request_: tuple[str, float], active: bool, waiting: bool
 ) -> None:
     scene.goal("a", stamp=2.0)
@@ -251,7 +251,7 @@ def test_a_client_tracks_only_its_own_goal(start: Start) -> None:
     assert (client._state, cancels) == (PREEMPTED, [])
 
 
-def test_a_client_cancels_one_goal_or_all_goals_or_the_goals_up_to_an_instant(start: Start) -> None:
+def test_client_cancels_one_goal_or_all_or_the_older_ones(start: Start) -> None:
     ros = start("")
     goals, cancels = heard(ros, "/sum/goal"), heard(ros, "/sum/cancel")
     start("""
@@ -304,9 +304,7 @@ times.append((client.send_goal_and_wait(FibonacciGoal(), rospy.Duration(0.5), ro
         ("raise ValueError('bad order')", "Exception in execute callback: bad order"),
     ],
 )
-def test_a_goal_is_aborted_if_its_callback_sets_no_final_state_or_fails(
-    start: Start, body: str, text: str
-) -> None:
+def test_goal_without_a_final_state_is_aborted(start: Start, body: str, text: str) -> None:
     ros = start(f"""
         import actionlib, rospy
         from actionlib_tutorials.msg import FibonacciAction

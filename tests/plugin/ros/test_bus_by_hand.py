@@ -59,9 +59,7 @@ def bus(clock: Scheduler) -> Bus:
     return Bus(clock, run, ServiceDirectory(clock))
 
 
-def test_a_message_of_the_world_reaches_every_subscriber_as_a_copy_of_its_own(
-    bus: Bus, program: Program
-) -> None:
+def test_each_subscriber_gets_its_own_copy_of_a_message(bus: Bus, program: Program) -> None:
     ends = [Subscriber(program), Subscriber(program, STRING), Subscriber(program)]
     for one in ends:
         bus.attach(one, bus.topic("/a"))
@@ -120,7 +118,7 @@ def test_a_header_without_a_stamp_gets_the_present_time(bus: Bus, program: Progr
     assert stamps == [(2, 500_000_001), (1, 0)]
 
 
-def test_a_message_of_a_node_reaches_the_world_immediately_and_other_nodes_once_the_node_waits(
+def test_node_message_reaches_the_world_before_other_nodes(
     bus: Bus, program: Program, clock: Scheduler
 ) -> None:
     one, origin, heard, told = Subscriber(program), Publisher(program), list[str](), list[Any]()
@@ -300,9 +298,7 @@ def test_only_the_current_endpoint_of_a_name_can_be_removed(clock: Scheduler) ->
     assert "/s" not in directory
 
 
-def test_a_task_waits_for_a_service_until_the_service_exists_or_a_timeout(
-    clock: Scheduler, program: Program
-) -> None:
+def test_task_waits_for_a_service_or_a_timeout(clock: Scheduler, program: Program) -> None:
     directory, trail = ServiceDirectory(clock), list[Any]()
     going = [True]
 
@@ -322,7 +318,7 @@ def test_a_task_waits_for_a_service_until_the_service_exists_or_a_timeout(
     assert trail[-1] == (True, 7)
 
 
-def test_a_reply_ends_with_a_response_or_with_a_reason_for_the_refusal() -> None:
+def test_reply_ends_with_a_response_or_a_refusal() -> None:
     reply = Reply("/s")
     assert (reply.done, reply.response, reply.error) == (False, None, "")
     reply.take("answer")

@@ -93,7 +93,7 @@ def test_tasks_are_announced_and_then_published_once_a_second(head: str, start: 
     assert level(both) == 2
 
 
-def test_a_topic_is_checked_for_its_frequency_and_the_age_of_its_stamps(head: str, start: Start) -> None:
+def test_topic_is_checked_for_frequency_and_age(head: str, start: Start) -> None:
     ros = start("")
     arrays = heard(ros, "/diagnostics")
     start(head + CHECKS + "spin()", ros=ros)

@@ -81,7 +81,7 @@ asyncio.run(main())
     assert texts(out) == ["one at 0.75", "two at 0.75"]
 
 
-def test_event_loops_that_end_one_after_the_other_leave_no_hooks_for_asynchronous_generators(
+def test_ended_event_loops_leave_no_generator_hooks(
     start: Start,
 ) -> None:
     ros = start("")
@@ -136,7 +136,7 @@ loop.close()
     assert said[3].startswith("done at 1.")
 
 
-def test_python_does_not_wait_for_the_pools_of_an_episode_when_it_ends() -> None:
+def test_python_does_not_wait_for_pools_of_an_episode() -> None:
     ros = Ros()
     with ros.installed():
         code = compile(

@@ -65,7 +65,7 @@ def test_a_reordered_message_waits_for_its_successor_which_draws_no_random_numbe
     assert found == [[], [(0.0, "b"), (0.0, "a")], [(0.0, "c")], []]
 
 
-def test_a_frozen_topic_repeats_its_last_value_for_the_duration_of_the_fault() -> None:
+def test_frozen_topic_repeats_its_last_value() -> None:
     found = arrivals(faults.freeze("/t", 9.0, at=1.0), 2.0, SENT)
     assert found == [[(0.0, "a")], [(0.0, "a")], [(0.0, "a")], [(0.0, "d")]]
     assert arrivals(faults.freeze("/t", 9.0, at=0.5), 1.0, SENT)[1:3] == [[(0.0, "a")], [(0.0, "c")]]
@@ -76,7 +76,7 @@ def test_every_message_is_delayed_by_the_size_of_the_fault() -> None:
     assert arrivals(faults.latency("/t", 9.0), 0.25, SENT[:2]) == [[(0.25, "a")], [(0.25, "b")]]
 
 
-def test_varying_delays_are_random_shares_of_the_size_and_keep_the_order_of_messages() -> None:
+def test_varying_delays_keep_the_message_order() -> None:
     found = arrivals(faults.jitter("/t", 9.0), 4.0, SENT, 0.75, 0.25, 0.5, 0.0)
     # a arrives at 0 + 3; b would at 1 + 1 but waits for a; c at 2 + 2; d would at 3 + 0 but waits for c
     assert found == [[(3.0, "a")], [(2.0, "b")], [(2.0, "c")], [(1.0, "d")]]
@@ -245,7 +245,7 @@ def test_a_value_is_a_moment_if_the_clock_can_represent_its_time(value: Any, fou
     assert moment(value) == found
 
 
-def test_a_restart_ends_the_node_at_the_given_moment_for_the_given_duration() -> None:
+def test_restart_ends_the_node_for_the_given_duration() -> None:
     asked: list[tuple[str, float, float]] = []
     ros = SimpleNamespace(
         interrupt=lambda *given: asked.append(given),

@@ -203,7 +203,7 @@ def test_a_missing_topic_or_node_is_refused_unless_faults_are_active() -> None:
     Faults({"link": lost}, {"link": (lost, 0.5)}).check(ros)
 
 
-def test_each_fault_has_a_file_a_row_in_the_docs_and_a_nominal_size() -> None:
+def test_each_fault_has_a_file_and_a_row_in_the_docs() -> None:
     folder = Path(faults.__file__).parent
     table = (folder.parents[1] / "docs" / "faults.md").read_text("utf-8")
     for name in faults.__all__:

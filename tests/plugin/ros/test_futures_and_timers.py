@@ -34,7 +34,7 @@ def state(future: Future) -> tuple[bool, bool, bool]:
     return future.done(), future.cancelled(), future.pending()
 
 
-def test_a_future_is_pending_until_it_has_a_result_an_exception_or_is_cancelled() -> None:
+def test_future_is_pending_until_a_result_or_cancellation() -> None:
     one, two, three = Future(), Future(), Future()
     assert (state(one), one.result(), one.exception()) == ((False, False, True), None, None)
     one.set_result(5)
@@ -54,7 +54,7 @@ def test_a_future_is_pending_until_it_has_a_result_an_exception_or_is_cancelled(
     assert state(three) == (True, False, False)
 
 
-def test_done_callbacks_run_once_each_in_order_or_are_given_to_the_executor() -> None:
+def test_done_callbacks_run_once_each_in_order() -> None:
     seen: list[tuple[str, Any]] = []
     one = Future()
     one.watch(lambda: seen.append(("watch", None)))
@@ -100,7 +100,7 @@ def test_a_coroutine_waits_for_its_future_and_wakes_the_executor() -> None:
     assert (one.result(), one.done()) == (5, True)
 
 
-def test_a_coroutine_can_be_passed_as_an_object_and_is_closed_by_cancelling() -> None:
+def test_cancelling_closes_a_coroutine_object() -> None:
     closed: list[bool] = []
 
     async def work() -> None:
@@ -179,7 +179,7 @@ def test_a_timer_without_a_period_is_always_ready() -> None:
     assert timer.is_ready()
 
 
-def test_a_callback_gets_the_planned_and_the_actual_time_if_it_has_a_parameter_for_them() -> None:
+def test_callback_gets_the_times_if_it_has_a_parameter() -> None:
     owner, seen = node(), list[TimerInfo]()
 
     def called(info: TimerInfo) -> None:

@@ -96,9 +96,7 @@ ENDS = [
 
 
 @pytest.mark.parametrize("ending", ENDS)
-def test_node_errors_show_a_sentence_the_traceback_and_the_line_of_the_test(
-    tank: pytest.Pytester, ending: str
-) -> None:
+def test_node_error_shows_the_traceback_and_the_test_line(tank: pytest.Pytester, ending: str) -> None:
     changed(
         tank,
         "keeper",

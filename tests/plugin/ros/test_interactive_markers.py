@@ -110,6 +110,6 @@ spin()
 
 
 @pytest.mark.parametrize("module", ["interactive_markers", "interactive_markers.interactive_marker_server"])
-def test_a_name_that_the_built_in_ros_lacks_is_reported_in_one_sentence(module: str, start: Start) -> None:
+def test_missing_ros_name_is_reported_in_one_sentence(module: str, start: Start) -> None:
     with pytest.raises(UnsupportedApiError, match=rf"{module}\.InteractiveMarkerClient"):
         start(f"import rospy, {module}\n{module}.InteractiveMarkerClient")

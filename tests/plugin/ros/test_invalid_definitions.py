@@ -24,7 +24,7 @@ def test_an_invalid_line_is_named_with_its_message(line: str, reason: str) -> No
 
 
 @pytest.mark.parametrize("line", ["int32 speed fast", "float64[2] gains [1.0, x]", "Pose home 1"])
-def test_a_default_without_a_value_of_its_type_is_named_with_its_message(line: str) -> None:
+def test_default_of_the_wrong_type_is_named_with_its_message(line: str) -> None:
     with pytest.raises(UnsupportedApiError) as raised:
         parse("ros2", "arm", "State", f"bool ok true\n{line}\n")
     assert f"arm/State: the default in `{line}` is no value of its type" in str(raised.value)

@@ -211,7 +211,7 @@ def test_quaternions_and_axes_describe_the_same_rotation(axis: tuple[float, ...]
 @pytest.mark.parametrize(
     "axis", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (3, 2, 1), (1, 3, 2), (1, 2, 3), (2, -3, 1)]
 )
-def test_a_half_turn_has_an_axis_and_a_quaternion_without_a_real_part(axis: tuple[float, ...]) -> None:
+def test_half_turn_has_an_axis_and_no_real_part(axis: tuple[float, ...]) -> None:
     turn = Rotation.Rot(Vector(*axis), pi)
     angle, about = turn.GetRotAngle()
     assert angle == pytest.approx(pi)
@@ -294,7 +294,7 @@ def test_denavit_and_hartenberg_parameters_are_applied_in_their_order() -> None:
     assert Frame.DH_Craig1989(a, alpha, d, theta) == tilt * along * turn * up
 
 
-def test_a_frame_can_be_made_from_a_rotation_or_a_vector_or_from_both_or_from_another_frame() -> None:
+def test_frame_is_made_from_a_rotation_or_a_vector() -> None:
     assert Frame() == Frame.Identity() == Frame(Rotation(), Vector())
     assert Frame(TURN).p == Vector()
     assert Rotation() == Frame(A).M
@@ -306,7 +306,7 @@ def test_a_frame_can_be_made_from_a_rotation_or_a_vector_or_from_both_or_from_an
     assert Frame(TURN, A) != Frame(A)
 
 
-def test_a_twist_moves_a_frame_along_its_own_axes_for_one_period_of_a_frequency() -> None:
+def test_twist_moves_a_frame_along_its_axes() -> None:
     frame = Frame(Rotation.RotZ(pi / 2), Vector(1, 0, 0))
     frame.Integrate(Twist(Vector(2, 0, 0), Vector(0, 0, 1)), 4)
     assert numbers(frame.p) == near(1.0, 0.5, 0.0)

@@ -62,7 +62,7 @@ def test_a_jacobian_has_a_twist_for_each_joint() -> None:
             one[place] = 1.0
 
 
-def test_the_columns_of_a_jacobian_are_expressed_in_another_frame_or_at_another_point() -> None:
+def test_jacobian_can_be_expressed_in_another_frame() -> None:
     for change, expected in (
         (lambda one: one.changeRefPoint(A), MOTION.RefPoint(A)),
         (lambda one: one.changeBase(TURN), TURN * MOTION),
@@ -94,7 +94,7 @@ def test_a_sliding_joint_slides_along_its_axis(kind: JointKind, axis: int) -> No
     assert one.getName() == "NoName"
 
 
-def test_a_joint_about_an_axis_has_an_origin_and_a_direction_of_length_one() -> None:
+def test_joint_axis_has_an_origin_and_length_one() -> None:
     one = Joint("j", Vector(1, 0, 0), Vector(0, 0, 5), Joint.RotAxis)
     assert one.pose(pi / 2) == Frame(Rotation.RotZ(pi / 2), Vector(1, 0, 0))
     assert one.twist(1.0) == Twist(Vector(), Vector(0, 0, 1))
@@ -164,7 +164,7 @@ def test_a_tree_takes_the_segments_of_a_chain_one_after_another() -> None:
     assert not tree.addChain(chain, "b")
 
 
-def test_the_pose_of_each_segment_is_the_product_of_the_poses_before_it() -> None:
+def test_segment_pose_is_the_product_of_earlier_poses() -> None:
     chain, values, pose = arm(), [0.4, -0.5, 0.2], Frame()
     solver = ChainFkSolverPos_recursive(chain)
     parts = [chain.getSegment(place) for place in range(4)]
@@ -249,7 +249,7 @@ ROBOT = """<robot name="r"><link name="base"/><link name="arm"/><link name="hand
   <joint name="weld" type="fixed"><parent link="arm"/><child link="eye"/><origin xyz="0 0 1"/></joint></robot>"""
 
 
-def test_a_description_becomes_a_tree_with_joints_in_the_frame_of_the_parent() -> None:
+def test_description_becomes_a_tree_of_joints() -> None:
     ok, tree = treeFromString(ROBOT)  # type: ignore[arg-type]
     assert (ok, tree.getNrOfSegments(), tree.getNrOfJoints()) == (True, 3, 2)
     turn, grip = tree.getChain("base", "hand").segments

@@ -49,7 +49,7 @@ KEYS = {
 
 
 @pytest.mark.parametrize("way", WAITING)
-def test_a_node_that_reads_lines_waits_for_the_text_that_the_test_types(way: str, start: Start) -> None:
+def test_reading_node_waits_for_the_text_of_the_test(way: str, start: Start) -> None:
     ros = start(NODE.format(body=WAITING[way]))
     keys = heard(ros, "/keys")
     ros.step(1.0)
@@ -80,7 +80,7 @@ def test_a_node_in_raw_mode_gets_each_key(way: str, start: Start) -> None:
     assert not ros.shutdown_errors
 
 
-def test_a_node_that_is_still_reading_input_at_the_end_is_interrupted_as_if_by_ctrl_c(start: Start) -> None:
+def test_node_that_is_still_reading_is_interrupted(start: Start) -> None:
     body = "ended = []\ntry:\n    input()\nexcept KeyboardInterrupt:\n    ended.append(rospy.is_shutdown())"
     ros = start(NODE.format(body=body))
     ros.step(0.1)

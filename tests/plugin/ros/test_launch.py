@@ -248,7 +248,7 @@ def test_replaced_nodes_need_not_be_named_in_only(tarl: Tarl) -> None:
     assert tarl.bus.latest("/end") is None
 
 
-def test_a_function_can_replace_a_python_node_and_its_errors_are_errors_of_the_test(tarl: Tarl) -> None:
+def test_errors_of_a_function_node_are_errors_of_the_test(tarl: Tarl) -> None:
     def second(node: Any) -> None:
         node.every(1.0, lambda: 1 / 0)
 
@@ -324,7 +324,7 @@ def test_an_import_without_a_package_is_reported_in_one_sentence(tarl: Tarl, tmp
         tarl.launch("lost.launch.xml")
 
 
-def test_a_launch_file_is_found_by_its_name_if_the_packages_are_beside_the_test(
+def test_launch_file_beside_the_test_is_found_by_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workspace, "_SEARCHED", [])

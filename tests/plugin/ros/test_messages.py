@@ -82,7 +82,7 @@ def test_parts_of_services_of_ros_1_can_be_copied(part: str) -> None:
     assert pickle.loads(pickle.dumps(made)) == made == copy.deepcopy(made)
 
 
-def test_a_ros1_constructor_takes_all_fields_by_position_or_some_fields_by_keyword() -> None:
+def test_ros1_constructor_takes_positions_or_keywords() -> None:
     vector = message_type("geometry_msgs/Vector3")
     assert vector(1.0, 2.0, 3.0) == vector(x=1.0, y=2.0, z=3.0)
     assert vector(y=2.0).x == 0.0
@@ -246,9 +246,7 @@ def test_definitions_missing_in_rosbags_are_known() -> None:
     assert find_message("ros1", "nowhere_msgs", "Nothing") is None
 
 
-def test_the_files_of_an_installed_package_show_whether_it_is_for_ros1_or_ros2(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_package_files_show_the_ros_version(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for package, file in (("old_msgs", "_Twist.py"), ("new_msgs", "_twist.py")):
         (tmp_path / package / "msg").mkdir(parents=True)
         (tmp_path / package / "__init__.py").touch()

@@ -85,7 +85,7 @@ def test_the_sections_of_a_service_are_separated_by_dashes() -> None:
     assert _sections("a\n --- \nb\n---\nc", 2) == ["a\n", "b\n"]
 
 
-def test_the_text_for_a_checksum_has_constants_first_and_nested_types_as_checksums() -> None:
+def test_checksum_text_has_constants_first() -> None:
     constants = (Constant("B", 2, "int8 B=2"),)
     found = Definition(
         "ros1", "pkg", "Name", (Field("a", "int8"), Field("s", "std_msgs/String", "sequence")), constants

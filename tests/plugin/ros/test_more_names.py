@@ -201,9 +201,7 @@ def test_modules_that_the_test_puts_into_sys_modules_are_imported(
         start("from roslib import names\n", ros=ros)
 
 
-def test_a_package_of_the_test_takes_precedence_over_the_stand_in_of_the_same_name(
-    start: Start, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_test_package_replaces_the_built_in_package(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     package, part = ModuleType("sound_play"), ModuleType("sound_play.libsoundplay")
     part.SoundClient = lambda: "own"  # type: ignore[attr-defined]
     package.libsoundplay = part  # type: ignore[attr-defined]

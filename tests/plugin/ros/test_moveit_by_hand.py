@@ -100,13 +100,11 @@ def test_a_joint_that_mimics_another_does_not_move_by_itself() -> None:
         ('<virtual_joint name="v" type="floating" child_link="base"/>', "base"),
     ],
 )
-def test_the_planning_frame_is_the_frame_of_a_moving_virtual_joint_or_else_the_root(
-    text: str, frame: str
-) -> None:
+def test_planning_frame_is_the_virtual_joint_frame_or_the_root(text: str, frame: str) -> None:
     assert semantic(text).planning_frame == frame
 
 
-def test_a_group_that_names_a_chain_has_the_joints_and_links_of_this_chain_and_its_last_link() -> None:
+def test_chain_group_has_the_joints_of_its_chain() -> None:
     arm = ARM.groups["arm"]
     assert (arm.joints, arm.tip) == (("shoulder", "elbow"), "hand")
     assert arm.links[-1] == "hand"
@@ -139,7 +137,7 @@ def test_an_end_effector_of_the_group_is_its_tip() -> None:
     assert semantic(group + effector.format("foot", "")).groups["arm"].tip == "hand"
 
 
-def test_a_pose_is_reached_within_the_limits_by_the_joints_of_the_group() -> None:
+def test_group_joints_reach_a_pose_within_limits() -> None:
     arm, fore = ARM.groups["arm"], ARM.groups["fore"]
     wanted = {"shoulder": 0.4, "elbow": 0.7}
     found = ARM.reached(arm, "hand", ARM.pose("hand", wanted), {"shoulder": 0.3, "elbow": 0.6})
@@ -173,7 +171,7 @@ def test_a_robot_needs_both_of_its_descriptions() -> None:
 # motions
 
 
-def test_a_straight_motion_has_ten_points_per_second_and_takes_as_long_as_its_slowest_joint() -> None:
+def test_straight_motion_takes_as_long_as_its_slowest_joint() -> None:
     found = straight(ARM, AT_REST, [{"shoulder": 0.1, "elbow": -0.05}], 1.0)
     assert (found.joint_names, found.header.frame_id) == (["shoulder", "elbow"], "base")
     assert [one.time_from_start.to_sec() for one in found.points] == pytest.approx([0.0, 0.1, 0.2])
@@ -253,7 +251,7 @@ def test_settings_are_kept_and_returned(start: Start) -> None:
     ) == [3.0, "RRT", (0.25, 0.5, 0.5), "arm", 2, "base", "lower", "base", "hand", "lower", 1.0]
 
 
-def test_a_target_may_be_a_list_a_mapping_a_name_or_a_message(start: Start) -> None:
+def test_target_may_be_a_list_mapping_name_or_message(start: Start) -> None:
     assert run(
         start,
         """
@@ -298,7 +296,7 @@ def test_a_plan_without_a_target_is_invalid(start: Start) -> None:
     assert run(start, "    found += [group.plan()[0], group.plan()[3].val]") == [False, -16]
 
 
-def test_a_plan_begins_at_the_given_start_and_a_motion_at_the_present_state(start: Start) -> None:
+def test_plan_begins_at_the_given_start(start: Start) -> None:
     found = run(
         start,
         """
@@ -390,9 +388,7 @@ def test_a_cartesian_path_needs_a_positive_step(start: Start) -> None:
     assert run(start, source) == ["refused"] * 3 + [1.0, 1.0]
 
 
-def test_a_cartesian_path_has_a_part_for_each_step_from_the_previous_pose(
-    start: Start, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_cartesian_path_has_a_part_per_step(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     goals: list[int] = []
 
     def counted(model: Any, begin: Any, parts: Any, share: float) -> Any:

@@ -68,7 +68,7 @@ def test_moveit_takes_groups_and_links_from_the_descriptions_of_the_robot(start:
           {"shoulder": 1.0, "elbow": -1.5}, "fore"]  # fmt: skip
 
 
-def test_a_motion_takes_the_time_of_the_slowest_joint_and_publishes_its_states(start: Start) -> None:
+def test_motion_publishes_its_joint_states(start: Start) -> None:
     ros = start(
         BEGIN
         + """

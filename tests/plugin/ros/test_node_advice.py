@@ -208,7 +208,7 @@ def test_a_node_may_continue_without_a_module_that_is_not_implemented(start: Sta
 @pytest.mark.parametrize(
     "inner", ["srv", "__init__.py"], ids=["folder of definitions", "package with Python modules"]
 )
-def test_advice_names_the_place_of_missing_definitions_if_a_folder_has_the_name_of_the_package(
+def test_advice_names_a_folder_with_the_package_name(
     inner: str, start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workspace, "_SEARCHED", [])
@@ -349,9 +349,7 @@ parser.add_argument("file")
 """
 
 
-def test_if_a_node_lacks_arguments_the_error_names_the_launch_file_that_passes_them(
-    start: Start, tmp_path: Path
-) -> None:
+def test_error_names_the_launch_file_with_the_missing_arguments(start: Start, tmp_path: Path) -> None:
     text = '<arg name="ip"/><node pkg="saver" type="node.py" name="walker" args="--pip=$(arg ip) f.txt _a:=1 in:=out"/>'
     found = in_package(tmp_path, nao=text)
     assert found.argv == ()
@@ -383,7 +381,7 @@ def test_a_file_that_includes_the_launch_file_supplies_its_arguments(tmp_path: P
     assert found.note == "parameters and arguments of arm come from robot.launch (driver.launch)."
 
 
-def test_if_launch_files_differ_the_parameters_come_from_the_file_named_after_the_script(
+def test_launch_file_named_after_the_script_gives_the_parameters(
     tmp_path: Path,
 ) -> None:
     node = '<node pkg="saver" type="node.py" name="saver"><param name="rate" value="{0}"/></node>'

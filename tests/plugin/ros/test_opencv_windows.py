@@ -156,9 +156,7 @@ def test_a_replacement_by_the_test_during_an_episode_leaves_the_library_usable(s
     assert cv2.imshow == cv2.drawn.append
 
 
-def test_the_error_of_a_node_names_the_package_of_opencv_if_it_is_absent(
-    start: Start, tmp_path: Path
-) -> None:
+def test_error_names_the_missing_opencv_package(start: Start, tmp_path: Path) -> None:
     (tmp_path / "lib" / "cv2.py").unlink()
     importlib.invalidate_caches()
     if importlib.util.find_spec("cv2") is not None:

@@ -112,7 +112,7 @@ def test_a_parameter_has_the_type_of_its_value(value: Any, kind: ParameterType) 
     assert (again.value or value) == value
 
 
-def test_a_type_and_a_value_have_to_agree_except_for_an_empty_list() -> None:
+def test_type_and_value_agree_except_for_an_empty_list() -> None:
     assert Parameter("x", ParameterType.DOUBLE_ARRAY, []).type_ == ParameterType.DOUBLE_ARRAY
     assert Parameter("x", ParameterType.DOUBLE).type_ == ParameterType.DOUBLE
     for kind, value in ((ParameterType.DOUBLE, 1), (ParameterType.DOUBLE_ARRAY, [1])):
@@ -175,7 +175,7 @@ def test_rospy_logs_once_or_at_most_once_per_period(
         ("skip_first=True, throttle_duration_sec=1.0", "135"),
     ],
 )
-def test_options_of_rclpy_limit_a_message_to_once_or_to_once_per_period(
+def test_logging_options_limit_repeated_messages(
     start: Start, caplog: pytest.LogCaptureFixture, options: str, turns: str
 ) -> None:
     caplog.set_level("DEBUG", "rclpy")
@@ -239,7 +239,7 @@ def test_a_namespace_has_a_slash_at_both_ends(start: Start) -> None:
     assert ros.namespace["found"] == ("/r/", "/r/n")  # type: ignore[attr-defined]
 
 
-def test_a_terminal_is_read_up_to_the_requested_size_or_the_end_of_the_line(start: Start) -> None:
+def test_terminal_read_ends_at_the_size_or_line_end(start: Start) -> None:
     ros = start("""
         import sys, rospy
         rospy.init_node("n")

@@ -92,7 +92,7 @@ def test_a_callback_that_stamps_many_messages_does_not_wait(start: Start) -> Non
     assert len(ros.namespace["times"]) == 1  # type: ignore[attr-defined]
 
 
-def test_a_polling_loop_runs_at_a_steady_rate_until_it_calls_a_wait_function(start: Start) -> None:
+def test_polling_loop_runs_at_a_steady_rate(start: Start) -> None:
     ros = start(f"""{ROSPY}
 times = [rospy.get_time() for _ in range({PATIENCE + 5 * AGAIN})]
 rospy.sleep(1.0)
@@ -107,6 +107,6 @@ rospy.spin()
     assert len(ros.namespace["fresh"]) == 1  # type: ignore[attr-defined]
 
 
-def test_a_loop_that_makes_no_ros_call_is_still_reported_as_never_waiting(start: Start) -> None:
+def test_loop_without_ros_calls_is_reported(start: Start) -> None:
     with pytest.raises(StuckNodeError, match="never waits"):
         start(f"{ROSPY}while not seen: pass", watchdog_limit=0.2)

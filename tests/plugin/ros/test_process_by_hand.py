@@ -49,7 +49,7 @@ def test_a_process_ends_with_its_main_program(network: Network) -> None:
     assert running_process() is None
 
 
-def test_a_process_goes_on_while_its_main_program_waits_and_other_tasks_end(network: Network) -> None:
+def test_process_continues_while_its_main_program_waits(network: Network) -> None:
     process = started(network, wait(network))
     network.scheduler.spawn(process, lambda: None)
     network.scheduler.settle()
@@ -60,7 +60,7 @@ def test_a_process_goes_on_while_its_main_program_waits_and_other_tasks_end(netw
     assert process.ended
 
 
-def test_hooks_run_before_tasks_are_woken_and_the_remaining_tasks_are_killed_afterwards(
+def test_hooks_run_before_tasks_are_woken(
     network: Network,
 ) -> None:
     trail: list[str] = []
@@ -196,7 +196,7 @@ def test_an_exit_with_a_text_has_status_one_and_the_first_line(code: Any, status
     assert _status(SystemExit(code)) == status
 
 
-def test_sys_exit_in_a_further_task_ends_only_that_task_but_process_exit_ends_the_process(
+def test_sys_exit_ends_only_its_task(
     network: Network,
 ) -> None:
     def exits(error: SystemExit) -> Callable[[], None]:
@@ -241,7 +241,7 @@ def test_errors_during_the_shutdown_are_stored_separately_and_expected_errors_ar
     assert "ExpectedError" in str(network.scheduler.failure)
 
 
-def test_the_error_for_a_node_that_never_waits_names_it_and_its_limit(network: Network) -> None:
+def test_error_names_a_node_that_never_waits(network: Network) -> None:
     process = failing(network, Spinning())
     failure = network.scheduler.failure
     assert isinstance(failure, StuckNodeError)
@@ -252,7 +252,7 @@ def test_the_error_for_a_node_that_never_waits_names_it_and_its_limit(network: N
     assert str(process.spins(None)).startswith("Node 'renamed' never waits")
 
 
-def test_a_task_that_ignores_the_shutdown_is_suspended_after_a_thousand_refused_waits(
+def test_task_that_ignores_the_shutdown_is_suspended(
     network: Network,
 ) -> None:
     counted: list[int] = []

@@ -61,9 +61,7 @@ def test_a_subscription_keeps_the_newest_messages_of_its_depth(start: Start, qos
 @pytest.mark.parametrize(
     ("size", "kept"), [("queue_size=1", 1), ("queue_size=3", 3), ("queue_size=None", 24)]
 )
-def test_a_subscriber_of_rospy_keeps_the_newest_messages_while_its_callback_is_busy(
-    start: Start, size: str, kept: int
-) -> None:
+def test_rospy_subscriber_keeps_the_newest_messages(start: Start, size: str, kept: int) -> None:
     ros = start(f"""
         import rospy
         from std_msgs.msg import Int32
@@ -255,7 +253,7 @@ def test_rospy_polls_for_a_service_every_three_tenths_of_a_second(
     assert took == pytest.approx(waits)
 
 
-def test_the_world_latches_one_message_per_topic_and_counts_only_messages_of_nodes(start: Start) -> None:
+def test_world_latches_one_message_per_topic(start: Start) -> None:
     ros = start("pass")
     for text in ("old", "new"):
         ros.bus.publish("x", STRING(text), latch=True)
@@ -296,7 +294,7 @@ def test_muted_messages_of_the_world_reach_no_node_and_are_not_latched(start: St
     assert not ros.bus.topic("x").kept
 
 
-def test_a_queued_message_does_not_change_if_the_publisher_changes_its_message_object(start: Start) -> None:
+def test_queued_message_is_a_copy(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -318,7 +316,7 @@ def test_a_queued_message_does_not_change_if_the_publisher_changes_its_message_o
     assert "unregistered" in ros.namespace["said"]  # type: ignore[attr-defined]
 
 
-def test_alarms_and_tasks_of_an_instant_run_in_order_and_the_clock_stops_at_the_requested_time(
+def test_alarms_and_tasks_of_an_instant_run_in_order(
     start: Start,
 ) -> None:
     ros = start("""

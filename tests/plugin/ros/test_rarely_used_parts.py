@@ -86,7 +86,7 @@ def test_a_sound_is_played_repeated_and_stopped(make: Any, sent: tuple[Any, ...]
 @pytest.mark.parametrize(("volume", "sent"), [(0.5, 0.5), (1.5, 1.0), (-1.0, 0.0)])
 @pytest.mark.parametrize("blocking", [False, True])
 @pytest.mark.parametrize("served", [True, False])
-def test_a_blocking_request_is_sent_as_a_goal_and_any_other_request_as_a_message(
+def test_only_a_blocking_request_is_sent_as_a_goal(
     volume: float, sent: float, blocking: bool, served: bool
 ) -> None:
     client = SoundClient.__new__(SoundClient)
@@ -124,7 +124,7 @@ def test_userdata_are_copied_and_extracted_under_other_names() -> None:
         print(one._missing)
 
 
-def test_a_state_sees_its_input_keys_and_writes_its_output_keys_under_its_own_names() -> None:
+def test_state_reads_input_keys_and_writes_output_keys() -> None:
     all_ = UserData()
     all_.pace, all_.hidden, all_.log = 2, 9, []
     seen = Remapper(all_, ["speed", "log", "absent"], ["result"], {"speed": "pace", "result": "outcome"})
@@ -463,7 +463,7 @@ def test_rosparam_prints_what_it_loads_and_deletes(start: Start, capsys: pytest.
     assert "deleted parameter [/robot/speed]" in printed
 
 
-def test_an_error_in_a_callback_of_a_container_is_logged_and_the_container_continues(start: Start) -> None:
+def test_container_continues_after_a_callback_error(start: Start) -> None:
     ros = start("""
         import rospy, smach
         rospy.init_node("node")

@@ -433,9 +433,7 @@ def test_use_before_init_and_double_shutdown_fail_as_in_ros(start: Start) -> Non
     ("end", "reported"),
     [("rclpy.shutdown()", ()), ("rclpy.try_shutdown()", ()), ("1 / 0", ("ZeroDivisionError",))],
 )
-def test_a_shutdown_after_the_end_of_the_node_is_not_an_error_of_the_node(
-    start: Start, end: str, reported: tuple[str, ...]
-) -> None:
+def test_late_shutdown_is_not_a_node_error(start: Start, end: str, reported: tuple[str, ...]) -> None:
     ros = start(f"""
         import rclpy
         rclpy.init()

@@ -75,9 +75,7 @@ def test_a_name_is_declared_once_and_is_not_empty() -> None:
             node.declare_parameter(wrong)  # type: ignore[arg-type]
 
 
-def test_a_parameter_has_the_declared_type_or_the_type_of_its_default_or_else_the_type_of_the_override() -> (
-    None
-):
+def test_parameter_has_its_declared_type_or_the_default_type() -> None:
     with pytest.raises(InvalidParameterTypeException):
         declared(("a", 1), overrides={"a": 1.5})
     with pytest.raises(InvalidParameterTypeException):
@@ -125,7 +123,7 @@ def test_an_unknown_parameter_is_an_error_unless_the_node_allows_it() -> None:
         free.undeclare_parameter("y")
 
 
-def test_a_read_only_parameter_cannot_be_set_undeclared_or_given_a_new_descriptor() -> None:
+def test_read_only_parameter_cannot_be_set_or_undeclared() -> None:
     node = declared(("a", 1, new_descriptor(read_only=True)), ("b", 1))
     result = node.set_parameters([Parameter("a", value=2)])[0]
     assert (result.successful, result.reason) == (False, "Trying to set a read-only parameter: a.")
@@ -136,7 +134,7 @@ def test_a_read_only_parameter_cannot_be_set_undeclared_or_given_a_new_descripto
     assert values(node) == {"a": 1}
 
 
-def test_an_atomic_change_sets_all_parameters_or_none_and_other_changes_set_them_one_by_one() -> None:
+def test_atomic_change_sets_all_parameters_or_none() -> None:
     changes = [Parameter("a", value=2), Parameter("b", value="text")]
     node = declared(("a", 1), ("b", 1))
     assert not node.set_parameters_atomically(changes).successful
@@ -357,7 +355,7 @@ def test_a_spin_ends_with_its_future_or_at_its_time_limit(network: Network) -> N
     assert spinning(network, program)[0] == [("x", 7), (False, 12), 12, 13]
 
 
-def test_a_task_of_the_executor_runs_before_callbacks_of_nodes_and_may_be_a_coroutine(
+def test_executor_task_runs_before_node_callbacks(
     network: Network,
 ) -> None:
     def program(executor: Executor, trail: list[Any]) -> None:

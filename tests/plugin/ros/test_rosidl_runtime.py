@@ -78,7 +78,7 @@ def test_a_type_of_another_kind_or_an_unknown_one_is_an_error() -> None:
         get_message("std_msgs/msg/NoSuchType")
 
 
-def test_a_message_becomes_a_dictionary_of_its_fields_in_order_with_plain_values() -> None:
+def test_message_becomes_an_ordered_dictionary_of_plain_values() -> None:
     odometry = Odometry(child_frame_id="base")
     odometry.header.stamp.sec = 7
     odometry.pose.covariance[3] = 0.5

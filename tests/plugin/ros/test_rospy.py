@@ -139,7 +139,7 @@ def test_publish_accepts_a_message_or_its_fields_by_position_or_keyword(start: S
     assert [message.data for message in said] == [5.0, 6.0, 7.0, 8.0]
 
 
-def test_publishing_a_value_that_does_not_fit_its_type_is_a_node_error(start: Start) -> None:
+def test_publishing_a_value_of_the_wrong_type_is_an_error(start: Start) -> None:
     with pytest.raises(NodeError, match=r"'/talker' raised ROSSerializationException.*node.py, line 5"):
         start("""
             import rospy
@@ -227,7 +227,7 @@ def test_wait_for_message_returns_the_next_message_or_times_out(start: Start) ->
     assert "timeout exceeded while waiting for message on topic /word" in ros.namespace["late"][1]
 
 
-def test_a_sleeping_callback_does_not_block_the_test_and_later_messages_wait_in_a_queue(start: Start) -> None:
+def test_sleeping_callback_does_not_block_the_test(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String

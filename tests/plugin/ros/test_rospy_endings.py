@@ -53,7 +53,7 @@ def test_a_node_that_refuses_to_end_is_killed(start: Start) -> None:
     assert not ros.alive
 
 
-def test_a_node_that_never_waits_at_shutdown_is_reported_and_the_other_nodes_end(start: Start) -> None:
+def test_node_that_ignores_shutdown_is_reported(start: Start) -> None:
     ros = start(
         """
         import rospy
@@ -71,7 +71,7 @@ def test_a_node_that_never_waits_at_shutdown_is_reported_and_the_other_nodes_end
     assert not ros.alive
 
 
-def test_a_main_program_that_returns_ends_its_node_and_the_callbacks_of_the_node(start: Start) -> None:
+def test_returning_main_program_ends_its_node(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -87,7 +87,7 @@ def test_a_main_program_that_returns_ends_its_node_and_the_callbacks_of_the_node
     assert not ros.alive
 
 
-def test_the_report_of_an_exception_names_the_node_the_exception_and_the_line(start: Start) -> None:
+def test_exception_report_names_the_node_and_the_line(start: Start) -> None:
     ros = start("""
         import rospy
         rospy.init_node("faulty")
@@ -169,7 +169,7 @@ def test_publishing_another_type_from_the_world_is_an_error(start: Start) -> Non
         ros.bus.publish("x", 5.0)
 
 
-def test_an_error_in_a_world_callback_is_raised_in_the_test_and_not_in_the_node(start: Start) -> None:
+def test_error_in_a_world_callback_is_raised_in_the_test(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String

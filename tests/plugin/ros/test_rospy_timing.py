@@ -38,7 +38,7 @@ for spent in {spent}:
         ([1.6, 0.1], [(-1.1, 0.0, 1.6), (0.4, 1.6, 2.1)]),  # later: a new phase
     ],
 )
-def test_a_rate_keeps_its_phase_unless_it_is_more_than_two_cycles_late(
+def test_rate_keeps_its_phase_for_up_to_two_cycles(
     start: Start, spent: list[float], expected: list[tuple[float, ...]]
 ) -> None:
     assert run(start, LOOP.format(spent=spent)) == [pytest.approx(one, abs=1e-6) for one in expected]
@@ -56,7 +56,7 @@ def told(event):
 """
 
 
-def test_a_timer_reports_planned_and_actual_times_and_the_duration_of_its_callback(start: Start) -> None:
+def test_timer_reports_planned_and_actual_times(start: Start) -> None:
     code = f"spent = [0.2, 1.5]\n{EVENTS}timer = rospy.Timer(rospy.Duration(1.0), told)\nrospy.spin()"
     assert run(start, code, 4.5) == [
         (None, None, 1.0, 1.0, None),

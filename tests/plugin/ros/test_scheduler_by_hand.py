@@ -38,9 +38,7 @@ def test_a_task_runs_at_once_until_it_waits(clock: Scheduler, program: Program) 
     assert (trail, made.done, program.tasks, clock.time) == ([0, False, 5], True, [], 7)
 
 
-def test_tasks_wake_in_the_order_of_their_instants_and_then_of_their_waits(
-    clock: Scheduler, program: Program
-) -> None:
+def test_tasks_wake_in_order_of_time(clock: Scheduler, program: Program) -> None:
     trail: list[tuple[str, int]] = []
 
     def task(name: str, until: int) -> None:
@@ -144,7 +142,7 @@ def test_an_alarm_that_is_set_by_an_alarm_is_also_in_order(clock: Scheduler) -> 
     assert trail == [3, 4]
 
 
-def test_an_alarm_set_by_a_task_is_not_overtaken_by_a_later_alarm(clock: Scheduler, program: Program) -> None:
+def test_earlier_alarm_rings_first(clock: Scheduler, program: Program) -> None:
     trail: list[str] = []
 
     def task() -> None:
@@ -157,9 +155,7 @@ def test_an_alarm_set_by_a_task_is_not_overtaken_by_a_later_alarm(clock: Schedul
     assert trail == ["of the task", "late"]
 
 
-def test_an_alarm_set_by_a_task_rings_at_its_instant_even_without_other_alarms(
-    clock: Scheduler, program: Program
-) -> None:
+def test_single_alarm_rings_at_its_time(clock: Scheduler, program: Program) -> None:
     trail: list[tuple[str, int]] = []
 
     def task() -> None:
@@ -218,9 +214,7 @@ def test_the_exception_of_a_task_is_passed_to_its_program(clock: Scheduler, prog
     assert program.tasks == []
 
 
-def test_a_killed_task_ends_where_it_waits_and_a_task_that_never_ran_does_not_begin(
-    clock: Scheduler, program: Program
-) -> None:
+def test_killed_task_ends_where_it_waits(clock: Scheduler, program: Program) -> None:
     trail: list[str] = []
     waiting: list[Task] = []
 
@@ -312,14 +306,14 @@ def polls(clock: Scheduler, program: Program, count: int) -> int:
         (PATIENCE + 5 * AGAIN, 6),
     ],
 )
-def test_a_polling_task_waits_after_its_limit_of_polls_and_then_more_often(
+def test_polling_task_waits_after_its_limit(
     count: int, waits: int, clock: Scheduler, program: Program
 ) -> None:
     assert polls(clock, program, count) == waits
 
 
 @pytest.mark.parametrize(("ahead", "pauses"), [(1, 0), (0, 1), (None, 0)])
-def test_a_wait_for_a_later_instant_resets_the_limit_of_polls_of_a_task(
+def test_later_wait_resets_the_polling_limit(
     ahead: int | None, pauses: int, clock: Scheduler, program: Program
 ) -> None:
     before: list[int] = []
@@ -395,9 +389,7 @@ def test_a_lock_is_awaited_for_a_limited_time(clock: Scheduler, program: Program
     assert trail[-1] == (True, 8)
 
 
-def test_a_task_that_gave_up_waiting_is_not_woken_instead_of_another_task(
-    clock: Scheduler, program: Program
-) -> None:
+def test_task_that_stopped_waiting_is_not_woken(clock: Scheduler, program: Program) -> None:
     lock, trail = Lock(clock), list[Any]()
     lock.acquire()
     clock.spawn(program, lambda: trail.append(("impatient", lock.acquire(True, 1e-9))))

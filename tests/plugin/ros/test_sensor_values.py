@@ -89,7 +89,7 @@ def test_plain_arrays_need_fields_of_one_type() -> None:
         point_cloud2.read_points(cloud("msg/"), ["x", "z"])
 
 
-def test_images_are_read_without_the_padding_of_rows_and_in_their_byte_order() -> None:
+def test_images_are_read_without_padding_in_their_byte_order() -> None:
     depth = np.array([[1, 2], [300, 400]], dtype=">u2")
     made: Any = message_type("sensor_msgs/Image")()
     made.height, made.width, made.encoding, made.is_bigendian, made.step = 2, 2, "mono16", 1, 7
@@ -218,7 +218,7 @@ def test_a_camera_has_the_names_of_ros2() -> None:
 
 
 @pytest.mark.parametrize("names", [("x_offset",), ("y_offset",), ("width",), ("height",), ()])
-def test_a_region_of_interest_is_the_whole_image_if_all_of_it_is_zero(names: tuple[str, ...]) -> None:
+def test_zero_region_of_interest_is_the_whole_image(names: tuple[str, ...]) -> None:
     info: Any = camera()
     info.binning_x, info.binning_y = 4, 2
     info.D = [0.1, 0.2]

@@ -87,7 +87,7 @@ outcome = outer.execute()
     assert [name for name, _ in names["order"]] == ["first", "last"]
 
 
-def test_states_of_a_concurrence_run_at_the_same_time_and_any_of_them_can_end_the_rest(start: Start) -> None:
+def test_concurrent_states_run_together_and_may_end_each_other(start: Start) -> None:
     names = run(start, """
 both = smach.Concurrence(outcomes=["first", "other"], default_outcome="other",
                          outcome_map={"first": {"QUICK": "done", "SLOW": "preempted"}},

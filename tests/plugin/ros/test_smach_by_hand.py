@@ -101,7 +101,7 @@ def test_an_action_state_has_the_outcome_of_its_goal(
     assert state.served == (outcome == "preempted")
 
 
-def test_a_goal_is_cancelled_after_its_first_time_limit_and_abandoned_after_its_second(
+def test_goal_is_cancelled_at_one_limit_and_abandoned_at_another(
     clock: list[float],
 ) -> None:
     client = Client(None, GoalStatus.ACTIVE, clock)
@@ -117,7 +117,7 @@ def test_a_goal_without_a_limit_waits_until_its_end(clock: list[float]) -> None:
     assert client.log[2:] == []
 
 
-def test_a_state_sends_no_goal_if_it_must_end_at_once_or_has_no_server(
+def test_state_without_a_server_sends_no_goal(
     clock: list[float],
 ) -> None:
     client = Client(1.0, GoalStatus.SUCCEEDED, clock)
@@ -297,9 +297,7 @@ def concurrence(**given: Any) -> Concurrence:
     ("ended", "outcome"),
     [({"a": "x", "b": "x"}, "good"), ({"a": "x", "b": "y"}, "bad"), ({"a": "y", "b": "x"}, "default")],
 )
-def test_the_first_outcome_whose_mapped_states_have_all_ended_as_mapped_is_chosen(
-    ended: dict[str, str], outcome: str
-) -> None:
+def test_first_matching_outcome_is_chosen(ended: dict[str, str], outcome: str) -> None:
     made = concurrence(outcome_map={"good": {"a": "x", "b": "x"}, "bad": {"b": "y"}})
     made._ended = dict(ended)
     made.check_consistency()
@@ -308,7 +306,7 @@ def test_the_first_outcome_whose_mapped_states_have_all_ended_as_mapped_is_chose
     assert made.get_initial_states() == ["a", "b"]
 
 
-def test_the_outcome_callback_takes_precedence_over_the_map_and_must_return_a_known_outcome() -> None:
+def test_outcome_callback_overrides_the_map() -> None:
     for chosen, outcome in (("bad", "bad"), (None, "good")):
         made = concurrence(outcome_map={"good": {}}, outcome_cb=lambda ended, chosen=chosen: chosen)
         assert made._outcome() == outcome

@@ -147,7 +147,7 @@ def test_a_goal_that_succeeds_after_a_request_to_end_has_succeeded(start: Start)
     assert names["outcome"] == "succeeded"
 
 
-def test_a_state_that_is_asked_to_end_before_it_begins_sends_no_goal(start: Start) -> None:
+def test_preempted_state_sends_no_goal(start: Start) -> None:
     names, mover = acted(start, """
 state = smach_ros.SimpleActionState("move_base", MoveBaseAction)
 state.request_preempt()
@@ -167,7 +167,7 @@ left = [one.preempt_requested() for one in (state, condition, monitor, service)]
     assert names["left"] == [False] * 4
 
 
-def test_a_goal_that_does_not_end_is_cancelled_at_its_limit_and_then_abandoned(start: Start) -> None:
+def test_unfinished_goal_is_cancelled_and_then_abandoned(start: Start) -> None:
     names, mover = acted(start, """
 began = rospy.get_time()
 _, outcome = run(exec_timeout=rospy.Duration(1.0), cancel_timeout=rospy.Duration(2.0))
@@ -279,7 +279,7 @@ outcome = smach_ros.ConditionState(check, {options}).execute(smach.UserData())
         (-1, [1, 2], "preempted", [1, 2]),
     ],
 )
-def test_a_topic_is_watched_until_a_message_is_invalid_or_enough_messages_arrived(
+def test_topic_is_watched_until_a_message_is_invalid(
     start: Start, most: int, levels: list[int], outcome: str, checked: list[int]
 ) -> None:
     ros = start(HEAD + f"""

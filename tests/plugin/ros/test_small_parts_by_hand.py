@@ -126,7 +126,7 @@ def raised(cause: BaseException | None) -> NodeError:
         return error
 
 
-def test_an_error_report_contains_the_message_the_traceback_of_the_node_and_the_line_of_the_test() -> None:
+def test_error_report_has_both_tracebacks() -> None:
     text = account(raised(ValueError("boom")), Path(__file__))
     sentence, trace, line = text.split("\n\n")
     assert sentence == "Node failed."
@@ -135,7 +135,7 @@ def test_an_error_report_contains_the_message_the_traceback_of_the_node_and_the_
     assert line.endswith('raise NodeError("Node failed.") from error')
 
 
-def test_an_error_in_the_test_and_an_error_without_a_cause_are_reported_by_their_message_only() -> None:
+def test_error_without_a_cause_is_reported_by_its_message() -> None:
     assert account(raised(None), Path(__file__)) == "Node failed."
     assert account(ValueError("mine"), Path(__file__)) == "mine"
     other = account(raised(ValueError("boom")), Path("/elsewhere/test_x.py"))
@@ -161,7 +161,7 @@ def test_a_traceback_omits_the_first_frames_if_they_are_in_the_package() -> None
 # groups
 
 
-def test_an_exclusive_group_runs_one_callback_at_a_time_and_a_reentrant_group_runs_any_number() -> None:
+def test_exclusive_group_runs_one_callback_at_a_time() -> None:
     exclusive, free = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()
     assert (exclusive.can_execute("a"), exclusive.beginning_execution("a")) == (True, True)
     assert (exclusive.can_execute("b"), exclusive.beginning_execution("b")) == (False, False)

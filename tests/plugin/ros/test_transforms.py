@@ -245,7 +245,7 @@ def test_look_ups_between_two_times_use_a_fixed_frame(start: Start) -> None:
     assert names["frames"] == []
 
 
-def test_messages_are_transformed_via_a_fixed_frame_and_old_point_clouds_to_another_frame(
+def test_messages_are_transformed_via_a_fixed_frame(
     start: Start,
 ) -> None:
     ros = start(

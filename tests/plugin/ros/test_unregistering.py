@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.plugin.ros.conftest import Start
 
 
-def test_a_subscriber_that_subscribes_anew_after_all_have_unregistered_gets_the_latched_message_again(
+def test_new_subscriber_gets_the_latched_message_again(
     start: Start,
 ) -> None:
     publisher = """

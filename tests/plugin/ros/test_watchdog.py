@@ -66,7 +66,7 @@ def test_a_debugger_can_pause_without_limit(monkeypatch: pytest.MonkeyPatch) -> 
     assert not dog.disarm()
 
 
-def test_a_thread_without_its_own_clock_is_measured_by_the_clock_of_the_process(
+def test_thread_without_a_clock_uses_the_process_clock(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(watchdog, "_CLOCK_OF", None)

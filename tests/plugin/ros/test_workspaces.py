@@ -86,7 +86,7 @@ def test_workspace_packages_are_importable_as_if_installed(packages: Path, start
     assert ros.notes == ()
 
 
-def test_a_test_can_use_message_types_of_its_repository_before_it_starts_a_node(
+def test_test_can_use_message_types_of_its_repository(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workspace, "_SEARCHED", [])
@@ -302,7 +302,7 @@ def test_parameters_that_a_group_names_by_the_node_are_private_to_it(launches: P
     assert namespace["found"] == {"kp": 2.0, "limits/top": 3, "limits/low": 1, "rate": 5}
 
 
-def test_if_launch_files_conflict_only_parameters_with_equal_values_are_set_and_a_note_is_given(
+def test_conflicting_launch_files_set_only_equal_parameters(
     launches: Path,
 ) -> None:
     other = LAUNCH1.format(rate=9).replace('name="rate"', 'name="limits/low" value="1.0"/><param name="rate"')
@@ -351,9 +351,7 @@ def test_start_accepts_a_launch_file_or_false(launches: Path, pytester: pytest.P
     result.stdout.fnmatch_lines(["*RATE 9*", "*RATE None*", "*RATE None*"])
 
 
-def test_arguments_of_ros2_come_from_the_launch_file_unless_the_test_has_some(
-    launches: Path, pytester: pytest.Pytester
-) -> None:
+def test_ros2_arguments_come_from_the_launch_file(launches: Path, pytester: pytest.Pytester) -> None:
     arguments = 'arguments=["--arm", "left", "--ros-args", "-r", "a:=b", "-p", "kp:=4.0"], '
     (launches / "launch/one.launch").unlink()
     node = "import sys\nprint('ARGV', sys.argv[1:])\n"

@@ -83,7 +83,7 @@ def test_a_response_of_another_type_is_refused(start: Start, node: str, wrong: s
     )
 
 
-def test_a_service_with_a_type_of_ros_1_refuses_a_request_by_returning_none(start: Start) -> None:
+def test_ros1_service_refuses_a_request_by_returning_none(start: Start) -> None:
     ros = start("pass")
     ros.bus.serve("dock", OLD_TRIGGER, lambda _: None)
     start(CLIENTS["rospy"], ros=ros)
@@ -130,7 +130,7 @@ def test_responses_of_ros1_and_ros2_are_accepted(start: Start, node: str, made: 
     assert ros.namespace["said"] == "a"
 
 
-def test_offering_an_object_that_is_not_a_service_is_refused_at_the_call(start: Start) -> None:
+def test_offering_a_wrong_object_as_a_service_is_refused(start: Start) -> None:
     bus = start("pass").bus
     for wrong, seen in (
         (message_type("std_msgs/Float64"), "the class Float64"),
@@ -144,7 +144,7 @@ def test_offering_an_object_that_is_not_a_service_is_refused_at_the_call(start: 
         bus.serve("dock", TRIGGER, None)
 
 
-def test_a_name_that_is_not_a_string_and_a_listener_that_is_not_callable_are_refused(start: Start) -> None:
+def test_topic_name_must_be_a_string(start: Start) -> None:
     bus = start("pass").bus
     for call in (
         lambda: bus.publish(None, message_type("std_msgs/Float64")()),
@@ -204,7 +204,7 @@ def test_a_reply_has_no_response_and_no_error_before_the_node_answers(start: Sta
     assert (reply.done, reply.response.message, reply.error) == (True, "docked", "")
 
 
-def test_a_client_of_ros_2_gets_no_response_if_a_node_of_ros_1_refuses(
+def test_ros2_client_gets_no_response_from_a_refusing_ros1_node(
     start: Start, caplog: pytest.LogCaptureFixture
 ) -> None:
     ros = start(REFUSED.format(REFUSING["exception"][0]))

@@ -82,7 +82,7 @@ def test_a_repair_that_restores_the_designed_reward_is_accepted() -> None:
     assert found.episodes == len(found.drifted) + len(found.nominal) + longest + 3 * SCREEN
 
 
-def test_a_repair_that_gains_too_little_is_refused_before_the_designed_world_runs() -> None:
+def test_repair_that_gains_too_little_is_refused_early() -> None:
     found = judged(world(8.0), world(DESIGNED))
     assert (found.accepted, found.reason, found.nominal, found.tested) == (False, "gain too small", (), False)
 
@@ -102,7 +102,7 @@ def test_the_result_states_whether_the_designed_world_caused_the_rejection(loss:
     assert not judged(world(DESIGNED), world(DESIGNED, seed=1)).costly
 
 
-def test_the_candidate_does_not_run_in_the_designed_world_if_its_condition_never_holds_there() -> None:
+def test_designed_world_is_skipped_if_the_condition_never_holds() -> None:
     found = judged(world(DESIGNED))
     assert found.accepted
     assert found.nominal == ()
@@ -116,9 +116,7 @@ def test_failed_missions_count_even_if_the_reward_is_right() -> None:
 
 
 @pytest.mark.parametrize(("drifted", "reason"), [(True, "fails too often"), (False, "nominal gets worse")])
-def test_a_candidate_that_fails_in_an_early_mission_is_refused_without_spending_risk(
-    drifted: bool, reason: str
-) -> None:
+def test_early_failure_refuses_a_candidate_without_risk(drifted: bool, reason: str) -> None:
     """If the stake of the bet were computed from the failed mission, no test could be won."""
 
     def run(episode: int) -> Outcome:
@@ -156,14 +154,14 @@ def share_accepted(make: Callable[[int], World], runs: int) -> float:
 
 
 @pytest.mark.parametrize("failing", [0.05, 0.08, 0.12])
-def test_a_repair_that_fails_too_often_is_accepted_with_at_most_the_risk(failing: float) -> None:
+def test_frequent_failures_are_accepted_with_at_most_the_risk(failing: float) -> None:
     runs = 80
     accepted = share_accepted(lambda at: world(DESIGNED, failing=failing, seed=at + 10), runs)
     assert accepted <= RISK + 3 * np.sqrt(RISK / runs)
 
 
 @pytest.mark.parametrize("spread", [0.02, 0.3, 2.0])
-def test_a_repair_just_below_the_margin_is_accepted_with_at_most_the_risk(spread: float) -> None:
+def test_repair_below_the_margin_is_accepted_with_at_most_the_risk(spread: float) -> None:
     runs = 80
     below = DESIGNED - MARGIN - 0.01
     accepted = share_accepted(lambda at: world(below, spread, seed=at + 10), runs)
@@ -203,9 +201,7 @@ def test_59_missions_without_a_failure_show_a_failure_rate_below_five_percent() 
 
 @settings(max_examples=8)
 @given(st.sampled_from([0.02, 0.05, 0.1, 0.25, 0.6]), st.sampled_from([0.05, 0.0333, 0.0111, 0.0037]))
-def test_all_checks_together_accept_a_failing_program_with_at_most_the_stated_risk(
-    rate: float, risk: float
-) -> None:
+def test_checks_together_keep_the_stated_risk(rate: float, risk: float) -> None:
     numbers = acceptance_numbers(LOOKS, rate, risk)
     assert list(numbers) == sorted(numbers)
     failed = np.random.default_rng(1).random((15_000, LOOKS[-1])) < rate
@@ -267,9 +263,7 @@ def test_failure_rates_that_vary_over_a_range_do_not_raise_the_risk(
 
 @settings(max_examples=40, deadline=None)
 @given(STRATA, st.lists(st.floats(-20, 5), min_size=2, max_size=8), st.integers(0, 2**16))
-def test_a_bet_is_rarely_won_if_the_average_loss_over_the_strata_is_the_margin(
-    weights: list[float], known: list[float], seed: int
-) -> None:
+def test_bet_is_rarely_won_at_the_margin(weights: list[float], known: list[float], seed: int) -> None:
     """The strata lose different amounts whose mean is exactly the margin; looks come after whole blocks."""
     losses = np.array(weights) / sum(weights) * 4 * MARGIN
     draws = np.random.default_rng(seed)
@@ -284,7 +278,7 @@ def test_a_bet_is_rarely_won_if_the_average_loss_over_the_strata_is_the_margin(
     assert won <= RISK + 4 * np.sqrt(RISK / 300) + 0.01
 
 
-def test_a_declared_range_bounds_the_loss_of_a_mission_from_its_designed_total() -> None:
+def test_declared_range_bounds_the_loss_of_a_mission() -> None:
     recorded = Reference([9.9, 10.1], 1.0, MARGIN, 8.0)
     declared = Reference([9.9, 10.1], 1.0, MARGIN, 6.0, 11.0)
     failing_dearly = Reference([9.9, 10.1], 1.0, MARGIN, -500.0, 11.0)

@@ -54,7 +54,7 @@ def test_the_unchanged_program_runs_once_for_each_seed_that_is_compared() -> Non
     assert trials.beside == 2
 
 
-def test_while_no_change_gains_different_commands_are_an_effect_and_for_named_constants_a_loss() -> None:
+def test_different_commands_are_an_effect_while_nothing_gains() -> None:
     named, other = Unit((TEETH,)), Unit((INERT[0],))
     gains = Gains(0.5, acting=lambda unit: unit == named)
     for unit in (named, other):

@@ -59,7 +59,7 @@ def test_the_best_constant_is_refined_between_its_neighbours() -> None:
     assert found.refined == {(A, ALWAYS): 2}
 
 
-def test_refining_goes_on_while_the_gain_grows_or_is_almost_the_wanted_gain() -> None:
+def test_refining_continues_while_the_gain_grows() -> None:
     _, search = adjusted(entered((A, 2.2, 3.0)), {1.483: 4.5})
     assert len(search.tried) == 4
     _, search = adjusted(entered((A, 2.2, 3.0)), {1.483: 4.0})  # less than a promising gain
@@ -70,7 +70,7 @@ def test_refining_goes_on_while_the_gain_grows_or_is_almost_the_wanted_gain() ->
     assert len(search.tried) == 2
 
 
-def test_a_constant_without_progress_is_replaced_by_a_constant_that_gains_nearly_as_much() -> None:
+def test_stalled_constant_is_replaced_by_a_similar_one() -> None:
     found, _ = adjusted(entered((A, 2.2, 3.0), (B, 2.2, 2.5)))
     assert set(found.refined) == {(A, ALWAYS)}
     list(found.refine(0))
@@ -80,9 +80,7 @@ def test_a_constant_without_progress_is_replaced_by_a_constant_that_gains_nearly
     assert set(found.refined) == {(A, ALWAYS)}  # the other gains too little
 
 
-def test_constants_are_not_refined_after_a_refusal_or_enough_refinements_or_with_a_gain_within_the_noise() -> (
-    None
-):
+def test_refining_stops_after_a_refusal_or_a_small_gain() -> None:
     assert adjusted(entered((A, 2.2, 0.1)))[1].tried == []
     assert adjusted(Gains(0.1))[1].tried == []
     refused = entered((A, 2.2, 3.0), (B, 2.2, 1.0))
@@ -197,7 +195,7 @@ def test_refining_ends_if_the_gain_stays_the_same_between_two_values() -> None:
     assert len(search.tried) == REFINED // 2  # after two values on each side, the neighbours are close
 
 
-def test_a_named_constant_with_a_sharp_peak_is_refined_until_its_neighbours_are_close() -> None:
+def test_sharp_peak_is_refined_until_its_neighbours_are_close() -> None:
     """One of eight parts is picked with factor 2.2, all with 2.7, none with 2 and 3.3."""
     found, search = adjusted(entered((A, 2.2, 1.5)), {2.709: 9.5})
     for _ in range(3):

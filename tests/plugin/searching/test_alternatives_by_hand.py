@@ -184,7 +184,7 @@ def test_constants_of_the_best_statement_come_first_and_in_finer_steps() -> None
     assert found == [(B, FINE), (here, FINE), (C, COARSE), (D, COARSE)]
 
 
-def test_constants_without_any_effect_are_left_out_once_both_first_factors_were_tried() -> None:
+def test_ineffective_constants_are_left_out_after_two_factors() -> None:
     once = entered((B, 2.2, 0.0), (C, 2.2, 0.0), (C, 0.4, 0.0), (D, 2.2, 0.0), (D, 0.4, -1.0))
     assert [unit for unit, _ in gentler(A, [A, B, C, D], once, ALWAYS, 4.0)] == [B, D]
     assert [unit for unit, _ in gentler(A, [A, B, C, D], once, WET, 4.0)] == [B, C, D]
@@ -193,7 +193,7 @@ def test_constants_without_any_effect_are_left_out_once_both_first_factors_were_
 # rivals
 
 
-def test_constants_of_the_same_function_are_alternatives_if_they_gained_or_were_not_tried() -> None:
+def test_constants_of_a_function_are_alternatives_if_they_gained() -> None:
     beside = [replace(one.operands[0], site=A.operands[0].site) for one in (B, C, D)]
     b, c, d = (Unit((one,)) for one in beside)
     far = Unit((replace(beside[0], site=replace(A.operands[0].site, module="other"), code="F"),))
@@ -207,7 +207,7 @@ def test_constants_of_the_same_function_are_alternatives_if_they_gained_or_were_
 # smaller
 
 
-def test_the_constant_that_gained_most_is_tried_first_and_untried_constants_come_last() -> None:
+def test_largest_gain_is_tried_first() -> None:
     gains = entered((B, 2.2, -1.0), (C, 2.2, 3.0), (C, 0.82, 1.0), (A, 9.0, 9.0))
     found = smaller(A, 9.0, [A, B, C, D], gains, ALWAYS)
     down, up = STEPS
@@ -220,9 +220,7 @@ def test_small_steps_are_tried_on_a_limited_number_of_constants() -> None:
     assert {unit for unit, _ in found} == {*units[:OTHERS]}
 
 
-def test_a_smaller_change_is_not_tried_on_booleans_or_constants_with_another_scale_or_the_constant_found() -> (
-    None
-):
+def test_booleans_get_no_smaller_change() -> None:
     flag, share = Unit((constant(6, "ON", True),)), Unit((constant(7, "S", 0.9),), SHARE)
     again = Unit(A.operands, SHARE)
     assert smaller(A, 9.0, [A, again, flag, share, LITERAL], Gains(0.1), ALWAYS) == []
@@ -252,7 +250,7 @@ def test_a_gain_of_half_a_percent_is_followed_by_larger_steps(gain: float, follo
     assert bool(onward([(B, 1.22)], A, 50.0, entered((B, 1.22, gain)), ALWAYS, 10.0)) is followed
 
 
-def test_the_factor_halfway_to_one_is_the_square_root_unless_a_factor_between_was_tried() -> None:
+def test_factor_halfway_to_one_is_the_square_root() -> None:
     assert milder(A, 2.25, {1.0: 0.0, 2.25: 9.0, 0.4: 1.0, 3.0: 1.0}) == 1.5
     assert milder(A, 0.25, {1.0: 0.0, 0.25: 9.0, 2.2: 1.0, 0.2: 1.0}) == 0.5
     assert milder(A, 2.25, {2.0: 1.0}) is None

@@ -75,7 +75,7 @@ def test_unneeded_mutations_are_left_out() -> None:
     assert list(search.effects()) == [str(GAIN.site)]
 
 
-def test_a_whole_batch_is_requested_before_its_gains_are_passed_to_the_method_tell() -> None:
+def test_whole_batch_is_requested_before_gains_are_told() -> None:
     seen: list[str] = []
 
     class Batch(Grid):

@@ -33,7 +33,7 @@ def scripted(low: float, high: float, tried: dict[float, float]) -> Scripted:
     return made
 
 
-def test_a_value_far_beyond_the_good_range_is_replaced_by_a_value_inside_the_range() -> None:
+def test_value_beyond_the_good_range_is_moved_inside() -> None:
     search = scripted(3.0, 25.0, {2.2: 0.0})
     found = bisected(search, FRONT, 19.77, ALWAYS, 0)
     assert found is not None
@@ -76,7 +76,7 @@ def test_a_value_is_offered_only_if_a_slightly_smaller_change_passes_too() -> No
     assert search.of("holding") == []
 
 
-def test_a_step_on_a_chart_is_compared_by_the_value_that_it_gives() -> None:
+def test_step_on_a_scale_is_compared_by_its_value() -> None:
     charted = replace(FRONT, chart=offset(5.3))
     plain, by = on_values(charted, 2.2)
     assert plain == FRONT

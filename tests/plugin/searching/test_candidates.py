@@ -68,7 +68,7 @@ def evidence(
     return Evidence(sensors, *worlds, region, changes or {})
 
 
-def test_conditions_on_one_sensor_come_before_conditions_on_two_and_narrow_before_wide_conditions() -> None:
+def test_conditions_on_one_sensor_come_first() -> None:
     guards = candidate_guards(evidence(REGION))
     assert guards[0] == ALWAYS
     assert guards[1] == Guard((Conjunct(WET, 1.0, 1.0),))
@@ -84,7 +84,7 @@ def test_the_conditions_for_a_search_hold_where_much_changed_and_rarely_elsewher
     assert telling(candidate_guards(seen), seen, most=2) == (Guard((Conjunct(WET, 1.0, 1.0),)), ALWAYS)
 
 
-def test_if_the_region_spans_all_cells_a_condition_is_derived_from_the_observed_changes() -> None:
+def test_region_of_all_cells_uses_the_observed_changes() -> None:
     spread = Region((*REGION.cells, (0, 0), (9, 0)))
     seen = evidence(spread, changes=CHANGES)
     assert Guard((Conjunct(WET, 1.0, 1.0),)) in candidate_guards(seen)
@@ -101,7 +101,7 @@ def test_every_drifted_value_of_an_unordered_sensor_gives_a_condition(cells: lis
         assert Guard((Conjunct(kind, value, value),)) in guards
 
 
-def test_the_search_without_a_condition_comes_first_if_the_best_condition_holds_everywhere() -> None:
+def test_unconditional_search_comes_first_if_the_condition_always_holds() -> None:
     stuck = world(3, [(2, 0)] * 10)
     cells = [(2, 0)]
     seen = evidence(Region(tuple(cells)), worlds=(OFFLINE, stuck), changes={(2, 0): 5.0})
@@ -154,7 +154,7 @@ def test_a_condition_holds_in_the_cells_of_its_bins(cell: Cell, expected: bool) 
     assert holds(guard, cell, (X, WET)) is expected
 
 
-def test_a_condition_stores_the_share_of_steps_and_the_episodes_in_which_it_holds() -> None:
+def test_condition_stores_where_it_holds() -> None:
     guard = Guard((Conjunct(WET, 1.0, 1.0),))
     assert share(guard, OFFLINE, (X, WET)) == 3 / 20
     assert firing_episodes(guard, OFFLINE, (X, WET)) == (2,)

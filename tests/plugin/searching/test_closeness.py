@@ -36,7 +36,7 @@ LEAK, POWER, ROOM = named(3, "LEAK"), named(4, "POWER"), named(5, "ROOM")
 ELSEWHERE = named(6, "ELSEWHERE", "cool")
 
 
-def test_a_mission_that_earns_its_reward_later_deviates_more_from_the_designed_mission() -> None:
+def test_later_reward_counts_as_a_larger_deviation() -> None:
     assert deviation(STEADY, STEADY) == 0.0
     assert deviation(LATE, STEADY) == pytest.approx(2.5 / 10)
     assert deviation((), STEADY) == pytest.approx(0.55)
@@ -53,7 +53,7 @@ def test_alternative_constants_have_the_scale_of_the_repaired_constant() -> None
     assert calls_of(getter, [getter, Unit((call,)), Unit((call,), SHARE)]) == [Unit((call,))]
 
 
-def test_alternatives_are_named_constants_of_the_same_function_that_have_effects_or_gain_elsewhere() -> None:
+def test_alternatives_are_effective_constants_of_the_same_function() -> None:
     gains = Gains(0.1)
     for at, gain in ((LEAK, 9.0), (POWER, 0.3), (ROOM, 0.0), (ELSEWHERE, 1.0)):
         for factor in (2.2, 0.4):

@@ -134,7 +134,7 @@ def test_the_best_constant_is_paired_with_others_before_three_are_combined() -> 
     assert {"A", "B"} <= found[0].keys()
 
 
-def test_constants_without_an_effect_alone_are_added_to_a_pair_that_gains_much() -> None:
+def test_ineffective_constants_are_added_to_a_good_pair() -> None:
     def earned(by: Mapping[str, float]) -> float:
         return 10.0 if {"A", "B", "D"} <= by.keys() else {1: 1.0, 2: 6.0}.get(len(by), 0.0)
 
@@ -219,7 +219,7 @@ def test_the_joint_search_subtracts_the_deviation_from_the_share_of_the_gain() -
     assert search._valued(-99.0, 9.0) == -1.0 - 2.0
 
 
-def test_the_joint_search_lowers_the_value_of_a_point_that_failed_on_other_seeds() -> None:
+def test_joint_search_lowers_points_that_failed_elsewhere() -> None:
     search = jointly(lambda _: 6.3)
     one = joint((A, 2.2))
     _, value = finished(search._value(one, 9.0))
@@ -243,7 +243,7 @@ def test_proposals_move_one_to_three_coordinates_within_a_factor_of_twenty() -> 
     assert often[:4].min() > 1.5 * often[4:].max() > 0
 
 
-def test_the_joint_search_moves_constants_that_gain_and_some_without_an_effect_alone() -> None:
+def test_joint_search_moves_constants_that_gain() -> None:
     gains = Gains(0.5)
     literal = Unit((constant(9, "9.0"),))
     for unit, gain in ((A, 0.6), (B, -3.0), (C, 0.5), (D, 0.1), (literal, 9.0)):

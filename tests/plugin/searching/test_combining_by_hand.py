@@ -89,7 +89,7 @@ def searching(units: Sequence[Unit], *tries: tuple[Unit, float, float], **given:
 # the best operand with others
 
 
-def test_the_best_change_is_combined_with_other_changes_that_gain_under_the_same_condition() -> None:
+def test_best_change_is_combined_under_its_condition() -> None:
     search = searching([A, B], (A, 2.2, 3.0), (A, 0.4, -1.0), (B, 2.2, 4.0), (B, 5.0, 2.0))
     search.gains.enter((A, WET), 1.5, 3.9)
     assert list(Combining(search).best_with_others()) == []
@@ -122,22 +122,20 @@ def test_a_proposal_is_combined_only_with_parameters_of_the_same_change() -> Non
 # the leaders
 
 
-def test_the_best_changes_of_the_statements_are_combined_with_constants_that_have_no_effect_alone() -> None:
+def test_best_changes_are_combined_with_ineffective_constants() -> None:
     search = searching([A, B, C], (A, 2.2, 3.0), (B, 0.4, 4.0), (C, 2.2, 0.0))
     list(Combining(search).leaders(ALWAYS))
     assert search.calls == [("unions", [(B, 0.4), (A, 2.2)], ALWAYS, [C])]
 
 
 @pytest.mark.parametrize(("gain", "united"), [(1.0, False), (1.1, True), (8.9, True), (9.0, False)])
-def test_the_best_changes_are_combined_if_their_gain_is_above_the_noise_and_clearly_below_the_wanted_gain(
-    gain: float, united: bool
-) -> None:
+def test_best_changes_are_combined_if_the_gain_exceeds_the_noise(gain: float, united: bool) -> None:
     search = searching([A, B], (A, 2.2, gain))
     list(Combining(search).leaders(ALWAYS))
     assert bool(search.calls) is united
 
 
-def test_a_change_that_was_refused_under_a_condition_may_be_retried_only_under_this_condition() -> None:
+def test_change_refused_under_a_condition_is_retried_only_there() -> None:
     search = searching([A, B], (A, 2.2, 3.0), refused={(A, ALWAYS), (A, WET), (B, WET)})
     list(Combining(search).leaders(ALWAYS))
     assert search.refused == {(A, WET), (B, WET)}
@@ -184,7 +182,7 @@ def together(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
     return Together.made
 
 
-def test_the_joint_search_starts_at_the_three_best_points_under_the_best_condition(
+def test_joint_search_starts_at_the_three_best_points(
     together: list[tuple[Any, ...]],
 ) -> None:
     tries = [(A, 2.2, 3.0), (B, 2.2, 4.0), (C, 2.2, 2.0), (D, 2.2, 1.5)]
@@ -213,7 +211,7 @@ def test_constants_in_no_data_flow_are_also_searched_jointly(together: list[tupl
 @pytest.mark.parametrize(
     "given", [{"proposed": True}, {"generator": None}, {"alone": True}], ids=["proposed", "unseeded", "alone"]
 )
-def test_there_is_no_joint_search_for_proposals_for_one_constant_or_without_a_generator(
+def test_joint_search_needs_several_constants_and_a_generator(
     given: dict[str, Any], together: list[tuple[Any, ...]]
 ) -> None:
     units = [A] if given.get("alone") else [A, B]
@@ -223,7 +221,7 @@ def test_there_is_no_joint_search_for_proposals_for_one_constant_or_without_a_ge
 
 
 @pytest.mark.parametrize(("gain", "searched"), [(3.9, True), (4.0, False)])
-def test_there_is_no_joint_search_if_the_constants_that_gain_much_cannot_be_moved_jointly(
+def test_joint_search_needs_constants_that_can_move_jointly(
     gain: float, searched: bool, together: list[tuple[Any, ...]]
 ) -> None:
     several = Unit(
@@ -254,13 +252,13 @@ def selection(world: World, units: Sequence[Unit] = (A, B, C, D)) -> tuple[Forwa
 BASE = Joint(((A, 2.2),), ALWAYS)
 
 
-def test_constants_without_an_effect_get_a_larger_and_then_a_smaller_value_under_another_change() -> None:
+def test_ineffective_constants_get_larger_and_smaller_values() -> None:
     joining, seen = selection(nothing)
     assert list(unmasked(BASE, [B, C], joining)) == []
     assert seen == ["A2.2", "A2.2 B2.2", "A2.2 C2.2", "A2.2 B0.4", "A2.2 C0.4"]
 
 
-def test_a_constant_with_an_effect_gets_finer_factors_immediately_and_is_refined_while_it_gains() -> None:
+def test_effective_constant_gets_finer_factors_immediately() -> None:
     def world(changes: Mapping[Operand, float]) -> Outcome:
         return Outcome(2.0 if B.operands[0] in changes else 0.0, False)
 
@@ -290,9 +288,7 @@ def test_under_a_change_that_cannot_be_written_no_constant_is_retried() -> None:
 
 
 @pytest.mark.parametrize(("steps", "expected"), [(11, False), (12, True)])
-def test_missions_count_as_longer_if_a_change_adds_at_least_a_fifth_more_steps(
-    steps: int, expected: bool
-) -> None:
+def test_longer_missions_have_a_fifth_more_steps(steps: int, expected: bool) -> None:
     joining, _ = selection(lambda _: Outcome(0.0, False, steps=steps))
     assert not longer(BASE, joining)  # it has not run
     list(joining.gain(BASE))
@@ -319,9 +315,7 @@ def unmasking(world: World, *tries: tuple[Unit, float, float], **given: Any) -> 
 
 
 @pytest.mark.parametrize(("gain", "tried"), [(2.9, 0), (3.0, 5)])
-def test_constants_without_an_effect_are_retried_once_under_a_change_that_gains_enough(
-    gain: float, tried: int
-) -> None:
+def test_ineffective_constants_are_retried_under_a_good_change(gain: float, tried: int) -> None:
     search = unmasking(lasting, (A, 2.2, gain), (B, 2.2, -1.0))
     list(search.real.gain(BASE))
     made = Combining(search)
@@ -330,14 +324,14 @@ def test_constants_without_an_effect_are_retried_once_under_a_change_that_gains_
     assert search.seen[1:] == ["A2.2 C2.2", "A2.2 D2.2", "A2.2 C0.4", "A2.2 D0.4"][: max(tried - 1, 0)]
 
 
-def test_constants_are_not_retried_under_a_change_whose_missions_do_not_last_longer() -> None:
+def test_change_without_longer_missions_starts_no_retry() -> None:
     search = unmasking(nothing, (A, 2.2, 5.0))
     list(search.real.gain(BASE))
     list(Combining(search).unmasked(ALWAYS))
     assert search.seen == ["A2.2"]
 
 
-def test_no_constant_is_retried_under_another_change_for_proposals_or_without_a_gain() -> None:
+def test_nothing_is_retried_without_a_gain() -> None:
     for search in (unmasking(lasting, (A, 2.2, 5.0), proposed=True), unmasking(lasting)):
         assert list(Combining(search).unmasked(ALWAYS)) == []
         assert search.seen == []
@@ -367,7 +361,7 @@ MANY = Unit((*A.operands, *B.operands, *C.operands, *D.operands))
 PARTS = {WHOLE: (A, B, C), MANY: (A, B, C, D)}
 
 
-def test_each_use_of_a_confirmed_constant_is_changed_alone_to_find_the_uses_that_matter() -> None:
+def test_each_use_of_a_confirmed_constant_is_changed_alone() -> None:
     search = Using()
     Uses(search, PARTS).learn(WHOLE, ALWAYS, 2.2, 3)
     assert search.tried == [("reaches", one, 2.2, 3, False) for one in (A, B, C)]

@@ -26,13 +26,11 @@ def trials(lost: float, designed: float = 8.5, passed: bool = True) -> Trials:
 
 
 @pytest.mark.parametrize(("lost", "expected"), [(0.0, True), (0.35, True), (0.45, False)])
-def test_a_seed_on_which_the_designed_mission_also_earns_little_does_not_reject_a_candidate(
-    lost: float, expected: bool
-) -> None:
+def test_hard_seed_does_not_reject_a_candidate(lost: float, expected: bool) -> None:
     assert confirmed(CANDIDATE, trials(lost), GOAL, 0) is expected
 
 
-def test_the_designed_missions_run_once_and_only_if_the_mean_is_too_small() -> None:
+def test_designed_missions_run_only_if_the_mean_is_small() -> None:
     ran = trials(0.0)
     assert confirmed(CANDIDATE, ran, GOAL, 0)
     once = ran.spent
@@ -45,7 +43,7 @@ def test_the_designed_missions_run_once_and_only_if_the_mean_is_too_small() -> N
 
 
 @pytest.mark.parametrize("goal", [replace(GOAL, margin=None), replace(GOAL, harder={1: 0.1})])
-def test_no_designed_mission_runs_if_there_is_no_margin_or_the_designed_rewards_are_known(goal: Goal) -> None:
+def test_known_designed_rewards_run_no_mission(goal: Goal) -> None:
     ran = trials(0.0)
     assert not confirmed(CANDIDATE, ran, goal, 0)
     assert ran.beside == 0
@@ -58,7 +56,7 @@ def test_missions_that_fail_or_fall_far_short_are_not_compared() -> None:
     assert failing.beside == short.beside == 0
 
 
-def test_a_candidate_that_always_earns_clearly_too_little_is_compared_before_further_missions() -> None:
+def test_clearly_worse_candidate_is_compared_first() -> None:
     goal = replace(GOAL, enough=9.4)  # 8.5 is nearer to `near` than to this
     worse, as_designed = trials(0.45), trials(0.0)
     assert not confirmed(CANDIDATE, worse, goal, 0)

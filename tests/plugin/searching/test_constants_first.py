@@ -54,7 +54,7 @@ def found(
 NARROW = {1.0: 0.0, 2.2: 1.5, 5.0: 0.0}
 
 
-def test_a_constant_that_gained_a_little_is_refined_on_the_seed_on_which_it_gained() -> None:
+def test_small_gain_is_refined_on_its_own_seed() -> None:
     yielded, ran = found({A: NARROW}, (2.5, 2.9))
     assert yielded == ["A 2.701", "structure", "structure"]
     refined = [words for words, seed in ran if seed == 3]

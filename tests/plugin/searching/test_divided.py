@@ -53,7 +53,7 @@ def candidate(factor: float) -> Candidate:
         ({2.2: [0, 1], 0.4: [0, 1]}, None, 0),
     ],
 )
-def test_two_values_divide_the_missions_if_each_reaches_the_goal_where_the_other_fails(
+def test_values_that_succeed_on_different_missions_divide_them(
     seeds: dict[float, list[int]], expected: float | None, episodes: int
 ) -> None:
     trials = Trials(run, 99)

@@ -52,7 +52,7 @@ def test_a_total_exactly_at_the_limit_is_not_a_miss() -> None:
     assert asked([9.0, 3.99, 3.99, 9.0, 9.0, 9.0]) == (False, [1, 2])
 
 
-def test_a_failed_mission_is_a_miss_only_if_missions_are_required_to_pass() -> None:
+def test_failed_mission_counts_only_if_passing_is_required() -> None:
     goal = Goal((), 4.0, 5.0, 0.0)
     assert goal.reached(Outcome(4.0, False), 0)
     assert not Goal((), 4.0, 5.0, 0.0, passing=True).reached(Outcome(9.0, False), 0)

@@ -68,7 +68,7 @@ def test_the_values_of_a_family_are_similar(values: tuple[float | bool | None, .
     assert len(found) == expected
 
 
-def test_uses_of_one_constant_and_constants_of_different_files_are_not_a_family() -> None:
+def test_uses_of_one_constant_are_not_a_family() -> None:
     one = constant(1, "K[0]", 2.0)
     again = Operand(
         SiteId("node.py", "run", "line 2"), Span("node.py", 2, 5, 2, 9), "K[0]", 2.0, one.definition

@@ -41,7 +41,7 @@ def gains_of(*entries: tuple[Unit, float, float]) -> Gains:
         ([], False),
     ],
 )
-def test_the_best_change_counts_as_large_if_no_smaller_change_gains_about_as_much(
+def test_best_change_is_large_if_no_smaller_one_gains(
     entries: list[tuple[int, float, float]], far: bool
 ) -> None:
     table = gains_of(*((UNITS[at], factor, gain) for at, factor, gain in entries))
@@ -58,7 +58,7 @@ def test_the_fewer_constants_matter_the_more_inward_steps_are_tried(count: int) 
     assert all(0.4 < step < 2.2 for step in steps)
 
 
-def test_a_narrow_good_range_of_another_constant_is_found_although_a_large_change_gains() -> None:
+def test_narrow_range_is_found_despite_a_large_gain() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
         right = abs(factors.get(GAINS[2], 1.0) - 1.33) < 0.04
@@ -92,7 +92,7 @@ def test_smaller_changes_that_gain_much_are_refined_before_a_large_change(
     assert nearby(tried, table, 4.0) == [(UNITS[at], ALWAYS) for at in expected]
 
 
-def test_a_small_change_is_found_although_a_fivefold_change_of_another_constant_nearly_suffices() -> None:
+def test_small_change_is_found_despite_a_large_one() -> None:
     """A robot drives by the clock on worn tyres: it must drive for a third longer, or by chance five times as fast."""
     wait, speed = GAINS[2], GAINS[0]
 
@@ -118,9 +118,7 @@ def test_a_small_change_is_found_although_a_fivefold_change_of_another_constant_
 
 
 @pytest.mark.parametrize(("factor", "far"), [(1.2, False), (0.5, True), (3.0, True)])
-def test_an_offset_counts_as_far_if_it_changes_the_constant_by_a_large_factor(
-    factor: float, far: bool
-) -> None:
+def test_offset_is_far_if_it_changes_by_a_large_factor(factor: float, far: bool) -> None:
     """The steps of an offset of 0.1 in a sum of numbers around 1 are much larger than the offset."""
     unit = Unit(UNITS[0].operands, offset(1.0))
     value = float(UNITS[0].operands[0].value or 0.0)

@@ -33,7 +33,7 @@ def trying(reward: Reward, *names: str, **given: object) -> tuple[Attempts, list
     return Attempts(known, mutations, (ALWAYS,), Trials(run, 200), GOAL, **given), ran  # type: ignore[arg-type]
 
 
-def test_a_constant_that_loses_a_little_in_its_first_step_is_tried_with_five_times_its_value() -> None:
+def test_constant_with_a_small_loss_gets_a_fivefold_value() -> None:
     def reward(factors: Mapping[str, float]) -> float:
         factor = factors.get("PLAY", 1.0)
         return 10.0 if 4.0 < factor < 5.5 else -0.2 * GOAL.wanted if factor > 1.0 else -0.1
@@ -48,7 +48,7 @@ def test_a_constant_that_loses_a_little_in_its_first_step_is_tried_with_five_tim
     assert len(ran) == before
 
 
-def test_constants_that_gain_or_lose_much_or_have_no_effect_get_no_farther_step() -> None:
+def test_constants_with_clear_effects_get_no_farther_step() -> None:
     rewards = {"BAD": -BEARABLE * GOAL.wanted - 0.1, "GOOD": 0.3 * GOAL.wanted, "IDLE": 0.0, "NEAR": -0.5}
 
     def reward(factors: Mapping[str, float]) -> float:
@@ -61,7 +61,7 @@ def test_constants_that_gain_or_lose_much_or_have_no_effect_get_no_farther_step(
     assert [one for one in ran if one.endswith("=5")] == ["NEAR=5"]
 
 
-def test_at_most_six_constants_get_a_farther_step_beginning_with_those_that_lost_least() -> None:
+def test_six_constants_get_a_farther_step() -> None:
     names = [f"C{number}" for number in range(MOST + 2)]
 
     def reward(factors: Mapping[str, float]) -> float:

@@ -71,7 +71,7 @@ def test_a_flipped_sign_is_restored() -> None:
     assert [(m.operand, m.value) for m in found.mutations] == [(GAINS[4], -1.0)]
 
 
-def test_the_sign_of_constants_that_gain_when_reduced_is_changed_before_larger_steps() -> None:
+def test_signs_change_before_larger_steps() -> None:
     def turned(candidate: Candidate, seed: int) -> Outcome:
         factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
         total = 5.0 - 5.0 * factors.get(GAINS[4], 1.0)
@@ -84,7 +84,7 @@ def test_the_sign_of_constants_that_gain_when_reduced_is_changed_before_larger_s
     assert trials.spent <= 3 * len(GAINS)
 
 
-def test_a_second_culprit_with_a_small_gain_of_its_own_is_combined_first() -> None:
+def test_second_culprit_is_combined_first() -> None:
     def world(candidate: Candidate, seed: int) -> Outcome:
         factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
         steered = factors.get(GAINS[3], 1.0) > 2.0

@@ -35,7 +35,7 @@ def found(trials: Trials, *guards: Guard) -> Candidate:
     return next(Sweep(GAINS, mutations, guards, trials, GOAL).candidates())
 
 
-def test_before_the_next_condition_a_constant_with_a_small_gain_is_tried_with_larger_factors() -> None:
+def test_small_gain_gets_larger_factors_before_the_next_condition() -> None:
     def earned(factors: dict[int, float], _: Guard) -> float:
         return (
             10.0 if factors.get(6, 1.0) > 4.0 else 0.2 if factors.get(6, 1.0) > 1.0 else 0.01 * len(factors)
@@ -46,7 +46,7 @@ def test_before_the_next_condition_a_constant_with_a_small_gain_is_tried_with_la
     assert trials.spent <= 2 * len(GAINS) + 1 + CONFIRMATIONS
 
 
-def test_constants_that_gained_under_one_condition_are_tried_first_under_the_next_condition() -> None:
+def test_gains_under_one_condition_are_tried_first_under_the_next() -> None:
     def earned(factors: dict[int, float], guard: Guard) -> float:
         right = factors.get(6, 1.0) > 2.0
         return 10.0 if right and guard == ALWAYS else 0.9 if right else 0.01 * len(factors)
@@ -57,9 +57,7 @@ def test_constants_that_gained_under_one_condition_are_tried_first_under_the_nex
     assert trials.spent <= 2 * len(GAINS) + 8 + CONFIRMATIONS
 
 
-def test_a_far_change_that_gains_under_a_condition_is_tried_without_the_condition_before_other_changes() -> (
-    None
-):
+def test_far_change_is_tried_without_its_condition_first() -> None:
     def earned(factors: dict[int, float], guard: Guard) -> float:
         right = factors.get(6, 1.0) > 4.0
         return (
@@ -78,7 +76,7 @@ def test_a_far_change_that_gains_under_a_condition_is_tried_without_the_conditio
     assert trials.spent <= 2 * len(GAINS) + 10 + CONFIRMATIONS
 
 
-def test_a_constant_that_has_no_effect_alone_is_combined_with_two_constants_that_gain_much() -> None:
+def test_ineffective_constant_is_combined_with_two_good_ones() -> None:
     def earned(factors: dict[int, float], _: Guard) -> float:
         first, second = factors.get(3, 1.0) > 2.0, factors.get(4, 1.0) > 2.0
         third = factors.get(12, 1.0) > 4.0

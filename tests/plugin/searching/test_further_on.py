@@ -62,7 +62,7 @@ def test_the_constants_of_the_statements_that_are_entered_come_first() -> None:
     assert trials.spent <= 10
 
 
-def test_a_change_that_leads_to_no_new_statement_is_not_combined_with_other_constants() -> None:
+def test_change_without_new_statements_is_not_combined() -> None:
     world = Climber()
     longer = Joint(((Unit((REST[0],)), 2.2),), ALWAYS)
     found, trials = found_by(world, [longer])
@@ -78,7 +78,7 @@ def test_the_number_of_constants_that_are_tried_is_limited() -> None:
 
 
 @pytest.mark.parametrize("helps", [True, False])
-def test_the_sweep_combines_a_change_that_leads_missions_further_on_if_no_change_gains(helps: bool) -> None:
+def test_sweep_combines_a_change_that_leads_missions_further(helps: bool) -> None:
     world = Climber()
     trials = Trials(world.run, 60)
     asked = world.entered if helps else lambda _: ()

@@ -125,7 +125,7 @@ def test_constants_that_lose_when_raised_and_when_lowered_are_found() -> None:
     assert least.lost_both_ways(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
 
 
-def test_constants_are_sorted_by_the_gain_that_each_has_with_a_given_factor() -> None:
+def test_constants_are_sorted_by_gain() -> None:
     found = gains()
     found.enter((B, ALWAYS), 5.0, 6.0)
     assert found.leading(5.0, ALWAYS, [A, B, C], 5.0) == [B, A]
@@ -186,11 +186,11 @@ def test_gravity_and_pi_are_recognised_by_name_and_value(value: float | None, ex
     assert of_nature(constant(7, "G", value)) is expected
 
 
-def test_a_constant_of_nature_with_a_flipped_sign_is_still_a_constant_of_nature() -> None:
+def test_constant_of_nature_stays_one_with_another_sign() -> None:
     assert oddness([Mutation(GRAVITY, -1.0)]) is Oddness.NATURE
 
 
-def test_more_readable_changes_come_first_and_changes_with_a_gain_come_before_untried_changes() -> None:
+def test_readable_changes_come_first() -> None:
     literal = Unit((LITERAL,))
     found = gains()
     assert plainer(Oddness.VARIABLE, found.under(ALWAYS), [C, B, A, literal], 4.0) == [A, literal]
@@ -209,7 +209,7 @@ def test_a_named_constant_in_the_same_statement_is_tried_before_the_others() -> 
     assert plainer(Oddness.OFFSET, {}, [*others, beside], 5.0, beside) == [others[3], *others[:3], beside]
 
 
-def test_a_named_constant_in_the_next_lines_is_tried_before_a_named_constant_above() -> None:
+def test_named_constant_below_is_tried_before_one_above() -> None:
     """A value that reads too low is scaled, or the threshold with which it is compared below is lowered."""
     above, beside, threshold, further = (Unit((constant(n, f"N{n}"),)) for n in (50, 51, 52, 60))
     ranked = plainer(Oddness.INNER, {}, [above, further, threshold], 5.0, beside)
@@ -226,9 +226,7 @@ def changed(unit: Unit, factor: float) -> Candidate:
 @pytest.mark.parametrize(
     ("steps", "expected"), [(13, False), (14, True), (8, False), (7, True), (None, False)]
 )
-def test_a_candidate_counts_as_unusual_if_its_missions_are_much_longer_or_shorter(
-    steps: int | None, expected: bool
-) -> None:
+def test_candidate_with_much_longer_missions_is_unusual(steps: int | None, expected: bool) -> None:
     trials = Trials(lambda _, seed: Outcome(10.0, True, steps=steps), 9)
     one = changed(A, 2.2)
     assert not another_way(one, trials, GOAL)  # not run yet
@@ -285,7 +283,7 @@ def race(of: dict[tuple[Unit, float], dict[int, float]]) -> Race:
     return found
 
 
-def test_changes_are_ranked_by_gain_and_ties_with_the_best_change_are_found() -> None:
+def test_changes_are_ranked_by_gain_and_ties_are_found() -> None:
     found = race(
         {
             (A, 2.2): {0: 1.0, 1: 1.1, 2: 0.9},
@@ -325,7 +323,7 @@ def test_a_change_counts_as_worse_only_after_three_common_seeds(
         assert not (behind(other, one) and behind(one, other))
 
 
-def test_the_confidence_interval_of_the_lead_over_another_change_is_students_t_interval() -> None:
+def test_confidence_interval_of_a_lead_is_students_t() -> None:
     low, high = ahead_by([1.0, 2.0, 3.0])  # 2 ± 4.3027·1/√3
     assert (low, high) == pytest.approx((2 - 4.3027 / math.sqrt(3), 2 + 4.3027 / math.sqrt(3)), abs=2e-3)
 
@@ -379,7 +377,7 @@ def test_an_interval_is_unrestricted_if_it_covers_all_visited_bins() -> None:
     assert not _spans((7, 9), {0, 7}, LINE)
 
 
-def test_a_condition_is_proposed_for_the_interval_with_the_largest_change_per_visit() -> None:
+def test_condition_is_proposed_for_the_largest_change_per_visit() -> None:
     assert _steepest(evidence(REGION, changes=dict(CHANGES)), 0) == (4, 6)
     assert _steepest(evidence(REGION, changes=dict(CHANGES)), 1) == (1, 1)
 
@@ -417,7 +415,7 @@ def test_a_condition_holds_in_the_bins_that_it_covers_up_to_rounding(
     assert [index for index in range(8) if holds(guard, (index,), [sensor])] == expected
 
 
-def test_a_constant_clearly_loses_if_each_of_its_factors_lost_more_than_the_slack() -> None:
+def test_clear_loss_means_that_each_factor_lost() -> None:
     found = gains()
     assert found.clearly_lost(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
     assert found.clearly_lost(ALWAYS, [A, B, C], (0.4,)) == [A, B]
@@ -432,7 +430,7 @@ def many(moved: int) -> Gains:
     return found
 
 
-def test_a_condition_counts_as_idle_if_hardly_any_change_under_it_has_an_effect() -> None:
+def test_idle_condition_has_changes_without_effect() -> None:
     assert many(2).idle_guard(WET)
     assert not many(3).idle_guard(WET)
     assert not gains().idle_guard(WET)  # too few constants
@@ -442,7 +440,7 @@ def test_a_condition_counts_as_idle_if_hardly_any_change_under_it_has_an_effect(
     assert not without.idle_guard(ALWAYS)  # it has no condition
 
 
-def test_tries_under_an_idle_condition_do_not_show_that_a_constant_has_no_effect() -> None:
+def test_tries_under_an_idle_condition_prove_nothing() -> None:
     found = many(0)
     units = [unit for (unit, _), _ in found.items()]
     for unit in units:
@@ -453,7 +451,7 @@ def test_tries_under_an_idle_condition_do_not_show_that_a_constant_has_no_effect
     assert found.moving(units) == units[1:]
 
 
-def test_a_gain_in_a_mission_without_progress_may_be_refined_but_is_not_counted() -> None:
+def test_gain_without_progress_is_not_counted() -> None:
     found = Gains(0.5)
     found.enter((A, ALWAYS), 0.4, 2.0, True, hollow=True)
     assert found.most((A, ALWAYS)) == 2.0
@@ -473,9 +471,7 @@ def test_a_gain_in_a_mission_without_progress_may_be_refined_but_is_not_counted(
         ({}, False),
     ],
 )
-def test_constants_act_alike_if_several_factors_change_the_reward_by_the_same_amount(
-    its: dict[float, float], alike: bool
-) -> None:
+def test_constants_with_equal_rewards_act_alike(its: dict[float, float], alike: bool) -> None:
     found, other = gains(), Unit((constant(9, "D"),))
     for factor, gain in its.items():
         found.enter((other, ALWAYS), factor, gain)

@@ -88,7 +88,7 @@ def test_another_constant_of_the_function_is_corrected_before_gravity() -> None:
     assert order(search, 2) == [PADS, GRAVITY]
 
 
-def test_a_repair_that_makes_missions_longer_comes_after_a_repair_that_does_not() -> None:
+def test_repair_with_longer_missions_comes_later() -> None:
     windows = {CRUISE: (0.3, 0.5), PADS: (0.6, 0.7)}
     slow = searched((REACTION, PADS, CRUISE), windows, {CRUISE: 3 * STEPS})
     assert order(slow, 2) == [PADS, CRUISE]
@@ -96,7 +96,7 @@ def test_a_repair_that_makes_missions_longer_comes_after_a_repair_that_does_not(
     assert order(as_designed, 1) == [CRUISE]
 
 
-def test_the_search_for_a_gentler_repair_takes_few_episodes_if_there_is_none() -> None:
+def test_search_for_a_gentler_repair_is_short() -> None:
     many = tuple(named(at, f"LIMIT_{at}", 2.0) for at in range(10, 18))
     kept = searched((*many, CRUISE), {CRUISE: (0.3, 0.5)})
     slow = searched((*many, CRUISE), {CRUISE: (0.3, 0.5)}, {CRUISE: 3 * STEPS})

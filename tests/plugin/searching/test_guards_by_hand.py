@@ -49,17 +49,17 @@ def along(
 # shares
 
 
-def test_each_share_of_the_change_is_reduced_by_the_share_of_the_designed_steps() -> None:
+def test_change_share_is_reduced_by_the_designed_share() -> None:
     shares = along([1, 1, 2, 3], [1, 2, 2, 4], {1: 3.0, 2: 1.0}).shares()
     assert shares == {(1,): 0.75 - 0.25, (2,): 0.25 - 0.5, (3,): 0.0, (4,): -0.25}
 
 
-def test_a_new_cell_has_its_share_of_the_drifted_steps_and_the_other_cells_divide_the_rest() -> None:
+def test_new_cell_keeps_its_share_of_drifted_steps() -> None:
     shares = along([1, 5, 5, 5], [1, 1], {1: 8.0}, novel=(5,)).shares()
     assert shares == {(1,): 0.25 - 1.0, (5,): 0.75}
 
 
-def test_a_change_in_a_cell_that_the_drifted_robot_never_visited_has_no_share() -> None:
+def test_cell_without_drifted_visits_has_no_share() -> None:
     assert along([1, 2], [1, 2], {1: 1.0, 7: 99.0}).shares() == {(1,): 0.5, (2,): -0.5}
 
 
@@ -103,7 +103,7 @@ def test_an_interval_of_angles_is_at_most_one_turn() -> None:
     assert {one % 8 for one in range(low, high + 1)} >= {0, 2, 4, 6}
 
 
-def test_no_interval_is_steep_if_no_cell_changed_more_than_it_was_visited() -> None:
+def test_interval_is_steep_only_with_more_change_than_visits() -> None:
     assert _steepest(along([1, 2], [1, 2], {}), 0) is None
 
 
@@ -118,7 +118,7 @@ def test_an_end_is_open_if_nothing_was_seen_beyond_it(bins: tuple[int, int], low
     assert _conjunct(X, bins, SEEN_BINS) == Conjunct(X, low, high)
 
 
-def test_the_ends_of_an_interval_of_angles_and_of_a_category_stay_closed() -> None:
+def test_ends_of_angles_and_categories_stay_closed() -> None:
     assert _conjunct(ANGLE, (2, 6), SEEN_BINS) == Conjunct(ANGLE, 2.0, 7.0)
     assert _conjunct(WET, (0, 0), {0, 1}) == Conjunct(WET, 0.0, 0.0)
 
@@ -152,13 +152,13 @@ def test_the_bins_of_both_worlds_decide_whether_a_condition_always_holds() -> No
     assert list(_combined([(4, 6)], seen)) == [Guard((Conjunct(X, -inf, 7.0),))]
 
 
-def test_each_drifted_value_of_a_boolean_gives_a_condition_but_no_value_of_a_number_does() -> None:
+def test_each_drifted_boolean_value_gives_a_condition() -> None:
     cells: list[Cell] = [(x, int(x > 3)) for x in range(6)]
     seen = Evidence((X, WET), world(1, [(0, 0), (1, 2)]), world(2, cells), Region(()), {})
     assert list(_values(seen)) == [Guard((Conjunct(WET, one, one),)) for one in (0, 1)]
 
 
-def test_conditions_are_listed_once_by_size_and_then_by_their_share_of_designed_steps() -> None:
+def test_conditions_are_sorted_by_size_and_share() -> None:
     cells: list[Cell] = [(x, int(x in (4, 5))) for x in range(10)]
     region = Region(((4, 1), (5, 1)))
     seen = Evidence((X, WET), world(1, cells), world(2, cells), region, {})
@@ -178,20 +178,20 @@ def guard_on(low: float, high: float, sensor: Sensor = X) -> Guard:
     return Guard((Conjunct(sensor, low, high),))
 
 
-def test_a_condition_stores_the_share_of_steps_in_the_cells_where_it_holds() -> None:
+def test_condition_stores_its_share_of_steps() -> None:
     driven = world(1, [(1,), (1,), (2,), (5,)])
     assert share(guard_on(1.0, 3.0), driven, (X,)) == 0.75
     assert share(guard_on(8.0, 9.0), driven, (X,)) == 0.0
     assert share(ALWAYS, driven, (X,)) == 1.0
 
 
-def test_a_condition_on_two_sensors_holds_if_its_parts_for_both_sensors_hold() -> None:
+def test_condition_on_two_sensors_needs_both_parts() -> None:
     both = Guard((ON_X, ON_WET))
     cells: list[Cell] = [(4, 1), (4, 0), (8, 1), (3, 1), (7, 1)]
     assert [holds(both, one, (X, WET)) for one in cells] == [True, False, False, False, False]
 
 
-def test_the_best_condition_is_searched_first_then_no_condition_and_then_the_other_conditions() -> None:
+def test_best_condition_is_searched_first() -> None:
     seen = along([1, 1, 2, 2, 3, 8, 8, 8], [1, 2, 3, 4, 5, 6, 7, 8], {1: 4.0, 2: 4.0, 3: 1.0})
     best, second, third = guard_on(1.0, 3.0), guard_on(1.0, 4.0), guard_on(2.0, 3.0)
     assert telling([third, second, best], seen, 4) == (best, ALWAYS, second, third)
@@ -199,7 +199,7 @@ def test_the_best_condition_is_searched_first_then_no_condition_and_then_the_oth
     assert telling([third, second, best], seen, 1) == (ALWAYS,)
 
 
-def test_the_search_under_a_condition_with_little_merit_follows_the_search_without_a_condition() -> None:
+def test_poor_condition_follows_the_unconditional_search() -> None:
     seen = along([1, 2, 3, 4], [1, 2, 3, 4], {1: 1.3, 2: 1.0, 3: 1.0, 4: 1.0})
     assert telling([guard_on(1.0, 2.0)], seen, 2)[0] == ALWAYS
 
@@ -211,7 +211,7 @@ def test_a_condition_that_never_holds_in_the_designed_world_gets_a_bonus() -> No
     assert telling([guard_on(5.0, 6.0)], visited, 2)[0] == ALWAYS
 
 
-def test_of_two_conditions_with_the_same_merit_the_condition_with_fewer_parts_wins() -> None:
+def test_condition_with_fewer_parts_wins_a_tie() -> None:
     cells: list[Cell] = [(x, int(x in (4, 5))) for x in range(10)]
     dry: list[Cell] = [(x, 0) for x in range(10)]
     changes = {(4, 1): 1.0, (5, 1): 1.0}
@@ -223,7 +223,7 @@ def test_of_two_conditions_with_the_same_merit_the_condition_with_fewer_parts_wi
 # wider arcs
 
 
-def test_an_interval_of_angles_is_widened_on_both_sides_and_may_wrap_around() -> None:
+def test_angle_interval_is_widened_on_both_sides() -> None:
     step = 2 * (2 * pi / 8)
     low, high = widened(HEADING, 0.0, pi / 4)
     assert (low, high) == (pytest.approx(-step), pytest.approx(pi / 4 + step))

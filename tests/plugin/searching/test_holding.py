@@ -41,7 +41,7 @@ def factors(joint: Joint) -> dict[str, float]:
     return {unit.operands[0].code: factor for unit, factor in joint.parts}
 
 
-def test_a_constant_that_loses_reward_alone_is_found_while_another_change_is_applied() -> None:
+def test_constant_is_found_while_another_change_is_applied() -> None:
     trials = Trials(swings, 300)
     found = [(factors(joint), one.total) for joint, one in held(BASE, OTHERS, selection(trials))]
     assert found == [({"GAIN": 2.2, "DAMPING": 2.2}, 10.0)]
@@ -59,7 +59,7 @@ def test_a_constant_that_helps_but_not_enough_is_moved_further() -> None:
     assert found == [({"GAIN": 2.2, "DAMPING": 3.3}, 6.6)]
 
 
-def test_constants_that_help_about_equally_are_all_moved_further_beginning_with_the_best() -> None:
+def test_equally_good_constants_all_move_further() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         by = {one.operand: float(one.value) for one in candidate.mutations}
         if seed == EASY:
@@ -85,9 +85,7 @@ def test_constants_that_help_about_equally_are_all_moved_further_beginning_with_
         (10.0, 2.0, SEEDS + EPISODES),
     ],
 )
-def test_a_change_stays_applied_only_if_it_gains_a_good_part_on_average(
-    easy: float, hard: float, spent: int
-) -> None:
+def test_change_stays_applied_if_it_gains_on_average(easy: float, hard: float, spent: int) -> None:
     trials = Trials(lambda _, seed: Outcome(easy if seed == EASY else hard, seed == EASY or hard > 9.0), 300)
     many = [Unit((constant(n, f"C{n}"),)) for n in range(3, 3 + EPISODES)]
     assert list(held(BASE, many, selection(trials))) == []
@@ -107,7 +105,7 @@ def test_changes_that_cannot_be_written_are_skipped() -> None:
     assert list(held(BASE, OTHERS, selection(Trials(never, 300)))) == []
 
 
-def test_the_sweep_tries_other_constants_under_the_change_before_it_tries_larger_steps() -> None:
+def test_other_constants_are_tried_before_larger_steps() -> None:
     trials = Trials(swings, 300)
     found = next(Sweep((*REST, DAMPING, GAIN), mutations, (ALWAYS,), trials, GOAL).candidates())
     assert {one.operand for one in found.mutations} == {GAIN, DAMPING}

@@ -98,9 +98,7 @@ def search(total: dict[frozenset[str], float], hidden: int = 0) -> tuple[Jointly
         (-20.0, 9.0, -3.0),
     ],
 )
-def test_the_value_of_a_trial_is_its_share_of_the_wanted_gain_minus_its_deviation(
-    gain: float, away: float, value: float
-) -> None:
+def test_trial_value_is_the_gain_minus_its_deviation(gain: float, away: float, value: float) -> None:
     found, _ = search({})
     assert found._valued(gain, away) == value
     found.goal = replace(found.goal, enough=0.0)  # nothing is wanted: the gain itself counts

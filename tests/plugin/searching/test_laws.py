@@ -53,7 +53,7 @@ def test_the_exponent_that_gains_is_adjusted(right: float) -> None:
     assert operand_effect(mutation, 8.0).what == "LIGHT follows distance"
 
 
-def test_an_exponent_that_gains_nothing_is_dropped_and_only_a_few_constants_are_tried() -> None:
+def test_exponent_without_gain_is_dropped() -> None:
     trials = Trials(run, 60)
     selection = ForwardSelection((), mutations, trials, GOAL, {}, 0.7)
     many = [Unit((constant(n, f"C{n}"),)) for n in range(3, 10)]
@@ -61,7 +61,7 @@ def test_an_exponent_that_gains_nothing_is_dropped_and_only_a_few_constants_are_
     assert trials.spent == 2 * CONSTANTS
 
 
-def test_the_law_that_gains_most_is_adjusted_first_and_each_constant_is_tried_once() -> None:
+def test_best_law_is_adjusted_first() -> None:
     slight = constant(3, "SLIGHT")
 
     def total(candidate: Candidate, seed: int) -> Outcome:
@@ -87,7 +87,7 @@ def test_an_exponent_that_is_too_large_for_hard_missions_is_reduced() -> None:
     assert 1.3 < float(mutation.value) <= 1.6
 
 
-def test_the_sweep_tries_laws_for_a_constant_that_loses_when_raised_and_when_lowered() -> None:
+def test_laws_are_tried_if_raising_and_lowering_lose() -> None:
     trials = Trials(run, 40)
     sweep = Sweep((OTHER, LIGHT), mutations, (ALWAYS,), trials, GOAL, proportional=proportional)
     found = next(sweep.candidates())

@@ -117,7 +117,7 @@ def binomial(n: int, k: int, p: float) -> float:
 
 
 @pytest.mark.parametrize(("look", "tolerated"), [(59, 0.05), (58, 0.05), (93, 0.05), (10, 0.5), (4, 0.9)])
-def test_a_test_with_a_single_check_has_the_bound_of_clopper_and_pearson(look: int, tolerated: float) -> None:
+def test_single_check_has_the_clopper_pearson_bound(look: int, tolerated: float) -> None:
     (found,) = acceptance_numbers((look,), tolerated, 0.05)
     tail = np.cumsum([binomial(look, k, tolerated) for k in range(look + 1)])
     assert found == int((tail <= 0.05).sum()) - 1

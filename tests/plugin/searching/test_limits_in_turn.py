@@ -80,14 +80,14 @@ def test_a_limit_that_changes_no_mission_ends_its_chain() -> None:
 
 
 @pytest.mark.parametrize("total", [-5.0, 9.5])
-def test_a_combination_that_clearly_loses_or_suffices_on_its_seed_is_not_extended(total: float) -> None:
+def test_sufficient_or_losing_combination_is_not_extended(total: float) -> None:
     world = Capper(TURNS, TIME)
     world.run = lambda candidate, seed: Outcome(total if seed == PAIRS[0].seed else 0.0, True, steps=20)  # type: ignore[method-assign]
     assert relaxed(world)[0] is None
     assert [one.mutations for one in world.asked] == [()]
 
 
-def test_factors_have_a_maximum_size_and_combinations_have_a_maximum_number_of_parts() -> None:
+def test_combinations_have_limited_factors_and_parts() -> None:
     assert relaxed(Capper(TURNS, needed=30.0))[0] is None
     assert relaxed(Capper(*LIMITS, REST[0]))[0] is None
 

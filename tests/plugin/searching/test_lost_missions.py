@@ -49,9 +49,7 @@ class World:
         ((0.3, 0.7), (0.3, 0.5), 0.6, 0.4, 0.49),  # below 1, outwards is downwards
     ],
 )
-def test_a_value_moves_to_the_side_on_which_the_lost_mission_earns_more(
-    easy, hard, first, tried, found
-) -> None:
+def test_value_moves_to_the_side_where_the_lost_mission_gains(easy, hard, first, tried, found) -> None:
     world = World(easy, hard)
     (unit,) = world.attempts().units
     changed = unit.mutations(mutations, first)
@@ -60,7 +58,7 @@ def test_a_value_moves_to_the_side_on_which_the_lost_mission_earns_more(
     assert {seed for _, seed in world.ran} == {HARD}
 
 
-def test_a_value_stays_if_no_neighbour_earns_more_or_no_change_was_rejected() -> None:
+def test_value_stays_if_no_neighbour_earns_more() -> None:
     world = World((1.4, 3.0), (1.5, 1.5))
     (unit,) = world.attempts().units
     for first, trials in ((1.5, world.trials), (1.4, Trials(world.run, 100))):
@@ -76,7 +74,7 @@ def test_a_constant_is_moved_on_and_confirmed() -> None:
     assert [factor for factor, seed in world.ran if seed == HARD][:2] == [1.5, 2.27]
 
 
-def test_a_constant_is_moved_on_a_few_times_while_the_lost_mission_earns_more() -> None:
+def test_constant_moves_while_the_lost_mission_gains() -> None:
     world = World((1.4, 90.0), (50.0, 60.0))
     tries = world.attempts()
     assert not list(tries.attempt(tries.units[0], ALWAYS, 1.5, 0))

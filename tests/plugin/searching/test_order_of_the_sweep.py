@@ -81,7 +81,7 @@ def test_if_no_constant_matters_every_step_is_tried_once() -> None:
     ]
 
 
-def test_each_step_runs_on_the_next_seed_and_all_constants_of_a_step_run_on_the_same_seed() -> None:
+def test_each_step_runs_on_the_next_seed() -> None:
     seeds: dict[str, set[int]] = {}
     for words, seed in order(dead, [LITERAL, ZERO, FLAG]):
         seeds.setdefault(words, set()).add(seed)
@@ -99,7 +99,7 @@ def test_constants_that_change_the_reward_get_moderate_steps_before_other_consta
     assert found[:5] == ["A=2.2", "A=0.4", "A=1.5", "A=0.65", "3.0=6.6"]
 
 
-def test_every_step_of_the_plateau_is_tried_on_a_constant_that_loses_a_little() -> None:
+def test_constant_with_a_small_loss_gets_every_step() -> None:
     found = tried(lambda changes: -0.5 * float(A in changes), [A])
     expected = [f"A={step:.4g}" for step, _ in STEPS]
     assert set(expected) <= set(found)
@@ -108,19 +108,19 @@ def test_every_step_of_the_plateau_is_tried_on_a_constant_that_loses_a_little() 
     ]
 
 
-def test_larger_steps_are_not_tried_if_the_smaller_steps_lost_more_than_the_slack() -> None:
+def test_larger_steps_stop_after_a_loss() -> None:
     found = tried(lambda changes: -1.5 if changes.get(A, 1.0) in (2.2, 0.4) else 0.0, [A])
     late = found.index("A=10")
     assert "A=5" not in found[:late]
     assert found[late:] == ["A=10", "A=0.05", "A=5", "A=0.15"]
 
 
-def test_constants_that_lose_in_both_directions_get_the_steps_between_and_then_finer_steps() -> None:
+def test_losing_constants_get_intermediate_and_finer_steps() -> None:
     found = tried(lambda changes: -3.0 * float(LITERAL in changes), [LITERAL])
     assert found[:6] == ["3.0=6.6", "3.0=1.2", "3.0=4.5", "3.0=1.95", "3.0=3.66", "3.0=2.46"]
 
 
-def test_no_finer_steps_follow_if_another_constant_gains_half_of_the_wanted_gain() -> None:
+def test_large_gain_elsewhere_stops_finer_steps() -> None:
     def world(changes: Changes) -> float:
         if LITERAL in changes:
             return -3.0
@@ -132,12 +132,12 @@ def test_no_finer_steps_follow_if_another_constant_gains_half_of_the_wanted_gain
     assert {"3.0=4.5", "3.0=1.95"} <= set(found[:combined])
 
 
-def test_a_constant_that_gained_when_it_was_reduced_is_tried_with_a_negative_sign_next() -> None:
+def test_constant_that_gained_when_reduced_gets_a_negative_sign() -> None:
     found = tried(lambda changes: 2.0 if changes.get(LITERAL, 3.0) < 3.0 else 0.0, [LITERAL, A])
     assert found[found.index("3.0=1.2") + 1] == "3.0=-3"
 
 
-def test_the_sign_is_changed_for_at_most_three_constants_and_only_for_those_that_gained_enough() -> None:
+def test_sign_changes_for_at_most_three_good_constants() -> None:
     many = [constant(line, f"N{line}") for line in range(10, 16)]
 
     def world(changes: Changes) -> float:
@@ -152,14 +152,14 @@ def test_the_sign_is_changed_for_at_most_three_constants_and_only_for_those_that
     assert not seen[at + 1][0].endswith("=-1")
 
 
-def test_a_second_condition_is_searched_only_if_the_first_search_has_a_condition() -> None:
+def test_second_condition_needs_a_first_one() -> None:
     unguarded = tried(dead, [LITERAL], guards=(ALWAYS, WET))
     assert unguarded[:6] == ["3.0=6.6", "3.0=1.2", "3.0=4.5", "3.0=4.5|", "3.0=1.95", "3.0=1.95|"]
     guarded = tried(dead, [LITERAL], guards=(WET, ALWAYS))
     assert guarded[:4] == ["3.0=6.6|", "3.0=1.2|", "3.0=4.5|", "3.0=4.5"]
 
 
-def test_a_change_that_gains_under_a_condition_is_tried_without_the_condition_immediately() -> None:
+def test_conditional_gain_is_tried_without_the_condition() -> None:
     search, seen = sweeping(lambda changes: 4.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL, A])
     search.attempts.guards = (WET, ALWAYS)
     list(search.candidates())
@@ -167,7 +167,7 @@ def test_a_change_that_gains_under_a_condition_is_tried_without_the_condition_im
     assert 0 < words.index("3.0=6.6") - words.index("3.0=6.6|") < 8
 
 
-def test_a_change_is_not_tried_without_its_condition_if_the_search_allows_only_conditional_changes() -> None:
+def test_conditional_search_keeps_the_condition() -> None:
     found = tried(lambda changes: 4.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL, A], guards=(WET,))
     assert all(words.endswith("|") for words in found)
 
@@ -213,15 +213,13 @@ def test_a_proposal_with_an_effect_is_not_skipped() -> None:
 
 
 @pytest.mark.parametrize(("reward", "finer"), [(-1.1, False), (-0.9, True)])
-def test_a_proposal_that_clearly_loses_with_all_its_values_gets_no_finer_steps(
-    reward: float, finer: bool
-) -> None:
+def test_losing_proposal_gets_no_finer_steps(reward: float, finer: bool) -> None:
     found = tried(lambda _: reward, [LITERAL], proposed=True)
     assert {"3.0=4.5", "3.0=1.95"} <= {*found}
     assert ({"3.0=3.66", "3.0=2.46", "3.0=3.3", "3.0=2.73"} & {*found} != set()) is finer
 
 
-def test_a_constant_that_cannot_be_written_is_skipped_and_the_rest_goes_on() -> None:
+def test_unwritable_constant_is_skipped() -> None:
     def world(changes: Changes) -> float:
         if A in changes:
             raise RepairError("no place")
@@ -320,7 +318,7 @@ def test_the_effect_of_a_statement_is_the_effect_of_its_best_factor() -> None:
     assert name.effect == 0.0
 
 
-def test_a_change_that_reached_the_goal_once_stays_open_only_if_it_may_still_be_confirmed() -> None:
+def test_change_stays_open_while_it_may_be_confirmed() -> None:
     search, seen = sweeping(lambda changes: 10.0, [LITERAL])
     (unit,) = units([LITERAL])
     assert search.attempts.reaches(unit, 2.2, ALWAYS, 1, confirmable=False)
@@ -350,7 +348,7 @@ def test_a_change_without_an_effect_neither_reaches_the_goal_nor_is_confirmed() 
     assert seen == []
 
 
-def test_a_change_that_cannot_be_written_neither_reaches_the_goal_nor_is_confirmed() -> None:
+def test_unwritable_change_is_never_confirmed() -> None:
     def world(_: Changes) -> float:
         raise RepairError("no place")
 

@@ -68,9 +68,7 @@ def test_each_change_has_the_expected_readability_rank(mutation: Mutation, expec
         ("inverted", True, False),
     ],
 )
-def test_a_constant_of_value_one_is_a_sign_if_its_name_suggests_a_sign(
-    code: str, value: float, sign: bool
-) -> None:
+def test_constant_one_with_a_sign_name_is_a_sign(code: str, value: float, sign: bool) -> None:
     assert is_sign(replace(SIGN, code=code, value=value)) == sign
 
 
@@ -124,13 +122,13 @@ def test_a_factor_is_tried_before_an_offset_that_also_succeeds() -> None:
     assert next(found).mutations[0].operand == NAMED
 
 
-def test_until_a_change_gains_named_constants_get_near_and_moderate_steps_before_literals() -> None:
+def test_named_constants_get_moderate_steps_before_literals() -> None:
     search = restoring({INNER: 2.2, NAMED: 0.65}, window=0.1, harm=0.3)
     assert next(search.candidates()).mutations[0].operand == NAMED
     assert not any("→" in label for label in search.attempts.trials.labels)
 
 
-def test_a_named_constant_of_a_helper_is_tried_without_a_condition_before_a_literal() -> None:
+def test_named_constant_of_a_helper_comes_before_a_literal() -> None:
     far = Guard((Conjunct(POSITION, 5, math.inf),))
     found = restoring(
         {INNER: 2.2, NAMED: 2.2}, window=0.2, guards=(far, ALWAYS), helpers=(NAMED,)
@@ -157,7 +155,7 @@ def test_a_narrow_window_near_the_original_is_found_soon(factor: float, smaller:
     assert search.attempts.trials.spent <= 60
 
 
-def test_a_named_constant_without_effect_in_small_steps_is_tried_before_a_literal() -> None:
+def test_ineffective_named_constant_comes_before_a_literal() -> None:
     early = replace(NAMED, span=replace(NAMED.span, line=2, end_line=2))
     found = restoring({early: 4.0, INNER: 2.2}, window=0.3).candidates()
     assert [next(found).mutations[0].operand for _ in range(2)] == [early, INNER]

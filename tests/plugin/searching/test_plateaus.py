@@ -114,7 +114,7 @@ def test_a_proposal_without_effect_is_strengthened_further_in_places_where_const
 @pytest.mark.parametrize(
     "center", [0.57, 0.63, 0.72, 0.76, 0.88, 0.93, 1.08, 1.13, 1.19, 1.25, 1.32, 1.46, 1.69]
 )
-def test_a_narrow_range_of_good_values_is_found_although_other_values_change_no_reward(center: float) -> None:
+def test_narrow_good_range_is_found_on_a_plateau(center: float) -> None:
     right = constant(3, "RIGHT", 38.0)
     others = [constant(line, f"C{line}", 2.0) for line in range(4, 10)]
 

@@ -101,7 +101,7 @@ def selection(budget: int = 300) -> ForwardSelection:
     return ForwardSelection((GRIP, ANGLE, IDLE), mutations, Trials(run, budget), goal, {}, 0.1)
 
 
-def test_a_pair_that_earns_a_little_too_little_is_adjusted_until_it_holds() -> None:
+def test_nearly_sufficient_pair_is_adjusted() -> None:
     joint = Joint(((GRIP, 0.75), (ANGLE, 1.5), (IDLE, 0.9)), ALWAYS)
     search = selection()
     (found,) = list(search.gain(joint))
@@ -116,7 +116,7 @@ def test_a_pair_that_barely_earns_enough_is_adjusted_after_its_refusal() -> None
     assert better.mutations[0].value == pytest.approx(0.6, rel=0.08)
 
 
-def test_a_pair_that_harms_the_designed_world_is_not_adjusted_after_its_refusal() -> None:
+def test_refused_harmful_pair_is_not_adjusted() -> None:
     search = selection()
     search.trials.harms = lambda candidate: len(candidate.mutations) == 2
     assert len(list(search.gain(Joint(((GRIP, 0.66), (ANGLE, 1.5)), ALWAYS)))) == 1
@@ -145,7 +145,7 @@ def narrow(width: float) -> ForwardSelection:
     return ForwardSelection((GRIP,), mutations, Trials(run, 300), goal, {}, 0.1)
 
 
-def test_a_single_constant_that_fails_on_hard_seeds_is_adjusted_on_these_seeds() -> None:
+def test_constant_that_fails_on_hard_seeds_is_adjusted_there() -> None:
     search = narrow(0.05)
     near = Joint(((GRIP, 0.628),), ALWAYS).candidate(mutations)
     totals = [search.trials(near, seed).total for seed in range(3)]
@@ -156,9 +156,7 @@ def test_a_single_constant_that_fails_on_hard_seeds_is_adjusted_on_these_seeds()
 
 
 @pytest.mark.parametrize(("factor", "seeds"), [(0.628, 2), (0.58, 0), (1.5, 3)])
-def test_a_constant_that_ran_in_few_missions_or_earns_little_is_not_adjusted(
-    factor: float, seeds: int
-) -> None:
+def test_rarely_run_constant_is_not_adjusted(factor: float, seeds: int) -> None:
     search = narrow(0.05)
     candidate = Joint(((GRIP, factor),), ALWAYS).candidate(mutations)
     for seed in range(seeds):

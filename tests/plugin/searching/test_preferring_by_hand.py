@@ -128,7 +128,7 @@ def before(
 # plainer changes
 
 
-def test_two_named_constants_are_tried_before_a_literal_first_in_small_and_then_in_larger_steps() -> None:
+def test_two_named_constants_come_before_a_literal() -> None:
     search = Scripted([LITERAL, A, B, C], proposed=True)
     before(search, LITERAL, 2.2, pair=3)
     assert search.tries == [
@@ -195,7 +195,7 @@ def test_trying_larger_steps_of_other_constants_takes_at_most_twelve_episodes() 
     assert {factor for _, factor in search.tries} == {5.0}
 
 
-def test_a_constant_whose_code_cannot_read_the_sensor_is_tried_without_a_condition() -> None:
+def test_unreadable_sensor_gives_no_condition() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         if candidate.guard == WET and candidate.mutations[0].operand.code == "A":
             raise RepairError("no sensor here")
@@ -233,7 +233,7 @@ def getter() -> Unit:
     return Unit((replace(made, site=site, value=None),))
 
 
-def test_instead_of_a_changed_return_value_only_the_calls_that_need_the_factor_are_changed() -> None:
+def test_only_the_calls_that_need_the_factor_are_changed() -> None:
     one, two, other = call(3), call(4), getter()
 
     def run(candidate: Candidate, _: int) -> Outcome:
@@ -254,9 +254,7 @@ def longer(candidate: Candidate, _: int) -> Outcome:
 
 
 @pytest.mark.parametrize(("holds", "near", "tries"), [(True, True, 4), (False, True, 4), (False, False, 0)])
-def test_a_constant_of_nature_has_alternatives_even_if_it_is_only_nearly_confirmed(
-    holds: bool, near: bool, tries: int
-) -> None:
+def test_constant_of_nature_always_has_alternatives(holds: bool, near: bool, tries: int) -> None:
     search = Scripted([GRAVITY, A, B], proposed=True)
     for unit in (A, B):
         search.gains.enter((unit, ALWAYS), 1.1, 0.0)
@@ -264,9 +262,7 @@ def test_a_constant_of_nature_has_alternatives_even_if_it_is_only_nearly_confirm
     assert search.tries == [("A", 1.5), ("A", 0.65), ("B", 1.5), ("B", 0.65)][:tries]
 
 
-def test_a_change_is_compared_with_gentler_changes_only_once_on_the_seed_where_most_candidates_failed() -> (
-    None
-):
+def test_change_is_compared_with_gentler_ones_only_once() -> None:
     search = Scripted([A, B], longer, goal=replace(GOAL, steps=10.0), proposed=True)
     search.trials.misses.update({1: 1, 4: 2, 2: 2})
     made, found = Preferences(search), change(A, 2.2)
@@ -299,14 +295,14 @@ def window(*good: tuple[Unit, float, float], total: float = 10.0) -> Act:
     return run
 
 
-def test_the_value_halfway_to_the_old_value_comes_first_if_a_closer_value_succeeds_on_three_seeds() -> None:
+def test_halfway_value_comes_first_if_a_closer_one_succeeds() -> None:
     search = Scripted([A], window((A, 1.3, 3.0)), [(A, 1.483)])
     assert before(search, A, 2.2) == [change(A, 1.483)]
     assert search.log == [("holding", "A", 1.483, 0)]
     assert search.trials.spent == 1 + 1 + 3
 
 
-def test_a_value_at_the_edge_is_set_aside_until_the_change_found_was_refused() -> None:
+def test_value_at_the_edge_is_set_aside() -> None:
     search = Scripted([A], window((A, 1.45, 3.0)), [(A, 1.483)])
     made, found = Preferences(search), change(A, 2.2)
     search.trials(found, 0)
@@ -354,7 +350,7 @@ def test_a_small_change_of_another_constant_comes_first_and_is_then_refused() ->
     assert search.refused == {(B, ALWAYS)}
 
 
-def test_a_small_change_that_barely_succeeds_is_replaced_by_a_confirmed_larger_change() -> None:
+def test_barely_successful_change_is_enlarged() -> None:
     search = Scripted([A, B], window((A, 2.0, 9.0), (B, 1.2, 1.4)), [(B, 1.22), (B, 1.264)])
     search.gains.enter((A, ALWAYS), 1.5, 0.0)
     made, found = Preferences(search), change(A, 3.0)
@@ -364,14 +360,14 @@ def test_a_small_change_that_barely_succeeds_is_replaced_by_a_confirmed_larger_c
     assert list(made.after()) == [change(B, 1.22)]
 
 
-def test_a_small_change_that_barely_succeeds_is_kept_if_no_larger_one_is_confirmed() -> None:
+def test_barely_successful_change_is_kept_without_a_larger_one() -> None:
     search = Scripted([A, B], window((A, 2.0, 9.0), (B, 1.2, 1.4)), [(B, 1.22)])
     search.gains.enter((A, ALWAYS), 1.5, 0.0)
     assert before(search, A, 3.0) == [change(B, 1.22)]
 
 
 @pytest.mark.parametrize(("total", "beside"), [(8.9, []), (9.0, [("B", 0.869), ("B", 0.771)])])
-def test_a_small_step_that_gains_nine_tenths_of_the_wanted_gain_is_moved_a_little(
+def test_nearly_sufficient_small_step_is_moved_a_little(
     total: float, beside: list[tuple[str, float]]
 ) -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
@@ -396,7 +392,7 @@ def test_a_small_step_that_cannot_be_written_is_not_moved() -> None:
     assert search.tries == [("B", 0.82), ("B", 1.22)]
 
 
-def test_a_small_change_whose_missions_differ_more_from_the_design_is_set_aside() -> None:
+def test_small_change_with_different_missions_is_set_aside() -> None:
     late = (0.0,) * 9 + (10.0,)
 
     def run(candidate: Candidate, _: int) -> Outcome:
@@ -455,7 +451,7 @@ def test_small_steps_end_after_their_episodes_and_skip_refused_constants() -> No
 # moderate changes before extreme ones
 
 
-def test_small_steps_of_other_constants_are_tried_only_once_before_an_extreme_change() -> None:
+def test_other_constants_get_one_try_before_an_extreme_change() -> None:
     search = Scripted([A, B], holds=[(B, 1.05)])
     search.gains.enter((B, ALWAYS), 1.22, -3.0)
     preferences, found = Preferences(search), Candidate(A.mutations(mutations, 11.5), ALWAYS)
@@ -469,9 +465,7 @@ def test_small_steps_of_other_constants_are_tried_only_once_before_an_extreme_ch
 
 
 @pytest.mark.parametrize(("factor", "proposed"), [(7.0, False), (11.5, True)])
-def test_small_steps_of_other_constants_are_not_tried_before_a_moderate_change_or_a_proposal(
-    factor: float, proposed: bool
-) -> None:
+def test_moderate_change_needs_no_other_constants(factor: float, proposed: bool) -> None:
     search = Scripted([A, B], proposed=proposed)
     search.gains.enter((B, ALWAYS), 1.22, -3.0)
     found = Candidate(A.mutations(mutations, factor), ALWAYS)
@@ -509,20 +503,20 @@ def rivalling(
     return search, made
 
 
-def test_a_change_that_restores_the_designed_mission_exactly_is_compared_with_no_other_constant() -> None:
+def test_exactly_restored_mission_needs_no_comparison() -> None:
     search, made = rivalling({"A": 0.0, "B": 0.0, "C": 0.0}, [(B, 0.5)])
     assert list(made.before(change(A, 2.0), A, 2.0, 0, True, True)) == []
     assert search.log == []
 
 
-def test_an_alternative_constant_comes_first_if_its_missions_deviate_at_most_six_tenths_as_much() -> None:
+def test_alternative_with_smaller_deviation_comes_first() -> None:
     for level, rival in ((0.29, [change(B, 0.5)]), (0.31, [])):
         search, made = rivalling({"A": 0.5, "B": level, "C": 1.0}, [(B, 0.5)])
         assert list(made.before(change(A, 2.0), A, 2.0, 0, True, True)) == rival
         assert search.refused == ({(B, ALWAYS)} if rival else set())
 
 
-def test_each_alternative_constant_is_tried_with_the_reciprocal_and_then_with_the_factor() -> None:
+def test_alternative_is_tried_with_the_reciprocal_first() -> None:
     search, made = rivalling({"A": 0.5, "B": 1.0, "C": 1.0}, [], totals={"B": 0.0, "C": 0.0})
     list(made.before(change(A, 2.0), A, 2.0, 0, True, True))
     assert search.of("reaches") == [
@@ -531,13 +525,13 @@ def test_each_alternative_constant_is_tried_with_the_reciprocal_and_then_with_th
     assert len(search.of("reaches")) < RIVALS
 
 
-def test_an_alternative_constant_that_reached_the_goal_is_not_tried_with_another_factor() -> None:
+def test_sufficient_alternative_gets_no_other_factor() -> None:
     search, made = rivalling({"A": 0.5, "B": 1.0, "C": 1.0}, [], totals={"C": 0.0})
     list(made.before(change(A, 2.0), A, 2.0, 0, True, True))
     assert [code for code, _ in search.of("reaches")].count("B") == 1
 
 
-def test_the_constants_of_a_function_are_compared_once_and_at_most_two_functions_are_examined() -> None:
+def test_constants_of_at_most_two_functions_are_compared() -> None:
     search, made = rivalling({"A": 0.5, "B": 1.0, "C": 1.0}, [], totals={"B": 0.0, "C": 0.0})
     for _ in range(2):
         list(made.before(change(A, 2.0), A, 2.0, 0, True, True))
@@ -569,7 +563,7 @@ def test_the_exact_value_of_the_constant_is_tried_before_any_alternative_constan
     assert search.log == [("holding", "A", 1.625, 0)]
 
 
-def test_changes_that_were_set_aside_follow_in_the_order_of_their_mean_reward() -> None:
+def test_set_aside_changes_follow_by_mean_reward() -> None:
     search = Scripted([A, B, C], courses({"A": 0.0, "B": 0.0, "C": 0.0}, {"B": 9.2, "C": 9.6}))
     made = Preferences(search)
     for unit in (A, B, C):

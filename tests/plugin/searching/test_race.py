@@ -114,7 +114,7 @@ def test_a_ranking_whose_budget_ends_is_incomplete() -> None:
     assert ranking.effects()
 
 
-def test_the_full_ranking_runs_constants_without_an_effect_on_the_first_seed_only() -> None:
+def test_ineffective_constants_run_only_on_the_first_seed() -> None:
     ran: dict[str, set[int]] = {}
 
     def noted(candidate: Candidate, seed: int) -> object:

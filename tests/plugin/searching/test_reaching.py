@@ -42,20 +42,20 @@ def test_a_near_miss_is_compared_with_the_designed_mission_of_its_seed(
 
 
 @pytest.mark.parametrize("goal", [replace(GOAL, margin=None), replace(GOAL, harder={1: 0.0})])
-def test_only_the_goal_decides_if_there_is_no_margin_or_the_designed_rewards_are_known(goal: Goal) -> None:
+def test_only_the_goal_decides_without_a_margin(goal: Goal) -> None:
     ran = trials(7.9, 7.9)
     assert not ran.reaches(CANDIDATE, 1, goal)
     assert ran.beside == 0
 
 
-def test_a_failed_mission_is_not_compared_and_without_a_designed_world_no_mission_is_compared() -> None:
+def test_failed_mission_is_not_compared() -> None:
     failed, bare = trials(7.9, 7.9, passed=False), trials(7.9, None)
     assert not failed.reaches(CANDIDATE, 1, GOAL)
     assert not bare.reaches(CANDIDATE, 1, GOAL)
     assert failed.beside == bare.beside == 0
 
 
-def test_an_examination_may_use_episodes_of_later_phases_and_returns_the_unused_episodes() -> None:
+def test_examination_returns_unused_episodes() -> None:
     ran = trials(9.0, None)
     ran.budget, ran.limit = 2, 5
     ran(CANDIDATE, 0)

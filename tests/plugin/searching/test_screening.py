@@ -29,9 +29,7 @@ def test_main_effects_are_separated_although_several_constants_change_at_once() 
 
 
 @pytest.mark.parametrize(("many", "most"), [(60, 140), (160, 300)])
-def test_the_number_of_runs_of_a_screening_grows_more_slowly_than_the_number_of_constants(
-    many: int, most: int
-) -> None:
+def test_screening_runs_grow_more_slowly_than_constants(many: int, most: int) -> None:
     gains = [operand(line, "1.0", 1.0) for line in range(many)]
     right = gains[many * 3 // 4]
 
@@ -84,7 +82,7 @@ def test_a_change_found_in_a_screening_is_compared_with_named_constants() -> Non
     assert [one.operand for one in next(sweep.candidates()).mutations] == [threshold]
 
 
-def test_a_few_named_constants_are_tried_before_a_screening_and_in_finer_steps_while_nothing_gains() -> None:
+def test_named_constants_are_tried_before_a_screening() -> None:
     literals = [operand(line, "1.0", 1.0) for line in range(60)]
     names = [operand(line, f"NAME_{line}", 1.0, named=True) for line in range(100, 104)]
 

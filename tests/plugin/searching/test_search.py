@@ -137,7 +137,7 @@ def test_an_episode_runs_once_per_candidate_and_seed() -> None:
     assert trials.spent == 1
 
 
-def test_a_candidate_that_gains_no_more_than_a_failed_candidate_is_dropped_early() -> None:
+def test_candidate_no_better_than_a_failed_one_is_dropped() -> None:
     def plateau(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(9.1 + 0.01 * seed, True)
 
@@ -153,9 +153,7 @@ def test_a_candidate_that_gains_no_more_than_a_failed_candidate_is_dropped_early
 @pytest.mark.parametrize(
     ("right", "runs"), [(None, SHORT), (1, CONFIRMATIONS), (3, CONFIRMATIONS), (4, SHORT)]
 )
-def test_a_candidate_is_dropped_once_each_of_its_first_missions_earned_too_little(
-    right: int | None, runs: int
-) -> None:
+def test_candidate_is_dropped_after_poor_first_missions(right: int | None, runs: int) -> None:
     trials = Trials(lambda _, seed: Outcome(9.3 if seed == right else 9.1, True), 100)
     mutation = mutations(GAIN, 2.2)
     assert mutation is not None
@@ -174,7 +172,7 @@ def test_a_candidate_that_gains_more_than_a_failed_candidate_is_confirmed() -> N
     assert confirmed(high, trials, goal, 0)
 
 
-def test_constants_that_never_change_a_reward_are_the_last_to_be_moved_further() -> None:
+def test_ineffective_constants_move_further_last() -> None:
     def helpless(candidate: Candidate, seed: int) -> Outcome:
         (mutation,) = candidate.mutations
         return Outcome(reward(None, seed) - 0.1 * (mutation.operand == GAIN), True)
@@ -215,7 +213,7 @@ def test_episodes_in_the_designed_world_count_towards_the_budget() -> None:
         trials(Candidate((mutation,), ALWAYS), 2)
 
 
-def test_a_failed_mission_is_not_a_near_miss_if_missions_are_required_to_pass() -> None:
+def test_failed_mission_is_no_near_miss_if_passing_is_required() -> None:
     failed = Outcome(OFFLINE, passed=False)
     assert GOAL.reached(failed, 0)
     assert not replace(GOAL, passing=True).reached(failed, 0)
@@ -314,13 +312,13 @@ def test_a_failed_mission_ends_the_confirmation_if_designed_missions_succeed() -
         (replace(GAIN, code="K", value=None, definition=ELSEWHERE), 3.0, 3.0),  # a factor if it is not known
     ],
 )
-def test_the_effective_value_of_a_change_is_the_value_of_the_expression_that_uses_it(
+def test_effective_value_is_that_of_the_using_expression(
     operand_: Operand, value: float, effective: float
 ) -> None:
     assert effective_value(Mutation(operand_, value)) == effective
 
 
-def test_the_effective_value_of_a_structure_is_its_parameter_or_the_number_1() -> None:
+def test_effective_value_of_a_structure_is_its_parameter() -> None:
     template = Template("limit", "limits a value", "any", 1, "min($x, $most)")
     scaled = Form(template, "most", (("least", 1.0), ("most", 4.0)))
     assert effective_value(Mutation(GAIN, 0.5, form=scaled)) == 2.0

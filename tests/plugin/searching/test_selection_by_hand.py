@@ -67,7 +67,7 @@ def refused(by: dict[str, float]) -> RepairError:
 # single steps
 
 
-def test_a_gain_is_the_mean_over_the_executed_seeds_and_is_unknown_if_nothing_can_run() -> None:
+def test_gain_is_the_mean_over_executed_seeds() -> None:
     search, seen = selection(lambda by, seed: 3.0 + seed)
     search.trials(joint((A, 2.2)).candidate(mutations), 2)
     found = search.gain(joint((A, 2.2)))
@@ -95,9 +95,7 @@ def test_both_near_factors_are_added_beginning_with_the_better_factor() -> None:
 @pytest.mark.parametrize(
     ("slack", "passing", "first"), [(1.0, True, 2.2), (0.01, True, 0.4), (1.0, False, 0.4)]
 )
-def test_of_two_factors_that_fail_alike_the_one_with_longer_missions_is_added_first(
-    slack: float, passing: bool, first: float
-) -> None:
+def test_factor_with_longer_missions_is_added_first(slack: float, passing: bool, first: float) -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         increased = candidate.mutations[0].value == 2.2
         return Outcome(-0.1 if increased else 0.0, False, steps=20 if increased else 8)
@@ -111,7 +109,7 @@ def test_of_two_factors_that_fail_alike_the_one_with_longer_missions_is_added_fi
     assert wider.parts[1] == (B, first)
 
 
-def test_the_parts_are_adjusted_one_by_one_and_a_smaller_factor_is_tried_if_a_larger_factor_loses() -> None:
+def test_parts_are_adjusted_one_by_one() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 8.0 - abs(by["A"] - 3.3) - abs(by["B"] - 0.26)
 
@@ -171,7 +169,7 @@ def test_more_than_three_needed_parts_are_too_many() -> None:
     assert len(list(search.fewest(joint(*[(one, 1.5) for one in (A, B, C, D)])))) == 1
 
 
-def test_parts_that_do_not_reach_the_goal_are_all_kept_and_not_confirmed() -> None:
+def test_insufficient_parts_are_all_kept() -> None:
     search, seen = selection(lambda by, seed: 0.0)
     assert list(search.fewest(joint((A, 1.5), (B, 1.5)))) == []
     assert first(seen) == ["A1.5 B1.5"]
@@ -203,7 +201,7 @@ def test_a_combination_whose_needed_part_was_found_before_is_not_yielded() -> No
     assert search.settled.held == {alone}
 
 
-def test_a_change_that_is_preferred_to_a_single_part_is_yielded_before_this_part() -> None:
+def test_preferred_change_comes_before_a_single_part() -> None:
     other = joint((C, 0.4)).candidate(mutations)
     asked: list[Any] = []
 
@@ -250,7 +248,7 @@ def test_nothing_is_added_to_a_combination_that_was_confirmed_or_cannot_run() ->
     assert len(seen) == 1
 
 
-def test_the_first_part_is_combined_with_the_next_five_and_the_best_pair_with_a_third_part() -> None:
+def test_first_part_is_combined_with_the_next_five() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 1.0 * ("A" in by) + 2.0 * ("C" in by) + 1.5 * ("E" in by)
 
@@ -264,7 +262,7 @@ def test_the_first_part_is_combined_with_the_next_five_and_the_best_pair_with_a_
     assert len(triples) == 4  # 4.5 of 10 is not promising, so the best one is not balanced
 
 
-def test_a_promising_combination_is_balanced_and_constants_without_an_effect_are_added_to_the_pair() -> None:
+def test_promising_combination_is_balanced_and_extended() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 3.0 * ("A" in by) + 3.0 * ("B" in by) + 2.0 * (by.get("D", 0) == 5.0 and len(by) == 3)
 
@@ -277,7 +275,7 @@ def test_a_promising_combination_is_balanced_and_constants_without_an_effect_are
     assert any("D7.5" in words for words in tried)  # 8 exceeds 6 by more than the slack, so it is balanced
 
 
-def test_constants_without_an_effect_are_added_to_the_first_two_parts_of_the_best_combination() -> None:
+def test_ineffective_constants_join_the_best_combination() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 2.0 * len(by.keys() & {"A", "B", "C"})
 
@@ -289,7 +287,7 @@ def test_constants_without_an_effect_are_added_to_the_first_two_parts_of_the_bes
     assert [words for words in first(seen) if "D" in words] == ["A2.2 B2.2 D5"]
 
 
-def test_a_pair_that_cannot_run_is_not_combined_with_a_constant_without_an_effect() -> None:
+def test_pair_that_cannot_run_is_not_extended() -> None:
     def world(by: dict[str, float], _: int) -> float:
         raise refused(by)
 
@@ -315,7 +313,7 @@ def test_a_first_part_that_was_confirmed_is_not_combined_with_others() -> None:
 # single constants on hard seeds
 
 
-def test_a_single_constant_is_adjusted_only_after_three_seeds_and_if_it_earns_much() -> None:
+def test_single_constant_is_adjusted_after_three_seeds() -> None:
     for total, seeds, adjusted in ((7.0, 3, True), (6.9, 3, False), (7.0, 2, False)):
         search, seen = selection(lambda by, seed, total=total: total)  # type: ignore[misc]
         for seed in range(seeds):
@@ -358,7 +356,7 @@ def many(count: int) -> list[Unit]:
 
 
 @pytest.mark.parametrize("count", [5, 41])
-def test_the_number_of_runs_of_a_screening_grows_with_the_square_root_of_the_number_of_constants(
+def test_screening_runs_grow_with_the_square_root(
     count: int,
 ) -> None:
     search, seen = selection(lambda by, seed: 0.0, many(count))
@@ -368,7 +366,7 @@ def test_the_number_of_runs_of_a_screening_grows_with_the_square_root_of_the_num
     assert {len(words.split()) for words in first(seen)} == {4}
 
 
-def test_a_screening_lists_the_constant_that_gained_first_and_then_the_others_in_their_order() -> None:
+def test_screening_lists_the_gaining_constant_first() -> None:
     units = many(10)
     search, _ = selection(lambda by, seed: 5.0 if by.get("N107") == 0.4 else 0.0, units)
     order = yield_from(screened(search, ALWAYS, np.random.default_rng(1)))
@@ -410,7 +408,7 @@ def racing(
     return Race(mutations, Trials(run, 900), goal), seen
 
 
-def test_changes_run_seed_by_seed_and_each_gain_is_relative_to_the_unmutated_run_of_the_seed() -> None:
+def test_gain_is_relative_to_the_unmutated_run() -> None:
     race, seen = racing(lambda name, factor, seed: seed + factor)
     arms = [Arm(A, 2.2, ALWAYS), Arm(B, 0.4, ALWAYS), Arm(C, 1.0, ALWAYS)]
     race.run(arms, 2)
@@ -463,7 +461,7 @@ def test_the_effect_of_a_constant_is_the_effect_of_its_best_change() -> None:
     assert two.effect == -1.0
 
 
-def test_halving_keeps_the_better_half_of_the_gaining_changes_and_adds_changes_around_the_best() -> None:
+def test_halving_keeps_the_better_half() -> None:
     seen: list[tuple[str, float, int]] = []
 
     def run(candidate: Candidate, seed: int) -> Outcome:
@@ -514,7 +512,7 @@ def table(*tries: tuple[Unit, float, float], slack: float = 1.0, **given: Any) -
     return found
 
 
-def test_the_best_constants_under_conditions_are_sorted_by_gain_and_not_by_factor() -> None:
+def test_best_conditional_constants_are_sorted_by_gain() -> None:
     found = table((A, 5.0, 2.0), (B, 0.4, 9.0), (C, 2.2, -1.0), (D, 1.5, 4.0))
     assert found.best_under([ALWAYS]) == [(B, 0.4), (D, 1.5), (A, 5.0)]
     assert found.best_under([WET]) == []
@@ -525,7 +523,7 @@ def test_the_best_changes_of_the_statements_are_sorted_by_gain() -> None:
     assert found.leaders(ALWAYS) == [(9.0, (B, 2.2)), (3.0, (A, 0.4))]
 
 
-def test_in_each_step_the_constants_are_ordered_by_their_gain_in_the_previous_step() -> None:
+def test_constants_are_ordered_by_their_previous_gain() -> None:
     found = table((A, 2.2, -0.5), (B, 2.2, 3.0), (C, 2.2, 1.0), (D, 0.4, 9.0))
     assert found.leading(2.2, ALWAYS, [A, B, C, D], -1.0) == [B, C, A]
     assert found.leading(2.2, ALWAYS, [A, B, C, D], 1.0) == [B, C]
@@ -542,7 +540,7 @@ def test_constants_that_have_no_effect_in_two_tries_are_not_moved_further() -> N
     assert acting.moving([A]) == []  # a gain shows the way, so changed commands no longer count
 
 
-def test_the_largest_gain_is_at_least_zero_and_counts_only_above_the_slack() -> None:
+def test_largest_gain_counts_only_above_the_slack() -> None:
     assert Gains(1.0).best() == 0.0
     assert table((A, 2.2, -3.0)).best() == 0.0
     found = table((A, 2.2, 1.5))
@@ -578,7 +576,7 @@ def test_episodes_of_the_designed_world_are_announced_only_for_new_seeds() -> No
     assert heard == [[3, 4], [5]]
 
 
-def test_the_tolerated_failure_rate_is_five_percentage_points_above_the_recorded_rate_up_to_one() -> None:
+def test_failure_tolerance_is_five_points_above_the_recording() -> None:
     reference = Reference((10.0, 8.0), 0.9, 0.5, 0.0)
     assert reference.tolerated == pytest.approx(0.15)
     assert replace(reference, pass_rate=0.01).tolerated == 1.0
@@ -594,9 +592,7 @@ def test_the_tolerated_failure_rate_is_five_percentage_points_above_the_recorded
 
 
 @pytest.mark.parametrize(("seeds", "total", "released"), [(2, 6.0, True), (2, 5.9, False), (1, 9.0, False)])
-def test_the_reserve_is_released_by_a_candidate_that_gains_enough_on_two_seeds(
-    seeds: int, total: float, released: bool
-) -> None:
+def test_reserve_is_released_after_gains_on_two_seeds(seeds: int, total: float, released: bool) -> None:
     trials = Trials(lambda *_: Outcome(total, False), seeds, reserve=5, worth=GOAL)
     candidate = joint((A, 2.2)).candidate(mutations)
     for seed in range(seeds):
@@ -633,7 +629,7 @@ def test_outcomes_of_another_phase_and_of_an_equal_candidate_are_known() -> None
     assert other.spent == 1
 
 
-def test_the_second_factor_is_skipped_if_the_better_factor_has_no_effect_on_any_constant() -> None:
+def test_second_factor_is_skipped_after_an_ineffective_one() -> None:
     gains = {A: {2.2: 5.0}, B: {2.2: 1.0}, C: {0.4: 1.0}}
     search, seen = selection(lambda by, seed: 5.0, gains=gains)
     assert list(search.candidates(joint((A, 2.2)))) == []

@@ -44,9 +44,7 @@ def test_a_few_literals_that_lose_with_all_other_steps_get_small_steps(rivals: i
 
 
 @pytest.mark.parametrize(("slope", "early"), [(0.3, True), (0.0, False)])
-def test_a_named_constant_gets_a_smaller_step_before_literals_if_its_smallest_step_gained_a_little(
-    slope: float, early: bool
-) -> None:
+def test_named_constant_gets_a_smaller_step_before_literals(slope: float, early: bool) -> None:
     named = replace(operand(30, "STEPS", 1600.0), definition=operand(1, "1600.0", 1600.0).span)
 
     def run(candidate: Candidate, _: int) -> Outcome:
@@ -63,9 +61,7 @@ def test_a_named_constant_gets_a_smaller_step_before_literals_if_its_smallest_st
 
 
 @pytest.mark.parametrize(("lost", "early"), [(5.0, True), (-1.0, False)])
-def test_a_named_constant_that_loses_in_both_directions_gets_smaller_steps_before_literals(
-    lost: float, early: bool
-) -> None:
+def test_losing_named_constant_gets_smaller_steps_first(lost: float, early: bool) -> None:
     def constant(line: int, name: str) -> Operand:
         return replace(operand(line, name, 1.0), definition=operand(line - 20, "1.0", 1.0).span)
 
@@ -85,7 +81,7 @@ def test_a_named_constant_that_loses_in_both_directions_gets_smaller_steps_befor
     assert (trials.spent <= 20) is early
 
 
-def test_a_value_of_a_table_is_changed_where_it_is_used_if_the_change_of_the_table_is_refused() -> None:
+def test_refused_table_change_moves_to_the_use() -> None:
     table = replace(NARROW, site=replace(NARROW.site, qualname=""))
     use = replace(operand(9, "factor", 1.0), value=None, definition=None)
     assert [runs_once(Unit((one,))) for one in (table, use)] == [True, False]

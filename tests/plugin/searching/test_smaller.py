@@ -69,7 +69,7 @@ def test_reducing_another_constant_by_a_sixth_comes_before_doubling_the_constant
     assert order(searched((HOTTEST, TAU, TARGET), windows), 2) == [TARGET, HOTTEST]  # not tried before
 
 
-def test_a_small_change_does_not_come_first_if_missions_then_differ_more_from_the_design() -> None:
+def test_small_change_with_different_missions_is_not_first() -> None:
     windows = {HOTTEST: (2.0, 2.4), TARGET: (0.8, 0.85)}
     assert order(searched((TARGET, TAU, HOTTEST), windows, {TARGET: LATE}), 1) == [HOTTEST]
 
@@ -88,7 +88,7 @@ def test_the_search_for_smaller_changes_takes_few_episodes_if_there_is_none() ->
     assert search.attempts.trials.spent == confirming + 2 * OTHERS + halfway + search.attempts.trials.beside
 
 
-def test_the_value_halfway_to_the_original_value_comes_first_if_it_restores_as_much_reward() -> None:
+def test_halfway_value_comes_first_if_it_restores_the_reward() -> None:
     found = searched((HOTTEST,), {HOTTEST: (1.35, 2.4)}).candidates()
     assert [next(found).mutations[0].value for _ in range(2)] == [1.483, 2.2]
     for low in (1.6, 1.45):  # at 1.45, the value halfway lies at the edge of the good range
@@ -96,7 +96,7 @@ def test_the_value_halfway_to_the_original_value_comes_first_if_it_restores_as_m
         assert next(only).mutations[0].value == 2.2
 
 
-def test_the_value_halfway_to_the_original_value_does_not_come_first_if_it_earns_less() -> None:
+def test_halfway_value_is_not_first_if_it_earns_less() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         (change,) = candidate.mutations
         value = change.value
@@ -107,7 +107,7 @@ def test_the_value_halfway_to_the_original_value_does_not_come_first_if_it_earns
     assert next(found).mutations[0].value == 2.2
 
 
-def test_no_halfway_value_is_proposed_if_a_value_in_between_was_tried_or_the_constant_has_no_scale() -> None:
+def test_no_halfway_value_beside_a_tried_value() -> None:
     unit = Unit((HOTTEST,))
     assert milder(unit, 0.4, {1.0: 0.0, 0.4: 9.0, 2.2: 1.0}) == 0.632
     assert milder(unit, 0.15, {1.0: 0.0, 0.15: 9.0, 0.4: 1.0}) is None
@@ -138,7 +138,7 @@ def test_small_steps_are_tried_on_the_most_promising_constants_only() -> None:
     assert list(dict.fromkeys(unit for unit, _ in tried)) == units[: -OTHERS - 1 : -1]
 
 
-def test_the_size_of_a_change_is_the_logarithm_of_the_ratio_of_its_values() -> None:
+def test_change_size_is_the_logarithm_of_the_ratio() -> None:
     share = named(3, "SHARE", 0.95)
     assert change_size(Unit((share,)), 0.5) == pytest.approx(math.log(2.0))
     assert change_size(Unit((share,), SHARE), 5.0) == pytest.approx(math.log(0.99 / 0.95))
@@ -162,7 +162,7 @@ def test_a_small_step_that_earns_nearly_enough_is_changed_slightly() -> None:
     assert change.value == pytest.approx(1.22 * 1.06, rel=0.002)
 
 
-def test_a_confirmed_change_that_is_not_preferred_is_proposed_after_the_change_found() -> None:
+def test_confirmed_change_follows_the_preferred_one() -> None:
     windows = {HOTTEST: (2.0, 2.4), TARGET: (0.8, 0.85)}
     late = searched((TARGET, TAU, HOTTEST), windows, {TARGET: LATE})
     assert order(late, 2) == [HOTTEST, TARGET]
@@ -203,7 +203,7 @@ def test_a_small_step_that_gains_something_is_followed_by_larger_steps() -> None
     assert change.operand == TARGET
 
 
-def test_larger_steps_follow_only_where_a_small_step_gained_and_stay_below_the_change_found() -> None:
+def test_larger_steps_follow_where_a_small_step_gained() -> None:
     found, *others = (Unit((one,)) for one in (HOTTEST, TARGET, TAU, *(named(at, f"A{at}") for at in (7, 8))))
     gains = Gains(0.1)
     small = [(unit, step) for unit in others for step in (0.82, 1.22)]

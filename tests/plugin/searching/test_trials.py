@@ -143,7 +143,7 @@ def test_a_gain_is_the_mean_over_the_seeds_that_ran() -> None:
     assert ran.gain(ONE, GOAL) == pytest.approx((4.0 + 1.0) / 2)
 
 
-def test_a_candidate_has_an_effect_if_reward_or_length_of_a_mission_changes() -> None:
+def test_effect_changes_reward_or_length_of_a_mission() -> None:
     pairs = (Pair(0, 1.0, 10), Pair(1, 1.0))
     for outcome, seed, expected in (
         (Outcome(1.0, True, steps=10), 0, False),
@@ -176,7 +176,7 @@ def test_a_candidate_that_resembles_a_failed_candidate_is_predicted_to_fail() ->
     assert not ran.falls_short(THREE, PAIRS, 99.0)  # one common seed only
 
 
-def test_a_confirmation_begins_with_at_most_two_seeds_on_which_other_candidates_failed() -> None:
+def test_confirmation_begins_with_two_hard_seeds() -> None:
     ran = Trials(lambda *_: Outcome(0.0, True), 9)
     goal = replace(GOAL, pairs=tuple(Pair(seed, 0.0) for seed in range(8)))
     assert _hardest_first(ran, goal, 6) == [7, 0, 1, 2, 3]
@@ -287,7 +287,7 @@ def test_a_candidate_makes_missions_fail_sooner_only_if_each_mission_fails_soone
         (False, None, 9.5, False),
     ],
 )
-def test_the_gain_of_a_mission_that_stands_still_until_its_end_does_not_count(
+def test_gain_of_a_standing_mission_does_not_count(
     passed: bool, steps: int | None, total: float, feigned: bool
 ) -> None:
     goal = replace(GOAL, passing=True, steps=100.0)

@@ -56,7 +56,7 @@ def test_uses_of_one_constant_and_opposite_limits_change_together(operands: Any,
     assert [unit.operands for unit in units(operands)] == groups
 
 
-def test_a_constant_is_also_tried_on_its_second_scale_and_a_zero_only_on_its_second_scale() -> None:
+def test_constant_is_also_tried_on_its_second_scale() -> None:
     zero = Unit((use("0.0", 0.0),))
     plain, pair, none = Unit((use("0.5", 0.5, column=9),)), Unit((FIRST, SECOND)), Unit((OTHER,))
     charts = {zero.operands[0]: SHARE, plain.operands[0]: SHARE, FIRST: SHARE}
@@ -137,9 +137,7 @@ def returned(text: str, qualname: str = "Node.gain") -> Unit:
         ("gain(", False),
     ],
 )
-def test_changes_at_the_calls_of_a_function_replace_the_change_of_its_return_value(
-    code: str, called: bool
-) -> None:
+def test_changes_at_the_calls_replace_a_changed_return_value(code: str, called: bool) -> None:
     call = Unit((use(code, None),))
     among = [call, Unit(call.operands, SHARE)]
     assert calls_of(returned("return self.kp"), among) == ([call] if called else [])

@@ -73,7 +73,7 @@ def test_at_most_a_fixed_number_of_constants_is_tried() -> None:
     assert trials.spent == 1 + 2 * MOST
 
 
-def test_a_good_value_between_a_too_small_and_a_too_large_value_is_found() -> None:
+def test_good_value_between_two_extremes_is_found() -> None:
     def narrow(candidate: Candidate, seed: int) -> Outcome:
         factors = {one.operand.code: float(one.value) for one in candidate.mutations}
         turns = factors.get("TURNS", 1.0)

@@ -47,13 +47,13 @@ def test_all_uses_are_changed_together_before_a_single_use_is_changed() -> None:
     assert trials.labels[0] == label(found)
 
 
-def test_a_single_use_is_changed_if_the_effects_of_all_uses_cancel_out() -> None:
+def test_single_use_changes_if_the_uses_cancel_out() -> None:
     _, found, _ = searched({SECOND}, {FIRST})
     assert found is not None
     assert [one.operand for one in found.mutations] == [SECOND]
 
 
-def test_uses_are_tried_alone_immediately_if_all_uses_together_suffice_in_some_missions_only() -> None:
+def test_uses_are_tried_alone_after_a_partial_success() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         by = {one.operand: factor(one) or 1.0 for one in candidate.mutations}
         right = 2.0 < by.get(SECOND, 1.0) < 2.4 and (seed % 2 == 0 or FIRST not in by)
@@ -67,7 +67,7 @@ def test_uses_are_tried_alone_immediately_if_all_uses_together_suffice_in_some_m
     assert trials.labels.index(label(found)) < others[0]
 
 
-def test_a_use_without_an_effect_gets_no_credit_for_the_gain_of_another_use() -> None:
+def test_ineffective_use_gets_no_credit() -> None:
     sweep, found, _ = searched({SECOND}, set())
     assert found is not None
     effects = sweep.effects()
@@ -75,19 +75,19 @@ def test_a_use_without_an_effect_gets_no_credit_for_the_gain_of_another_use() ->
     assert effects[str(FIRST.site)][0].effect == 0.0
 
 
-def test_each_use_is_credited_with_the_gain_of_all_uses_if_none_suffices_alone() -> None:
+def test_each_use_gets_the_credit_of_all_uses() -> None:
     whole, first, second = Unit((FIRST, SECOND)), Unit((FIRST,)), Unit((SECOND,))
     found = best_effects([(whole, {2.2: 9.0}), (first, {2.2: 1.0}), (second, {2.2: 2.0})], mutations)
     assert {each.effect for effects in found.values() for each in effects} == {9.0}
 
 
-def test_a_use_with_a_small_gain_is_not_credited_with_the_possible_gain_of_an_untried_use() -> None:
+def test_use_with_a_small_gain_gets_no_further_credit() -> None:
     whole, first = Unit((FIRST, SECOND)), Unit((FIRST,))
     found = best_effects([(whole, {2.2: 9.0}), (first, {2.2: 1.0})], mutations)
     assert (found[str(FIRST.site)][0].effect, found[str(SECOND.site)][0].effect) == (1.0, 9.0)
 
 
-def test_uses_outside_the_search_change_with_the_other_uses_and_constants_on_a_scale_stay_separate() -> None:
+def test_uses_outside_the_search_change_together() -> None:
     plain = [*units([FIRST, *OTHERS, SECOND]), Unit((SECOND,), SHARE)]
     united, parts = uses_apart(plain, units([OUTSIDE, constant(30, "ELSEWHERE", 1.0)]))
     whole = Unit((FIRST, SECOND, OUTSIDE))

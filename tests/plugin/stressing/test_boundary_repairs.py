@@ -79,7 +79,7 @@ def test_a_boundary_repair_sets_the_drift_of_episodes_without_a_point() -> None:
     assert simulated.plans[0].overlay == {Path("a.py"): "1", Path("b.py"): "3"}
 
 
-def test_the_ranges_to_repair_begin_at_the_failure_and_options_keep_their_failing_value() -> None:
+def test_repair_ranges_begin_at_the_failure() -> None:
     space = space_of(
         mud=Drift.range(0.0, 1.0, nominal=1.0),
         slope=Drift.range(-0.5, 0.5, nominal=0.0),
@@ -104,14 +104,14 @@ def test_the_ranges_to_repair_begin_at_the_failure_and_options_keep_their_failin
         assert drawn["camera"] == 1.0
 
 
-def test_the_ray_through_a_combination_ends_where_the_first_of_its_ranges_ends() -> None:
+def test_combined_ray_ends_where_its_first_range_ends() -> None:
     space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(-1.0, 3.0, nominal=1.0))
     ray = outwards(space, failure(space, {"a": 0.5, "b": 0.5}))
     assert ray.farthest == {"a": 1.0, "b": 0.0}
     assert ray.point(0.5) == {"a": 0.5, "b": 0.5}
 
 
-def test_the_two_nearest_failures_of_one_direction_and_the_nearest_combination_are_repaired() -> None:
+def test_nearest_failures_and_combinations_are_repaired() -> None:
     space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "abc"})
     points = [{"a": 0.1}, {"a": 0.2, "b": 0.2}, {"b": 0.4}, {"c": 0.5}, {"a": 0.5, "c": 0.5}]
     failures = [failure(space, {**space.nominal, **one}) for one in points]
@@ -198,7 +198,7 @@ def test_a_repair_that_loses_reward_elsewhere_is_withheld() -> None:
 @pytest.mark.parametrize(
     ("stopped", "kept", "told"), [(True, True, "interrupted before"), (False, False, "withheld")]
 )
-def test_a_patch_is_kept_after_ctrl_c_and_removed_if_it_loses_reward(
+def test_patch_is_kept_after_ctrl_c(
     stopped: bool, kept: bool, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "a.patch").write_text("patch")

@@ -43,7 +43,7 @@ def searched(seed: int) -> tuple[Evaluator, Nearest]:
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 3])
-def test_a_chain_leads_from_far_beyond_the_boundary_to_a_vetted_drift_near_it(seed: int) -> None:
+def test_chain_leads_from_far_drifts_to_the_boundary(seed: int) -> None:
     evaluator, nearest = searched(seed)
     found = chains.chain(nearest, chains.FIRST, inf)
     assert len(found) == 1 + len(chains.FIRST.steps)
@@ -74,7 +74,7 @@ def test_clearly_failing_drifts_are_tested_if_the_model_was_wrong_nearby() -> No
     assert chains.clear(nearest) == []
 
 
-def test_a_chain_ends_at_the_first_drift_that_is_not_confirmed_and_keeps_the_drifts_before_it() -> None:
+def test_chain_ends_at_the_first_unconfirmed_drift() -> None:
     evaluator = evaluator_of(sloping, SQUARE)
     together = Together(0.02, [])
     far, middle, holding, nearer = ({"a": a, "b": 0.5} for a in (0.6, 0.4, 0.2, 0.1))
@@ -87,7 +87,7 @@ def test_a_chain_ends_at_the_first_drift_that_is_not_confirmed_and_keeps_the_dri
     assert not together.confirm([holding], evaluator)
 
 
-def test_each_chain_has_seeds_of_its_own_that_the_model_learns_from_afterwards() -> None:
+def test_each_chain_has_its_own_seeds() -> None:
     evaluator = evaluator_of(independent, SQUARE)
     together = Together(0.02, [])
     one, other = {"a": 0.8, "b": 0.5}, {"a": 0.5, "b": 0.8}
@@ -114,7 +114,7 @@ def test_each_chain_has_seeds_of_its_own_that_the_model_learns_from_afterwards()
     assert not set(plans[0]) & set(plans[1])
 
 
-def test_a_chain_whose_first_test_exceeds_the_budget_yields_no_episodes_for_the_model() -> None:
+def test_chain_beyond_the_budget_yields_no_episodes() -> None:
     evaluator = evaluator_of(sloping, SQUARE, budget=NEAREST[0] + 3)  # enough for the drift, not for nominal
     point = {"a": 0.8, "b": 0.5}
     together = Together(0.02, [])
@@ -124,7 +124,7 @@ def test_a_chain_whose_first_test_exceeds_the_budget_yields_no_episodes_for_the_
     assert not evaluator.knows(point)
 
 
-def test_the_risks_of_all_chains_and_of_all_checks_of_a_test_add_up_to_the_whole_risk() -> None:
+def test_chain_risks_add_up_to_the_whole_risk() -> None:
     assert RECORDED + sum(_share(number) for number in range(60)) == pytest.approx(1.0)
     assert _share(len(SHARES)) > _share(len(SHARES) + 1) > 0.0
     assert sum(SPENT) == pytest.approx(1.0)

@@ -77,7 +77,7 @@ def blocks(number: int) -> list[int]:
     return list(range(BLOCK * number))
 
 
-def test_a_drift_that_always_fails_is_confirmed_after_the_first_block_that_shows_it() -> None:
+def test_certain_failure_is_confirmed_in_the_first_block() -> None:
     needed = -(-LEAST[0] // BLOCK)
     shown, (ran,), (count,), tests = confirmed(lambda _: True)
     assert (shown, ran) == ([True], blocks(needed))
@@ -85,7 +85,7 @@ def test_a_drift_that_always_fails_is_confirmed_after_the_first_block_that_shows
     assert tests.ran == tests.failed == {*ran}
 
 
-def test_the_test_of_a_drift_that_never_fails_ends_once_a_failure_can_no_longer_be_shown() -> None:
+def test_hopeless_test_ends_early() -> None:
     shown, (ran,), (count,), tests = confirmed(lambda _: False)
     assert shown == [False]
     assert 0 < len(ran) < LOOKS[-1]
@@ -105,7 +105,7 @@ def test_failures_after_an_interim_check_do_not_count_in_that_check() -> None:
     assert ran == blocks(-(-LEAST[0] // BLOCK))
 
 
-def test_the_next_drift_first_runs_seeds_that_failed_then_new_seeds_then_seeds_that_passed() -> None:
+def test_failed_seeds_run_first_on_the_next_drift() -> None:
     shown, ran, _, tests = confirmed(even, lambda _: False)
     assert shown == [True, False]
     failed, passed = ([row for row in ran[0] if row % 2 == at] for at in (0, 1))
@@ -114,7 +114,7 @@ def test_the_next_drift_first_runs_seeds_that_failed_then_new_seeds_then_seeds_t
     assert (tests.ran, tests.failed) == ({*ran[0]}, {*failed})  # those of the last confirmed drift
 
 
-def test_a_drift_that_fails_on_the_same_seeds_is_confirmed_by_these_seeds_alone() -> None:
+def test_drift_that_fails_on_the_same_seeds_is_confirmed() -> None:
     shown, ran, counts, tests = confirmed(even, even, even)
     assert shown == [True] * 3
     failed = [row for row in ran[0] if even(row)]
@@ -196,7 +196,7 @@ def lengths(points: Sequence[Any]) -> list[float]:
     return [hypot(one["a"], one["b"]) for one in points]
 
 
-def test_a_chain_is_refined_before_and_after_its_near_end_if_the_same_seeds_fail() -> None:
+def test_chain_is_refined_if_the_same_seeds_fail() -> None:
     found = finer(model_of((), (), luck=0.1), DRIFTS, "rate")  # distances of 1, 0.75 and 0.5
     assert lengths(found) == pytest.approx(
         [1.0, 0.75, *(0.5 * one for one in OUTWARD), 0.5, *(0.5 * one for one in INWARD)]
@@ -204,7 +204,7 @@ def test_a_chain_is_refined_before_and_after_its_near_end_if_the_same_seeds_fail
     assert all(one["b"] == pytest.approx(0.75 * one["a"]) for one in found)
 
 
-def test_further_drifts_lie_in_the_space_and_nearer_than_the_drift_before_the_near_end() -> None:
+def test_further_drifts_lie_nearer_than_the_last() -> None:
     close: list[Any] = [{"a": 0.432, "b": 0.324}, {"a": 0.4, "b": 0.3}]  # 1.08 times as far
     alike = model_of((), (), luck=0.1)
     assert lengths(finer(alike, close, "rate"))[:3] == pytest.approx([0.54, 0.52, 0.5])
@@ -218,7 +218,7 @@ def test_a_chain_is_only_refined_towards_nominal_if_other_seeds_fail() -> None:
 
 
 @pytest.mark.parametrize("part", ["loss", "both"])
-def test_a_chain_about_losses_continues_towards_nominal_and_has_a_drift_just_before_its_near_end(
+def test_loss_chain_continues_towards_nominal(
     part: Part,
 ) -> None:
     found = finer(model_of((), (), luck=0.1), DRIFTS, part)
@@ -271,7 +271,7 @@ def test_small_steps_lead_from_a_confirmed_drift_in_the_likeliest_direction(
     )
 
 
-def test_no_small_steps_lead_from_a_drift_that_the_model_does_not_cover() -> None:
+def test_drift_outside_the_model_gets_no_small_steps() -> None:
     nearest = model_of((), ())
     nearest.best = DRIFTS[0]
     assert closer(nearest, {"a": 0.6, "b": 0.8, "option": 1.0}) == []
@@ -279,7 +279,7 @@ def test_no_small_steps_lead_from_a_drift_that_the_model_does_not_cover() -> Non
     assert closer(nearest, DRIFTS[0]) == []
 
 
-def test_a_drift_is_likely_to_be_confirmed_if_the_probability_is_at_least_one_half() -> None:
+def test_likely_drift_has_a_probability_of_one_half() -> None:
     nearest = model_of((), ())
     for chance, answer in ((POSSIBLE, True), (POSSIBLE - 0.01, False)):
         failing = SimpleNamespace(failing=lambda vectors, chance=chance: np.full(len(vectors), chance))

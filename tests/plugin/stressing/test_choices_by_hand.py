@@ -109,7 +109,7 @@ def test_predictions_allow_for_errors_of_different_sizes_and_each_prediction_is_
         (drift(0.6, 0.8), 1.0, GAIN, 3),
     ],
 )
-def test_if_no_failure_is_predicted_the_most_promising_drift_is_tried_if_it_gains_enough(
+def test_most_promising_drift_is_tried_without_predictions(
     best: Point | None, limit: float, gain: float, tried: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     model = Model([None, None, None], (np.array([0.2, 0.1]), gain))
@@ -152,7 +152,7 @@ def test_exploration_and_prediction_alternate(monkeypatch: pytest.MonkeyPatch) -
     assert trail == ["predict", "descend"] * nearest.ROUNDS
 
 
-def test_at_its_end_a_search_evolves_the_best_drift_and_then_shrinks_it(
+def test_search_evolves_and_then_shrinks_the_best_drift(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     trail: list[Any] = []
@@ -213,7 +213,7 @@ def test_a_probe_runs_more_episodes_only_while_they_fail(monkeypatch: pytest.Mon
         assert search.tried == [drift(0.5)]
 
 
-def test_the_failure_rate_that_fresh_episodes_can_show_is_above_the_rate_that_refutes_the_guarantee() -> None:
+def test_detectable_failure_rate_exceeds_the_refuting_rate() -> None:
     evaluator = evaluator_of(lambda *_: (True, 10.0), SQUARE)
     search = Nearest(evaluator, [], risk=0.02)
     most = most_passed(evaluator.guarantee, NEAREST[-1], 0.02 * SPENT[-1])
@@ -224,7 +224,7 @@ def test_the_failure_rate_that_fresh_episodes_can_show_is_above_the_rate_that_re
     assert hopeless_._share == 0.99
 
 
-def test_on_a_shorter_ray_a_bisection_also_stops_at_a_fiftieth_of_the_declared_range() -> None:
+def test_bisection_stops_at_a_fiftieth_of_the_range() -> None:
     space = space_of(b=Drift.range(-1.0, 1.0, nominal=0.0))
     evaluator = evaluator_of(lambda point, _: (point["b"] < 0.6, 10.0), space)
     one = Curve(
@@ -237,7 +237,7 @@ def test_on_a_shorter_ray_a_bisection_also_stops_at_a_fiftieth_of_the_declared_r
 # random drifts
 
 
-def test_spread_vectors_have_lengths_between_the_limits_and_signs_that_the_space_allows() -> None:
+def test_spread_vectors_respect_lengths_and_signs() -> None:
     coordinates = Coordinates(SPACE, SPACE.nominal)
     found = [
         vector for vector, _ in zip(spread(coordinates, np.random.default_rng(3)), range(200), strict=False)
@@ -388,7 +388,7 @@ def test_enough_passes_and_a_small_loss_show_the_guarantee_at_a_risk() -> None:
     )  # 16 episodes bound a range of 20 badly
 
 
-def test_a_nominal_world_that_fails_or_earns_less_differs_from_the_recorded_world() -> None:
+def test_failing_nominal_world_differs_from_the_recording() -> None:
     assert not unlike_recorded(GIVEN, outcomes(*[10.0] * 16), 0.01)
     assert unlike_recorded(GIVEN, outcomes(*[10.0] * 16, failed=8), 0.01)
     assert unlike_recorded(GIVEN, outcomes(*[5.0] * 16), 0.01)
@@ -398,7 +398,7 @@ def test_a_nominal_world_that_fails_or_earns_less_differs_from_the_recorded_worl
 # how far the guarantee holds
 
 
-def test_the_farther_value_is_tested_first_and_the_nearer_value_with_the_remaining_risk(
+def test_farther_value_is_tested_first(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     asked: list[Any] = []
@@ -438,7 +438,7 @@ def test_one_failed_episode_is_allowed_in_a_longer_second_test(
     assert sizes == [first, second][:spent]
 
 
-def test_nothing_is_shown_if_the_loss_may_be_too_large_or_the_budget_is_spent() -> None:
+def test_nothing_is_shown_if_the_budget_is_spent() -> None:
     def evaluator(total: float, affordable: bool = True) -> Any:
         return SimpleNamespace(
             guarantee=GIVEN,
@@ -455,7 +455,7 @@ def test_nothing_is_shown_if_the_loss_may_be_too_large_or_the_budget_is_spent() 
 # rays, files and sentences
 
 
-def test_a_ray_through_a_failure_ends_where_the_first_of_its_directions_ends() -> None:
+def test_ray_through_a_failure_ends_with_its_first_direction() -> None:
     found = outwards(SPACE, failure(SPACE, {**SPACE.nominal, "mud": 3.0, "slope": 0.5, "camera": 1.0}))
     assert found.farthest == {"mud": 2.0, "slope": 1.0, "camera": 1.0}
     assert found.names == ("mud", "slope", "camera")
@@ -483,7 +483,7 @@ def test_only_drifts_of_the_space_are_read_back(value: Any, kept: bool) -> None:
     assert (_as_point(data, SPACE) is not None) is kept
 
 
-def test_a_file_of_margins_is_refused_if_the_end_of_a_range_is_nominal_or_not_finite() -> None:
+def test_margin_file_with_a_nominal_end_is_refused() -> None:
     text = (
         '{"format": 1, "test": "t", "drift": "d", "guarantee": {"success": 0.9, "loss": 1}, "confidence": 0.9, '
         '"directions": [{"name": "a", "nominal": 0, "end": %s, "holds_to": null, "fails_at": 0.5}]}'
@@ -513,7 +513,7 @@ def test_the_report_has_one_label_for_each_block_and_indented_sentences() -> Non
     assert ended[2].startswith("  nominal    The guarantee already fails at the nominal values")
 
 
-def test_both_sides_of_a_range_are_printed_together_and_options_one_by_one() -> None:
+def test_both_sides_of_a_range_are_printed_together() -> None:
     found = dict(directions(stress(curve(FLAT, GOOD), curve(STEEP, {1.0: 1.0}), curve(DOWN, swept=False))))
     assert list(found) == ["slope", "camera"]
     assert len(found["slope"]) == 2
@@ -544,7 +544,7 @@ def test_statements_are_searched_unless_the_run_was_interrupted_or_records_none(
     assert _executed(SimpleNamespace(source=None), evaluator, together, "budget") == (None, "budget")  # type: ignore[arg-type]
 
 
-def test_a_search_along_one_ray_has_at_most_the_risk_of_a_far_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_ray_has_at_most_the_risk_of_a_far_end(monkeypatch: pytest.MonkeyPatch) -> None:
     from pytest_tarl.stressing import search
 
     asked: list[Any] = []

@@ -70,7 +70,7 @@ def test_a_quick_look_first_runs_two_episodes_and_their_nominal_counterparts() -
     assert found.margin == pytest.approx(0.6)
 
 
-def test_a_quick_look_in_a_later_turn_needs_all_nominal_episodes_up_to_its_seeds() -> None:
+def test_later_look_needs_the_nominal_episodes_of_its_seeds() -> None:
     made, ran = evaluator(constant(9.8))
     made.glance(UP, 2)
     assert [plan.seed for plan in ran.plans] == seeds(SEARCH, 6) + seeds(SEARCH, 6)[4:]
@@ -182,7 +182,7 @@ def test_the_budget_covers_its_last_episode_and_no_further_episode() -> None:
     assert made.spent == 4
 
 
-def test_a_phase_limit_is_a_share_of_the_whole_budget_and_reaching_it_is_not_an_error() -> None:
+def test_phase_limit_is_a_share_of_the_budget() -> None:
     made, _ = evaluator(constant(9.5), budget=20)
     with made.limited(0.5):
         assert made.budget == 10
@@ -291,9 +291,7 @@ def test_the_model_learns_from_fresh_episodes_once_their_pool_is_released() -> N
     assert made.knows(UP)
 
 
-def test_an_unpaired_test_runs_no_nominal_episodes_and_the_model_learns_losses_from_the_recorded_mean() -> (
-    None
-):
+def test_unpaired_test_runs_no_nominal_episodes() -> None:
     made, ran = evaluator(constant(9.25))
     assert made.confirm(UP, "chain 0", 0.01, (16, 32), part="loss", least=10.0)
     assert [plan.point for plan in ran.plans] == [UP] * 16
@@ -356,13 +354,13 @@ def test_a_recalled_episode_failed_if_it_lost_more_than_the_tolerance(
     assert (plan.seed, plan.point, plan.drift) == (seeds(SEARCH, 1)[0], UP, "world")
 
 
-def test_an_episode_without_a_nominal_counterpart_failed_only_if_it_did_not_pass() -> None:
+def test_episode_without_a_nominal_one_fails_by_not_passing() -> None:
     made, _ = evaluator(constant(-99.0))
     made.fresh(UP, 2)
     assert [one for _, one in made.recalled(RAYS, UP)] == [False, False]
 
 
-def test_a_test_that_raises_is_reported_with_its_values_and_a_test_that_hangs_fails() -> None:
+def test_raising_test_is_reported_and_hanging_test_fails() -> None:
     def run(**given: Any) -> Any:
         plan = SimpleNamespace(point={"a": 0.5, "b": -1.0}, seed=7)
         trace = SimpleNamespace(reward=np.array([1.5, 2.0]))

@@ -33,7 +33,7 @@ def counts(count: int) -> Counts:
     return Counts(vectors, failed, episodes, USUAL, np.diag(1.0 / episodes))
 
 
-def test_a_direction_without_influence_is_scaled_down_until_there_are_many_more_drifts(
+def test_direction_without_influence_is_scaled_down(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     first = fit(30)
@@ -48,7 +48,7 @@ def test_a_direction_without_influence_is_scaled_down_until_there_are_many_more_
         fit(29, first)  # a model of fewer drifts than before
 
 
-def test_a_fit_that_reuses_hyperparameters_equals_a_new_fit_with_the_same_hyperparameters() -> None:
+def test_fit_with_old_hyperparameters_equals_a_new_fit() -> None:
     first = rate_fit(counts(50), None, {})
     more = counts(54)
     known = dict(zip(map(tuple, drifts(50).tolist()), first.field.logits.tolist(), strict=True))

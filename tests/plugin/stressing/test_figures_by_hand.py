@@ -53,7 +53,7 @@ UNIT = ((tornado_figure.WIDTH - tornado_figure.LABEL) / 2 - tornado_figure.END) 
 MIDDLE = tornado_figure.LABEL + (tornado_figure.WIDTH - tornado_figure.LABEL) / 2
 
 
-def test_the_length_of_a_bar_is_the_margin_that_is_lost_towards_its_end() -> None:
+def test_bar_length_is_the_lost_margin() -> None:
     drawn = tornado(stress(*LOST))
     bars = [(float(one["x"]), float(one["width"]), float(one["y"])) for one in elements(drawn, "rect")]
     step = tornado_figure.BAR + tornado_figure.GAP
@@ -112,7 +112,7 @@ class Model:
         return 10 * vectors[:, 0] + vectors[:, 1], vectors[:, 1]
 
 
-def test_a_map_has_the_middles_of_its_cells_by_rows_of_the_second_direction(
+def test_map_has_cell_middles_by_rows(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(mapping, "CELLS", 2)
@@ -252,7 +252,7 @@ def test_the_line_of_a_direction_passes_nominal_with_the_designed_margin() -> No
     assert [one["text"] for one in elements(drawn, "text")][:3] == ["-1", "0", "1"]
 
 
-def test_the_standard_deviation_of_a_margin_with_failures_is_half_of_its_interval() -> None:
+def test_standard_deviation_of_a_margin_is_half_its_interval() -> None:
     one = replace(GIVEN, rate=0.5, share=1.0)
     outcomes = [Outcome(True, 10.0)] * 15 + [Outcome(False, 10.0)]
     margin, deviation = margin_of(one, outcomes, [Outcome(True, 10.0)] * 16)

@@ -105,9 +105,7 @@ def test_intervals_contain_the_boundary_and_are_narrow(
 
 @pytest.mark.parametrize("share", [0.6, 0.9, 0.95, 0.98])
 @pytest.mark.parametrize("risk", [0.08, 0.01])
-def test_all_tests_of_one_drift_size_together_have_at_most_the_stated_risk_of_an_error(
-    share: float, risk: float
-) -> None:
+def test_tests_of_one_drift_size_share_the_risk(share: float, risk: float) -> None:
     total = 0.0
     for allowed, part in enumerate(SHARES):
         episodes = least(share, allowed, part * risk)
@@ -130,7 +128,7 @@ def test_values_at_which_the_guarantee_fails_are_rarely_declared_to_hold() -> No
     assert shown <= 4  # exceeded with probability 0.003 if each is shown at 5 %
 
 
-def test_if_the_budget_ends_before_the_near_end_of_a_boundary_is_found_only_the_far_end_is_printed() -> None:
+def test_early_end_prints_only_the_far_end() -> None:
     found = stressed(own_limits(0.4, 0.005), SPACE, budget=130)
     (size,) = (sentences for name, sentences in words.directions(found) if name == "size")
     assert "(boundary not beyond 0.4" in size[0]
@@ -138,7 +136,7 @@ def test_if_the_budget_ends_before_the_near_end_of_a_boundary_is_found_only_the_
     assert (boundary["held_up_to"], boundary["confidence"]) == (None, CONFIDENCE)
 
 
-def test_a_direction_with_a_suspected_failure_is_shown_to_hold_up_to_the_failure() -> None:
+def test_suspected_direction_holds_up_to_the_failure() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(draws.random() > 0.07 * (point["size"] > 0.8)), 1.0  # too rare to be confirmed
 

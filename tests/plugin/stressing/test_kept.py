@@ -87,7 +87,7 @@ def test_entries_of_kept_failures_with_unexpected_contents_are_ignored(
     assert stored(content, tmp_path).read(SPACE) == []
 
 
-def test_a_file_in_place_of_the_database_counts_as_no_failures_and_is_kept(tmp_path: Path) -> None:
+def test_file_in_place_of_the_database_is_kept(tmp_path: Path) -> None:
     (tmp_path / "failing").write_text("mine")
     memory = kept.Kept(tmp_path / "failing", KEY)
     assert memory.read(SPACE) == []

@@ -95,7 +95,7 @@ def test_any_value_in_a_file_is_read_or_refused_with_one_sentence(key: tuple[Any
     assert message == "" or message.startswith("a.json: not a file of margins")
 
 
-def test_margins_contain_the_values_where_the_guarantee_was_shown_to_hold_or_fail() -> None:
+def test_margins_contain_the_shown_values() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return point["mud"] > 0.4 and point["camera"] != 1.0, float(draws.normal(1.0, 0.01))
 

@@ -116,7 +116,7 @@ def model(samples: list[tuple[float, float]], failed: int = 0) -> prediction.Pre
     return prediction.Prediction(coordinates, GIVEN, tried, prediction.Shown(0.1, 0.5), 0.01, 0.005)
 
 
-def test_a_model_predicts_the_measured_losses_at_tried_drifts_and_smaller_losses_nearer_to_nominal() -> None:
+def test_model_predicts_measured_losses() -> None:
     found = model([(0.2, 0.4), (0.4, 0.8), (0.8, 1.6)])
     margins = found.margins(np.array([[0.0, 0.0], [-0.2, 0.0], [-0.4, 0.0], [-0.8, 0.0], [-0.6, 0.0]]))
     assert margins == pytest.approx([1.0, 0.6, 0.2, -0.6, -0.2], abs=0.03)

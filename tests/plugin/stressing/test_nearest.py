@@ -80,7 +80,7 @@ def test_the_prediction_finds_the_nearest_failure_where_losses_add_up() -> None:
     assert np.linalg.norm(deeper) > 1.05 * np.linalg.norm(shortest)
 
 
-def test_the_prediction_finds_the_nearest_failure_even_if_rewards_do_not_indicate_it() -> None:
+def test_prediction_finds_the_nearest_failure_without_rewards() -> None:
     space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
     evaluator = evaluator_of(lambda point, _: (point["a"] + point["b"] < 0.8, 1.0), space)
     coordinates = Coordinates(space, space.nominal)
@@ -97,7 +97,7 @@ def test_the_prediction_finds_the_nearest_failure_even_if_rewards_do_not_indicat
     assert (model.margins(np.array([[0.1, 0.1], [0.9, 0.9]])) < 0.0).tolist() == [False, True]
 
 
-def test_generated_drifts_are_the_same_for_a_seed_and_lie_in_the_space() -> None:
+def test_generated_drifts_are_repeatable_and_in_the_space() -> None:
     def drawn(seed: int) -> list[Point]:
         found: list[Point] = []
 
@@ -176,7 +176,7 @@ def test_spread_drifts_fill_all_directions_within_the_unit_ball() -> None:
     assert np.diff(angles, prepend=-np.pi / 2, append=np.pi / 2).max() < 0.3
 
 
-def test_a_narrow_failing_region_near_nominal_is_found_although_there_is_a_wide_one() -> None:
+def test_narrow_failing_region_near_nominal_is_found() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         x = np.array(list(point.values()))
         wide = 1.2 * float(np.linalg.norm(x - [0.9, 0.9, 0.0]) < 0.5)

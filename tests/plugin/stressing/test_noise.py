@@ -76,7 +76,7 @@ def test_the_nominal_episode_adds_at_most_the_noise_of_the_recording() -> None:
     assert nominal_variance(replace(given, tolerance=0.0), 4.0) == 2.0
 
 
-def test_the_map_and_the_nearest_failure_are_right_if_losses_are_large_and_noisy() -> None:
+def test_map_and_nearest_failure_survive_noise() -> None:
     found = stressed(steep, SPACE, budget=600)
     assert found.margin_map is not None
     holding = [
@@ -93,7 +93,7 @@ def test_the_map_and_the_nearest_failure_are_right_if_losses_are_large_and_noisy
     assert 0.025 <= min(failure(SPACE, one.point).distance for one in found.failures) < 0.08
 
 
-def test_nominal_episodes_are_saved_only_if_they_hardly_make_a_test_more_precise() -> None:
+def test_nominal_episodes_are_saved_if_they_add_no_precision() -> None:
     given = Guarantee(0.9, 1.0, (9.9, 10.1) * 50, 1.0)
     noisy = [cut_off([0.4, 1.6, 1.0])] * 30
     quiet = [cut_off([0.9, 1.1, 1.0])] * 30

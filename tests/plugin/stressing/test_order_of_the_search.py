@@ -82,14 +82,14 @@ def explored(space: Any = CUBE, **given: Any) -> str:
 ORDER = ["made", ("nominal", 0.01), "begin", ("rays", 0.01), ["mud"], "end", ["slope"], "draw"]
 
 
-def test_a_search_in_several_directions_runs_before_and_after_the_search_along_the_rays(
+def test_search_in_several_directions_surrounds_the_rays(
     trail: list[Any],
 ) -> None:
     assert explored() == ""
     assert trail == ORDER
 
 
-def test_a_search_in_one_direction_or_without_combinations_searches_only_along_the_rays(
+def test_search_in_one_direction_follows_only_the_rays(
     trail: list[Any],
 ) -> None:
     alone = [("nominal", 0.01), ("rays", 0.01), ["mud"], ["slope"]]
@@ -109,9 +109,7 @@ def test_a_nominal_failure_ends_the_search_at_once(trail: list[Any], monkeypatch
 @pytest.mark.parametrize(
     ("error", "ended"), [(BudgetSpentError(), "budget"), (KeyboardInterrupt(), "interrupted")]
 )
-def test_after_an_early_end_a_note_says_so_and_the_known_results_are_drawn(
-    error: BaseException, ended: str, trail: list[Any]
-) -> None:
+def test_early_end_draws_the_known_results(error: BaseException, ended: str, trail: list[Any]) -> None:
     Several.fail = {"end": error}
     assert explored() == ended
     assert trail == [*ORDER[:6], "draw"]
@@ -145,7 +143,7 @@ def test_there_are_no_variances_after_an_interruption_or_a_nominal_failure(
     assert variances(evaluator, "") == (None, "interrupted")
 
 
-def test_half_of_the_risk_is_for_combinations_and_the_rest_for_the_nominal_drift_and_each_direction() -> None:
+def test_half_of_the_risk_is_for_combinations() -> None:
     found = divided(0.05, 4)
     assert (found.each, found.combinations) == (0.005, 0.025)
     assert divided(0.5, 0).each == pytest.approx(0.1 / 6)
@@ -171,7 +169,7 @@ def test_the_map_shows_the_two_ranges_that_lose_most() -> None:
 # pairs, chains and confirmed combinations
 
 
-def test_pairs_lie_just_inside_the_boundaries_of_ranges_and_skip_options_that_fail() -> None:
+def test_pairs_lie_just_inside_the_boundaries() -> None:
     inside = list(
         _inside(
             [
@@ -205,7 +203,7 @@ def drift(**changes: float) -> Point:
         ([0.9, 0.9], [0.05, 0.04], "both"),
     ],
 )
-def test_a_chain_tests_the_part_of_the_guarantee_that_its_nearest_drift_breaks(
+def test_chain_tests_the_part_of_the_guarantee_that_breaks(
     by_loss: list[float], by_rate: list[float], part: str
 ) -> None:
     chain = [drift(a=1.0, b=1.0), drift(a=0.5, b=0.5)]
@@ -213,7 +211,7 @@ def test_a_chain_tests_the_part_of_the_guarantee_that_its_nearest_drift_breaks(
     assert part_of(model_of([], []), []) == "both"
 
 
-def test_the_clear_failures_at_one_half_three_quarters_and_the_end_of_the_list_are_tested() -> None:
+def test_spaced_clear_failures_are_tested() -> None:
     tried = [drift(a=size, b=size) for size in (0.2, 0.9, 0.5, 0.4, 0.7)]
     tried += [drift(a=0.1), drift(a=0.3, c=0.3)]
     results = {0.3: "holds"}
@@ -262,7 +260,7 @@ class Confirming:
         return seen(-1.0)
 
 
-def test_the_tests_of_a_chain_stop_at_the_first_drift_that_is_not_confirmed() -> None:
+def test_chain_tests_stop_at_the_first_unconfirmed_drift() -> None:
     together, evaluator = Together(0.1, [Curve(ray) for ray in rays(CUBE, {})]), Confirming(0.5)
     chain = [drift(a=size, b=size) for size in (0.9, 0.6, 0.4, 0.2)]
     assert together.confirm(chain, evaluator, "loss")  # type: ignore[arg-type]
@@ -275,7 +273,7 @@ def test_the_tests_of_a_chain_stop_at_the_first_drift_that_is_not_confirmed() ->
     assert together.chains == 1
 
 
-def test_the_nominal_drift_and_drifts_that_contain_a_confirmed_failure_are_not_tested() -> None:
+def test_drifts_beyond_a_confirmed_failure_are_not_tested() -> None:
     together, evaluator = Together(0.1, []), Confirming(0.0)
     together.every = [failure(CUBE, drift(a=0.5, b=0.5))]
     assert not together.confirm([drift(a=0.6, b=0.5), dict(CUBE.nominal)], evaluator)  # type: ignore[arg-type]
@@ -294,7 +292,7 @@ def test_a_failure_in_one_direction_belongs_to_its_curve() -> None:
     assert [one.names for one in together.confirmed] == [("b",)]
 
 
-def test_when_the_budget_ends_the_pool_is_released_and_confirmed_drifts_are_kept() -> None:
+def test_spent_budget_keeps_the_confirmed_drifts() -> None:
     together, evaluator = Together(0.1, []), Confirming(0.0)
     confirm = evaluator.confirm
 
@@ -375,9 +373,7 @@ def made(space: Any, budget: int = 1000) -> Combined:
     return Combined(evaluator, Together(0.1, [Curve(ray) for ray in rays(space, {})]))
 
 
-def test_a_search_begins_with_a_quick_look_at_each_place_of_the_rays(
-    leading: list[Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_search_begins_with_a_look_at_each_ray(leading: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
     plans: list[Any] = []
 
     def confirm(self: Combined, plan: Any) -> bool:
@@ -457,7 +453,7 @@ def test_no_small_steps_follow_if_the_next_chain_confirms_a_drift(
         (False, 0.1, ["new", "closer"]),  # the model no longer expects the interrupted chain to go on
     ],
 )
-def test_an_interrupted_chain_goes_on_if_its_next_drift_is_still_expected_to_fail(
+def test_interrupted_chain_continues_if_a_failure_is_expected(
     expected: bool, near: float, order: list[str], leading: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     happened: list[str] = []
@@ -485,7 +481,7 @@ def test_an_interrupted_chain_goes_on_if_its_next_drift_is_still_expected_to_fai
     assert happened[3:] == order  # after two first chains and one of clear failures
 
 
-def test_a_confirmed_drift_at_a_jump_is_moved_and_then_tested_once_with_a_drift_halfway(
+def test_confirmed_drift_at_a_jump_is_moved_and_tested_once(
     leading: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     far, near = drift(a=0.9, b=0.9), drift(a=0.6, b=0.6)
@@ -539,7 +535,7 @@ def test_chains_follow_further_searches_until_the_budget_is_spent(
     assert plans == [NEXT] * 11  # at most six searches
 
 
-def test_at_its_end_a_search_improves_the_best_drift_then_tests_pairs_and_then_confirms_from_far_to_near(
+def test_final_search_improves_then_combines_then_confirms(
     leading: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     order: list[Any] = []
@@ -555,7 +551,7 @@ def test_at_its_end_a_search_improves_the_best_drift_then_tests_pairs_and_then_c
     assert both.nearest.calls == [("improve", 850)]  # type: ignore[attr-defined]
 
 
-def test_the_map_and_the_expected_failures_are_drawn_only_with_evidence_on_every_ray(
+def test_map_needs_evidence_on_every_ray(
     leading: list[Any],
 ) -> None:
     both = made(CUBE)
@@ -576,7 +572,7 @@ MIXED = space_of(
 )
 
 
-def test_each_option_has_a_search_of_its_own_that_shares_the_tried_drifts(leading: list[Any]) -> None:
+def test_each_option_has_its_own_search(leading: list[Any]) -> None:
     both = made(MIXED)
     assert [one.base["camera"] for one in both.options] == [1.0, 2.0]  # type: ignore[index]
     assert all(one.tried is both.nearest.tried for one in both.options)
@@ -660,7 +656,7 @@ def test_expected_failures_that_hardly_differ_are_listed_once(monkeypatch: pytes
     assert nearest.expected([(0.0, 1.0)]) == []
 
 
-def test_the_limit_of_a_search_is_two_percent_nearer_than_the_best_drift(
+def test_search_limit_is_two_percent_below_the_best_drift(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     nearest = Nearest(evaluator_of(lambda *_: (True, 10.0), CUBE), [])

@@ -69,7 +69,7 @@ def test_the_model_decides_which_part_of_the_guarantee_a_chain_tests(
     assert chains.part_of(nearest, []) == "both"
 
 
-def test_a_chain_of_failures_continues_towards_nominal_in_short_steps_if_the_same_seeds_fail() -> None:
+def test_failure_chain_continues_in_short_steps() -> None:
     alike: Any = Told({}, {}, luck=1.0)
     found = [point["a"] for point in chains.finer(alike, [at(0.8), at(0.5)], "rate")]
     assert found[:5] == [0.8, *(pytest.approx(0.5 * share) for share in chains.OUTWARD), 0.5]
@@ -88,7 +88,7 @@ def test_a_chain_of_failures_continues_towards_nominal_in_short_steps_if_the_sam
     ]
 
 
-def test_failures_that_contain_a_nearer_failure_and_hardly_differ_from_it_are_not_reported() -> None:
+def test_failures_beyond_a_similar_nearer_one_are_omitted() -> None:
     evaluator = evaluator_of(lambda point, _: (point["a"] < 0.9, 1.0), SQUARE)
     every = [failure(SQUARE, point) for point in (at(0.6), at(0.51), at(0.505), at(0.5), at(0.4, 0.31))]
     assert 0.505 < 0.51 < APART * 0.5 < 0.6
@@ -96,7 +96,7 @@ def test_failures_that_contain_a_nearer_failure_and_hardly_differ_from_it_are_no
     assert _apart([], evaluator) == []
 
 
-def test_a_test_of_one_part_of_the_reward_has_the_whole_risk_and_ignores_the_other_part() -> None:
+def test_test_of_one_reward_part_has_the_whole_risk() -> None:
     fine, failed, poor = Outcome(True, 1.0), Outcome(False, 1.0), Outcome(True, -9.0)
     nominal = [fine] * 16
     failing, losing = [failed] * 8 + [fine] * 8, [poor] * 16
@@ -111,7 +111,7 @@ def test_a_test_of_one_part_of_the_reward_has_the_whole_risk_and_ignores_the_oth
     assert most_passed(GIVEN, 64, 0.01, "rate") == most_passed(GIVEN, 64, 0.02)
 
 
-def test_failures_that_all_drifts_have_on_the_same_seeds_are_explained_by_these_seeds() -> None:
+def test_common_failures_are_explained_by_their_seeds() -> None:
     """Of eight drifts with two pairs of seeds in turn, those on the second pair fail, wherever they are."""
     vectors = np.array([[0.1 * number, 0.0] for number in range(1, 9)])
     failed, episodes = np.array([0.0, 2.0] * 4), np.full(8, 2.0)
@@ -128,7 +128,7 @@ def test_failures_that_all_drifts_have_on_the_same_seeds_are_explained_by_these_
     )
 
 
-def test_an_omitted_failure_does_not_hide_farther_failures_after_a_nearer_failure_is_found() -> None:
+def test_omitted_failure_does_not_hide_farther_ones() -> None:
     evaluator = evaluator_of(lambda point, _: (point["a"] < 0.45, 1.0), SQUARE)
     together = Together(0.5, [])
     assert together.confirm([at(0.53, 0.1), at(0.51, 0.1)], evaluator)

@@ -139,7 +139,7 @@ def test_a_vector_beyond_the_ranges_is_clipped_and_rounding_errors_vanish() -> N
     assert NOMINAL.point(np.array([-1e-11, 0.0]))["mud"] < 4.0
 
 
-def test_a_base_knows_the_range_of_each_coordinate_and_the_options_it_changes() -> None:
+def test_base_knows_its_ranges_and_options() -> None:
     assert (NOMINAL.low.tolist(), NOMINAL.high.tolist()) == ([-1.0, -0.5], [0.0, 0.5])
     assert (NOMINAL.options, OTHER.options) == (0, 1)
     assert list(NOMINAL.spans) == ["mud", "slope"]
@@ -166,7 +166,7 @@ def test_a_vector_is_shortened_to_the_limit_that_the_options_leave() -> None:
 # generated drifts
 
 
-def test_the_drawn_bits_give_a_size_from_one_sixteenth_of_the_range_to_the_whole_range() -> None:
+def test_drawn_bits_give_a_size_in_the_range() -> None:
     slope, mud, camera = (SPACE.extents[name] for name in ("slope", "mud", "camera"))
     assert [_number(slope, True, number) for number in (0, 7, 15)] == [1 / 16, 0.5, 1.0]
     assert [_number(slope, False, number) for number in (0, 15)] == [-1 / 16, -1.0]
@@ -185,7 +185,7 @@ def test_a_direction_that_is_not_drawn_is_nominal() -> None:
 # predictions
 
 
-def test_vectors_within_the_limits_are_kept_and_longer_vectors_get_a_random_length() -> None:
+def test_longer_vectors_get_a_random_length() -> None:
     vectors = np.array([[0.3, 0.4], [3.0, 4.0]])
     draws: Any = SimpleNamespace(random=lambda count: np.full(count, 1 / 16))
     assert _within(vectors, 1.0, draws)[0].tolist() == [0.3, 0.4]
@@ -223,13 +223,13 @@ def test_a_boundary_without_a_confirmed_failure_is_unknown() -> None:
     assert curve(MUD, {1.0: 1.0}, confirmed=1.0).boundary is None
 
 
-def test_a_boundary_is_at_the_failing_place_if_the_place_before_has_no_margin() -> None:
+def test_boundary_is_at_the_failure_without_a_margin_before() -> None:
     found = curve(MUD, {0.5: 0.0, 0.75: -1.0}, confirmed=0.75).boundary
     assert found == Boundary(0.5, None, 0.75, True)
     assert curve(DOWN, {1.0: -1.0}, confirmed=1.0).boundary == Boundary(1.0, None, 1.0, True)
 
 
-def test_a_boundary_lies_between_the_values_shown_to_hold_and_the_values_shown_to_fail() -> None:
+def test_boundary_lies_between_holding_and_failing_values() -> None:
     found = curve(MUD, {0.25: 1.0, 0.5: -1.0}, confirmed=0.45, held=0.4)
     assert found.boundary == Boundary(0.4, 0.4, 0.45, True)
     found = curve(MUD, {0.25: 1.0, 0.5: -0.1}, confirmed=0.3, held=0.3)
@@ -247,7 +247,7 @@ def test_undecided_evidence_counts_as_a_failure_if_its_margin_is_negative() -> N
     assert [seen(margin, result).failing for result, margin in results] == [True, False, False, True]
 
 
-def test_a_curve_is_monotone_if_it_does_not_hold_again_after_a_failure() -> None:
+def test_monotone_curve_never_holds_after_a_failure() -> None:
     assert curve(MUD, {0.5: 1.0, 1.0: 1.0}).monotone
     assert curve(MUD, {0.5: -1.0, 1.0: -1.0}).monotone
     assert not curve(MUD, {0.5: -1.0, 1.0: 1.0}).monotone
@@ -294,7 +294,7 @@ def test_failures_that_contain_a_nearer_one_must_be_farther_by_some_percent() ->
     assert _apart([aside, small], evaluator) == [aside, small]
 
 
-def test_a_nearer_drift_lies_between_nominal_and_the_other_drift_in_every_direction() -> None:
+def test_nearer_drift_lies_on_the_nominal_side_everywhere() -> None:
     evaluator: Any = SimpleNamespace(space=SPACE)
     assert contains(evaluator.space, point(slope=0.5, mud=1.0), point(slope=0.5))
     assert contains(evaluator.space, point(slope=-0.5), point(slope=-0.1))
@@ -364,7 +364,7 @@ def test_columns_count_characters_and_not_bytes() -> None:
     assert list(places_in('é = "ü"; b = 2')) == [(1, 1), (1, 10)]
 
 
-def test_a_statement_that_also_ran_in_passing_episodes_is_not_listed_as_a_statement_of_failures() -> None:
+def test_statement_of_passing_episodes_is_not_listed() -> None:
     places = [("a.py", 1, "x"), ("a.py", 2, "y"), ("a.py", 3, "z")]
     found = only_in_failures(places, [{0, 1}, {1, 2}, {0}], [{0}])
     assert found == (Executed("a.py", 2, "y", 2), Executed("a.py", 3, "z", 1))
@@ -403,7 +403,7 @@ def test_episodes_of_failures_alternate_and_are_compared_with_similar_episodes_t
 # sentences
 
 
-def test_the_side_of_nominal_decides_whether_a_limit_is_printed_as_below_or_above() -> None:
+def test_side_of_nominal_decides_below_or_above() -> None:
     assert [_sign(ray) for ray in (MUD, FLAT, STEEP)] == ["≥", "≥", "≤"]
     up = Ray(space_of(a=Drift.range(0.0, 0.5, nominal=0.0)), ("a",), {"a": 0.5})
     assert _sign(up) == "≤"
@@ -414,7 +414,7 @@ def test_a_point_is_printed_with_its_changed_values() -> None:
     assert of_point(SPACE, SPACE.nominal) == ""
 
 
-def test_a_repair_is_printed_with_its_boundaries_draws_and_the_reason_why_it_is_withheld() -> None:
+def test_repair_is_printed_with_its_boundaries_and_reason() -> None:
     moved = (
         Moved("slope to 1", "more robust", "0.5 to 0.6", "beyond 1", 0.5, 0.6, 1.0, None),
         Moved("mud to 0", "no significant change", "beyond 1", "beyond 1", 1.0, None, 1.0, None),
@@ -481,7 +481,7 @@ def test_the_values_of_a_direction_are_a_table() -> None:
     )
 
 
-def test_a_figure_has_the_margin_from_top_to_bottom_and_the_range_from_left_to_right() -> None:
+def test_figure_has_the_margin_vertically() -> None:
     measured = [(0.5, seen(-0.25)), (1.0, seen(-9.0))]
     drawn = page._figure("slope", SPACE.extents["slope"], [], measured)  # type: ignore[arg-type]
     line = re.search(r'points="([^"]*)"', drawn)
@@ -499,7 +499,7 @@ def test_a_figure_has_the_margin_from_top_to_bottom_and_the_range_from_left_to_r
     assert re.findall(r'fill="(#\w{6})">', drawn) == [page.COLOURS["fails"]] * 2
 
 
-def test_a_band_is_at_least_one_pixel_wide_and_begins_at_nominal_if_nothing_was_shown_to_hold() -> None:
+def test_band_begins_at_nominal_and_is_visible() -> None:
     wide = page._band(curve(STEEP, {0.5: -1.0}, confirmed=0.5), lambda value: 100 * value)
     assert 'x="0.0" y="10" width="50.0" height="160"' in wide
     thin = page._band(
@@ -591,7 +591,7 @@ def test_a_run_that_ended_early_keeps_the_failures_that_it_found(tmp_path: Any) 
     assert kept == [found.failures]
 
 
-def test_a_file_that_cannot_be_written_is_reported_and_the_page_is_not_named(tmp_path: Any) -> None:
+def test_unwritable_file_is_reported(tmp_path: Any) -> None:
     (tmp_path / ".tarl").mkdir()
     (tmp_path / ".tarl" / "report").write_text("")
     memory: Any = SimpleNamespace(folder=tmp_path / "kept", write=lambda _: None)
@@ -630,7 +630,7 @@ def test_the_optimistic_failure_rate_is_about_a_standard_error_higher() -> None:
 @pytest.mark.parametrize(
     ("share", "failed", "risk", "expected"), [(0.9, 0, 0.05, 29), (0.95, 0, 0.05, 59), (0.9, 1, 0.05, 46)]
 )
-def test_the_minimum_number_of_episodes_that_show_a_rate_equals_that_of_clopper_and_pearson(
+def test_minimum_number_of_episodes_follows_clopper_and_pearson(
     share: float, failed: int, risk: float, expected: int
 ) -> None:
     assert least(share, failed, risk) == expected

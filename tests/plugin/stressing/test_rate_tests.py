@@ -86,7 +86,7 @@ def test_chains_rarely_confirm_a_drift_with_just_the_guaranteed_rate(alike: floa
     assert wrong <= risk * runs + 3.0 * (risk * (1.0 - risk) * runs) ** 0.5
 
 
-def test_further_drifts_take_few_episodes_if_they_fail_on_the_seeds_that_failed_before() -> None:
+def test_further_drifts_take_few_episodes_on_failed_seeds() -> None:
     def spent(alike: float) -> int:
         every = [Episodes(seed, alike) for seed in range(20)]
         whole = [one for one in every if confirmed(one, (0.6, 0.36, 0.34), 0.05) == [0.6, 0.36, 0.34]]
@@ -96,7 +96,7 @@ def test_further_drifts_take_few_episodes_if_they_fail_on_the_seeds_that_failed_
     assert spent(1.0) < 0.6 * spent(0.0)
 
 
-def test_the_model_learns_a_rate_that_the_order_of_the_seeds_does_not_bias() -> None:
+def test_seed_order_does_not_bias_the_learned_rate() -> None:
     for alike in (0.0, 1.0):
         shares = []
         for seed in range(40):
@@ -106,7 +106,7 @@ def test_the_model_learns_a_rate_that_the_order_of_the_seeds_does_not_bias() -> 
         assert np.mean(shares) == pytest.approx(0.3, abs=0.06)
 
 
-def test_each_interim_check_has_a_risk_and_these_risks_add_up_to_the_whole_risk() -> None:
+def test_interim_checks_share_the_risk() -> None:
     assert sum(SPENT) == pytest.approx(1.0)
     assert len(SPENT) == len(LOOKS)
     assert list(LOOKS) == sorted(LOOKS)

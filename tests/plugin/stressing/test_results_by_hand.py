@@ -59,7 +59,7 @@ from tests.plugin.stressing.test_words_by_hand import (
 )
 
 
-def test_rays_lead_to_each_end_of_a_range_and_to_each_option_except_the_nominal_option() -> None:
+def test_rays_lead_to_range_ends_and_options() -> None:
     found = [(ray.names[0], ray.farthest[ray.names[0]]) for ray in rays(SPACE, {})]
     assert found == [("mud", 0.0), ("slope", -1.0), ("slope", 1.0), ("camera", 1.0), ("camera", 2.0)]
     mud, flat, steep, down, _ = rays(SPACE, {"mud": (3.0, 4.0), "slope": (-1.0, 0.25), "camera": ("down",)})
@@ -71,14 +71,14 @@ def test_rays_lead_to_each_end_of_a_range_and_to_each_option_except_the_nominal_
     assert (mud.value(0.25), mud.length, flat.length, down.length) == (3.0, 1.0, 0.5, 1.0)
 
 
-def test_a_ray_that_combines_two_directions_passes_through_the_sum_of_their_points() -> None:
+def test_combined_ray_passes_through_the_sum_of_points() -> None:
     both = joined([(MUD, 0.5), (STEEP, 0.5)])
     assert both.farthest == {"mud": 2.0, "slope": 0.5, "camera": 0.0}
     assert (both.names, both.length) == (("mud", "slope"), pytest.approx(sqrt(0.25 + 0.0625)))
     assert both.point(0.5) == {"mud": 3.0, "slope": 0.25, "camera": 0.0}
 
 
-def test_regions_beyond_a_failure_reach_to_the_ends_and_a_quarter_of_the_way() -> None:
+def test_regions_beyond_a_failure_reach_the_ends() -> None:
     wide, narrow = regions(SPACE, combined(mud=1.0, slope=-0.5, camera=1.0))
     assert wide.words == "mud from 1 to 0 and slope from -0.5 to -1 and camera='down'"
     assert narrow.words == "mud from 1 to 0.75 and slope from -0.5 to -0.625 and camera='down'"
@@ -128,7 +128,7 @@ def test_vectors_are_clipped_to_the_declared_ranges_and_to_a_maximum_length() ->
         (0.8, 0.0, -1.0),
     ],
 )
-def test_the_margin_is_the_minimum_of_the_margins_of_passes_and_of_reward(
+def test_margin_is_the_smaller_of_pass_and_reward_margins(
     passed: float, loss: float, expected: float
 ) -> None:
     assert GIVEN.margin(passed, loss) == pytest.approx(expected)
@@ -143,7 +143,7 @@ def test_without_a_tolerance_any_loss_makes_the_margin_negative() -> None:
 FINE, FAILED = Outcome(True, 10.0), Outcome(False, 10.0)
 
 
-def test_losses_are_paired_by_seed_and_eight_episodes_are_needed_to_show_that_a_drift_holds() -> None:
+def test_losses_are_paired_by_seed_with_at_least_eight() -> None:
     outcomes = [Outcome(True, 9.9), Outcome(True, 9.7)] * 4
     found = examined(GIVEN, outcomes, [FINE] * 8)
     assert (found.result, found.episodes, found.passed) == ("holds", 8, 8)
@@ -167,7 +167,7 @@ def test_the_standard_error_of_a_margin_equals_the_formula() -> None:
     assert margin_of(replace(GIVEN, tolerance=0.0), [FINE] * 4, [FINE] * 4) == (1.0, 1.0)
 
 
-def test_the_numbers_of_passed_episodes_that_prove_or_refute_the_guarantee_are_computed() -> None:
+def test_numbers_that_prove_or_refute_the_guarantee_are_computed() -> None:
     """At a rate of 0.9, 8 episodes all pass with probability 0.9⁸ = 0.43 and show nothing; 44 passes suffice at 1 %."""
     assert not enough_pass(GIVEN, [FINE] * 43, 0.01)
     assert enough_pass(GIVEN, [FINE] * 44, 0.01)  # 0.9⁴⁴ = 0.0097
@@ -177,7 +177,7 @@ def test_the_numbers_of_passed_episodes_that_prove_or_refute_the_guarantee_are_c
     assert most_passed(GIVEN, 32, 0.01) == 23  # 9 failures or more: 0.0038, 8 or more: 0.012
 
 
-def test_a_test_stops_early_if_the_guarantee_can_hardly_be_refuted_any_more() -> None:
+def test_test_stops_early_if_refutation_is_unlikely() -> None:
     nominal = [Outcome(True, 10.0)] * 16
 
     def ends(failed: int, loss: float) -> bool:
@@ -192,7 +192,7 @@ def test_a_test_stops_early_if_the_guarantee_can_hardly_be_refuted_any_more() ->
     assert not ends(8, 0.0)
 
 
-def test_a_strict_test_also_stops_if_further_losses_of_the_same_size_would_not_refute_the_guarantee() -> None:
+def test_strict_test_stops_if_equal_losses_cannot_refute() -> None:
     """Losses alternate around their mean; they deviate by 0.1, so the mean of 16 has a standard error of 0.026.
 
     If 48 of 64 episodes lose one standard error more, the mean grows by 0.019. The quantiles are Student's.
@@ -223,7 +223,7 @@ def test_the_risks_of_all_claims_add_up_to_alpha_at_most(alpha: float, direction
     assert min(risks.each, risks.combinations) > 0.0
 
 
-def test_a_loss_is_acceptable_only_if_its_upper_bound_is_below_the_tolerance() -> None:
+def test_acceptable_loss_has_an_upper_bound_below_the_tolerance() -> None:
     assert little_lost(GIVEN, [Outcome(True, 9.7), Outcome(True, 9.8)] * 8, [FINE] * 16, 0.05)
     assert not little_lost(GIVEN, [Outcome(True, 9.2), Outcome(True, 9.9)] * 8, [FINE] * 16, 0.05)
     declared = replace(GIVEN, declared=Range(0.0, 100.0))
@@ -246,7 +246,7 @@ def test_a_nominal_world_with_lower_rewards_or_failures_differs_from_the_recordi
         ([Outcome(True, 9.4)] * 4, True, 4, 0.6),
     ],
 )
-def test_a_drift_kept_from_an_earlier_run_counts_only_if_it_fails_again(
+def test_kept_drift_counts_only_if_it_fails_again(
     outcomes: list[Outcome], fails: bool, passed: int, loss: float
 ) -> None:
     found = _judged({"mud": 1.0}, outcomes, GIVEN)
@@ -284,13 +284,13 @@ def test_a_bisection_halves_the_interval_to_a_fiftieth_of_the_range() -> None:
     assert undecided.bracket == (0.5, 0.53125)
 
 
-def test_directions_that_do_not_fail_alone_are_listed_with_the_share_at_which_the_guarantee_holds() -> None:
+def test_directions_that_hold_alone_are_listed() -> None:
     harmless = [curve(MUD, {1.0: 1.0}), curve(LEFT, {1.0: 1.0})]
     failing = [curve(FLAT, GOOD), curve(STEEP, {0.25: -1.0}), curve(DOWN, {1.0: -1.0})]
     assert [*_inside([harmless[0], *failing, harmless[1]])] == [(MUD, 1.0), (FLAT, 0.45), (LEFT, 1.0)]
 
 
-def test_a_drift_contains_another_drift_if_it_is_at_least_as_far_from_nominal_in_every_direction() -> None:
+def test_containing_drift_is_farther_in_every_direction() -> None:
     one = combined(mud=2.0, slope=-0.5).point
     assert contains(SPACE, one, combined(mud=2.0).point)
     assert contains(SPACE, one, one)
@@ -298,7 +298,7 @@ def test_a_drift_contains_another_drift_if_it_is_at_least_as_far_from_nominal_in
     assert not contains(SPACE, one, combined(slope=0.1).point)
 
 
-def test_each_test_of_a_chain_has_its_own_risk_and_the_chain_ends_at_the_first_failed_test() -> None:
+def test_each_chain_test_has_its_own_risk() -> None:
     risks: list[tuple[str, float]] = []
     released: list[str] = []
 
@@ -326,7 +326,7 @@ def test_each_test_of_a_chain_has_its_own_risk_and_the_chain_ends_at_the_first_f
     assert sum(_share(number) for number in range(1000)) <= 1.0
 
 
-def test_the_model_of_a_ray_places_the_boundary_between_holding_and_failing_episodes() -> None:
+def test_ray_model_places_the_boundary_between_episodes() -> None:
     evidence = {
         0.25: Evidence("holds", 1.0, 40, 40, 0.0, 0.01),
         0.5: Evidence("holds", 1.0, 40, 40, 0.1, 0.01),
@@ -388,7 +388,7 @@ def test_the_sample_has_as_many_rows_as_the_budget_allows(size: int, left: int, 
 
 
 @given(st.floats(0, 1))
-def test_a_share_is_converted_to_a_number_of_a_range_or_to_an_option(share: float) -> None:
+def test_share_becomes_a_number_or_an_option(share: float) -> None:
     assert _number(Choice(("a", "b", "c")), share) == min(int(share * 3), 2)
     number = _number(Span(-1.0, 3.0, 0.0), share)
     assert -1.0 <= number <= 3.0

@@ -127,7 +127,7 @@ def test_two_directions_that_fail_only_together_are_found() -> None:
     assert "although no failure was found with each change alone" in "\n".join(words.together(found))
 
 
-def test_the_text_says_that_each_change_alone_holds_only_if_no_such_change_fails_alone() -> None:
+def test_text_claims_single_changes_hold_only_without_counterexample() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool((1.0 - point["mud"]) + abs(point["slope"]) < 0.6), float(draws.normal(1.0, 0.01))
 
@@ -197,7 +197,7 @@ def test_the_same_seed_gives_the_same_bytes_on_any_number_of_workers(
     assert plans[0] == plans[1]
 
 
-def test_the_margin_is_one_in_the_designed_world_and_zero_where_the_guarantee_is_just_met() -> None:
+def test_margin_is_one_as_designed_and_zero_at_the_guarantee() -> None:
     given_ = evaluator_of(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD)).guarantee
     assert given_.margin(1.0, 0.0) == 1.0
     assert given_.margin(1.0, given_.tolerance) == pytest.approx(0.0)
@@ -219,7 +219,7 @@ def test_one_failure_in_few_episodes_does_not_refute_the_guarantee() -> None:
 
 
 @pytest.mark.parametrize("zero", [0.0, 8.0, -10.0, 1000.0])
-def test_the_power_depends_on_the_width_of_a_declared_range_and_not_on_its_place(zero: float) -> None:
+def test_power_depends_on_the_width_of_a_declared_range(zero: float) -> None:
     def found(width: float, loss: float) -> bool:
         declared = Range(zero, zero + width)
         given_ = Guarantee(0.8, 0.5, (zero,) * 50, 1.0, declared)
@@ -269,7 +269,7 @@ def test_a_time_limit_ends_the_search_and_says_how_to_repeat_it(monkeypatch: pyt
 
 
 @pytest.mark.parametrize("budget", [43, 50, 51, 58])
-def test_a_margin_exists_even_if_the_budget_ends_before_the_nominal_episodes_of_a_drift(budget: int) -> None:
+def test_margin_exists_without_nominal_episodes(budget: int) -> None:
     space = space_of(mud=MUD, slope=SLOPE)
     evaluator = evaluator_of(lambda _, draws: noisy(10.0, draws, 0.5), space, budget=budget)
     point = {"mud": 0.5, "slope": 0.1}
@@ -284,7 +284,7 @@ def test_a_margin_exists_even_if_the_budget_ends_before_the_nominal_episodes_of_
 @pytest.mark.parametrize(
     "budget", [16, 40, 90]
 )  # 90 ends between the nominal and the first drifted episode of "down"
-def test_a_budget_that_ends_before_the_first_look_at_an_option_does_not_end_the_search(budget: int) -> None:
+def test_early_spent_budget_does_not_end_the_search(budget: int) -> None:
     space = space_of(mud=MUD, slope=SLOPE, camera=Drift.choice("up", "down"))
     found = stressed(lambda *_: (True, 10.0), space, budget=budget)
     assert found.ended == "budget"

@@ -57,7 +57,7 @@ def test_an_option_that_decides_the_margin_has_all_of_its_variance() -> None:
     assert not any(one.total for one in found.shares)
 
 
-def test_if_every_draw_fails_clearly_the_report_does_not_claim_that_the_directions_have_no_effect() -> None:
+def test_always_failing_draws_say_nothing_about_directions() -> None:
     found = sobol(evaluator_of(lambda point, _: (point["a"] == point["b"] == 0.0, 1.0), SPACE, budget=400))
     assert found is not None
     assert found.hopeless
@@ -96,7 +96,7 @@ def test_all_reports_state_the_variance_shares_unless_the_budget_is_too_small() 
     assert json_result.document(small)["sobol"] is None
 
 
-def test_without_salib_the_search_is_the_same_and_a_message_names_the_missing_package(
+def test_missing_salib_is_named_and_changes_no_result(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     whole = stressed(added, SPACE, budget=600, variance=True, combined=False)

@@ -77,7 +77,7 @@ def test_a_run_prints_and_writes_results_and_replays_failures(spaced: pytest.Pyt
 
 
 @slow
-def test_kept_failures_and_workers_do_not_change_the_result_of_a_search_in_two_directions(
+def test_kept_failures_do_not_change_a_search(
     spaced: pytest.Pytester,
 ) -> None:
     changed(spaced, "test_tank", "import Drift, Sensor", "import Drift, Sensor, faults")
@@ -196,7 +196,7 @@ def test_the_ends_of_a_must_hold_range_are_also_tested() -> None:
     assert curve.ray.value(curve.confirmed) <= 0.2
 
 
-def test_a_clear_failure_is_confirmed_even_if_four_episodes_near_the_boundary_misled_the_search() -> None:
+def test_clear_failure_is_confirmed_despite_misleading_episodes() -> None:
     space = space_of(slope=Drift.range(0.0, 1.0, nominal=0.0))
     evaluator = evaluator_of(lambda point, _: (point["slope"] < 0.5, 1.0), space)
     curve = Curve(rays(space, {})[0])
@@ -226,7 +226,7 @@ def test_invalid_values_of_must_hold_are_refused(value: Any, told: str) -> None:
         must_hold("t", value, DRIFTS)
 
 
-def test_kept_failures_are_read_only_in_their_own_space_and_by_their_own_test(tmp_path: Path) -> None:
+def test_kept_failures_belong_to_their_space_and_test(tmp_path: Path) -> None:
     space = space_of(mud=Drift.range(0.0, 1.0, nominal=1.0), camera=Drift.choice("up", "down"))
     memory = kept.Kept(tmp_path / "failing", "test_a.py::test_a[world]")
     assert memory.read(space) == []

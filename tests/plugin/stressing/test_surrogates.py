@@ -92,7 +92,7 @@ def test_a_fit_that_starts_from_another_fit_reaches_the_same_maximum(seed: int, 
     assert warm.evidence == pytest.approx(cold.evidence, abs=0.1)
 
 
-def test_the_evidence_is_larger_if_the_direction_that_matters_has_the_larger_scale() -> None:
+def test_evidence_grows_with_the_scale_that_matters() -> None:
     vectors = drifts(4, 40)
     losses = vectors[:, 0] ** 2
     errors = 1e-3 * np.eye(40)

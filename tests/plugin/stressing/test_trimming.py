@@ -52,7 +52,7 @@ def test_a_loss_far_above_the_detectable_loss_indicates_a_jump(lost: float, part
     assert broken(AT, evaluator, SHOWN) == part
 
 
-def test_failures_in_tests_of_chains_count_and_an_unknown_drift_is_at_no_jump() -> None:
+def test_failures_in_chain_tests_count() -> None:
     world: World = lambda *_: (True, 10.0)  # noqa: E731
     evaluator = evaluator_of(world, SPACE)
     assert broken(AT, evaluator, SHOWN) is None

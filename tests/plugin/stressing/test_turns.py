@@ -28,7 +28,7 @@ def sloping(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
     return True, 10.0 - 0.8 * point["a"] - 0.6 * point["b"] + float(draws.normal(0.0, 0.05))
 
 
-def test_drifts_start_at_different_seeds_and_are_paired_with_nominal_episodes_of_the_same_seeds() -> None:
+def test_drifts_start_at_different_seeds() -> None:
     evaluator = evaluator_of(lambda _, draws: (True, float(draws.normal(0.0, 5.0))), SQUARE)
     seeds = list(episode_seeds(evaluator.seed, "stress world search", 2 * TURNS))
     for turn in (0, 3, TURNS // GLANCE - 1, TURNS // GLANCE):
@@ -125,9 +125,7 @@ def shared(seeds: int, own: float, common: float, typical: float, loss: float = 
     return shared_error(samples, np.full(60, loss), typical)
 
 
-def test_the_error_of_common_seeds_shrinks_with_the_number_of_seeds_and_not_with_the_number_of_drifts() -> (
-    None
-):
+def test_common_seed_error_shrinks_with_the_number_of_seeds() -> None:
     assert shared(16, 0.0, 0.4, 0.0) == pytest.approx(0.4 / sqrt(16), rel=0.4)
     assert shared(60, 0.0, 0.4, 0.0) == pytest.approx(0.4 / sqrt(60), rel=0.4)
     assert shared(16, 0.3, 0.4, 0.3**2) == pytest.approx(0.4 / sqrt(16), rel=0.4)
@@ -139,7 +137,7 @@ def test_noise_of_each_episode_causes_no_shared_error() -> None:
 
 
 @pytest.mark.parametrize("loss", [0.2, 2.5, 0.0, -1.0])
-def test_small_and_clipped_losses_are_not_used_to_estimate_the_factors_of_seeds(loss: float) -> None:
+def test_clipped_losses_give_no_seed_factors(loss: float) -> None:
     assert shared(16, 0.0, 0.4, 0.0, loss) == 0.0
 
 

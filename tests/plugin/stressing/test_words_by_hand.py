@@ -198,7 +198,7 @@ def test_the_json_result_also_lists_farther_failures_along_a_direction() -> None
     assert document["directions"][0]["boundary"]["failed_at"] == MUD.value(0.5)
 
 
-def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_confirmed_failures() -> None:
+def test_expected_failure_must_be_clearly_nearer() -> None:
     near, nearer = combined(mud=3.0, slope=0.5), combined(mud=3.6, slope=0.25)  # distances 0.35 and 0.16
     told = "The guarantee probably already fails with mud=3.6 and slope=0.25 (distance 0.16); this is not confirmed."
     alone = "although no failure was found with each change alone"
@@ -223,9 +223,7 @@ def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_co
         (curve(DOWN, {1.0: -1.0}), True),
     ],
 )
-def test_each_direction_is_said_to_hold_alone_only_if_no_smaller_failure_was_found(
-    changed: Curve, alone: bool
-) -> None:
+def test_directions_hold_alone_without_a_smaller_failure(changed: Curve, alone: bool) -> None:
     one = combined(mud=1.0, slope=0.5)
     others = [curve(ray, {1.0: 1.0}) for ray in (MUD, FLAT, STEEP, DOWN, LEFT) if ray is not changed.ray]
     (told,) = words.together(stress(*others, changed, combinations=(one,)))
@@ -289,7 +287,7 @@ def test_the_lines_of_a_run_have_one_label_each() -> None:
         (curve(DOWN, confirmed=1.0), {"camera": ("left",)}, False),
     ],
 )
-def test_a_failure_inside_a_must_hold_range_violates_it_and_a_failure_outside_does_not(
+def test_failure_inside_a_must_hold_range_violates_it(
     one: Curve, must_hold: dict[str, Any], broken: bool
 ) -> None:
     assert bool(words.broken_promises(stress(one, must_hold=must_hold))) is broken
@@ -325,7 +323,7 @@ def test_a_failing_combination_violates_must_hold_if_all_its_directions_are_insi
     assert words.broken_promises(found) == ([told] if broken else [])
 
 
-def test_an_option_in_a_failing_combination_is_compared_with_the_options_of_must_hold() -> None:
+def test_option_of_a_combination_is_compared_with_must_hold() -> None:
     found = stress(combinations=(combined(mud=3.0, camera=1.0),))
     inside = replace(found, must_hold={"mud": (2.0, 4.0), "camera": ("down",)})
     assert "mud=3 and camera='down'" in words.broken_promises(inside)[0]

@@ -50,7 +50,7 @@ EMPTY = series(np.zeros(0))
 # series
 
 
-def test_a_series_is_cut_at_a_step_and_not_at_a_number_of_values() -> None:
+def test_series_is_cut_at_a_step() -> None:
     whole = Series(
         array(1.0, 2.0, 3.0, 4.0, 5.0), np.array([0, 1, 1, 2, 3], np.int32), array(0.1, 0.2, 0.3, 0.4)
     )
@@ -67,7 +67,7 @@ def test_both_series_end_with_the_shorter_mission(designed: int, drifted: int) -
     assert both.drifted.values.tolist() == [10.0, 11.0, 12.0, 13.0]
 
 
-def test_the_scale_is_the_range_of_all_designed_values_without_two_percent_on_each_side() -> None:
+def test_scale_is_the_trimmed_range_of_designed_values() -> None:
     values = np.arange(101.0)
     assert scale([pair(values, values * 50.0)]) == pytest.approx(96.0)
     assert scale([pair(values[:50], values), pair(values[50:], values)]) == pytest.approx(96.0)
@@ -140,7 +140,7 @@ def test_the_strength_of_noise_is_the_growth_of_the_roughness(rough: float, expe
     assert found == pytest.approx(expected, abs=1e-9)
 
 
-def test_the_roughness_in_the_designed_world_is_compared_with_that_under_the_drift() -> None:
+def test_roughness_is_compared_between_worlds() -> None:
     designed = step(60) + zigzag(60, 0.005)
     least = 0.01 * 1.005
     rough = 3.0 * (0.01 + least) - least
@@ -199,9 +199,7 @@ def test_chatter_needs_six_values_and_at_least_two_different_values() -> None:
     ("designed", "reward", "lost"),
     [(1.0, -0.01, True), (1.0, 0.0, False), (-1.0, -2.01, True), (-1.0, -2.0, False), (-1.0, 5.0, False)],
 )
-def test_a_loss_counts_if_it_exceeds_every_designed_loss_by_two_percent_of_the_reward(
-    designed: float, reward: float, lost: bool
-) -> None:
+def test_loss_counts_beyond_every_designed_loss(designed: float, reward: float, lost: bool) -> None:
     found = losses(
         Pair(
             series(np.zeros(50), np.full(50, designed)),
@@ -222,9 +220,7 @@ def lost_at(size: int, *steps: int) -> Floats:
 
 
 @pytest.mark.parametrize(("loss", "expected"), [(29, 0.0), (30, 0.95), (35, 0.95), (36, 0.0)])
-def test_a_loss_in_the_step_of_a_jump_or_in_the_next_five_steps_is_due_to_the_jump(
-    loss: int, expected: float
-) -> None:
+def test_loss_soon_after_a_jump_is_due_to_it(loss: int, expected: float) -> None:
     jumping = step(60)
     found = Pair(
         series(step(120)), series(jumping, lost_at(60, loss))
@@ -285,11 +281,11 @@ def ends(start: float, end: float | Sequence[float], size: int = 20) -> Floats:
 @pytest.mark.parametrize(
     ("end", "expected"), [(0.0, 0.0), (1.0, 0.5), (-1.0, 0.5), (2.0, 1.0), (4.0, 1.0), (-4.0, 1.0)]
 )
-def test_the_strength_of_an_offset_is_the_growth_of_the_mean_at_the_end(end: float, expected: float) -> None:
+def test_offset_strength_is_the_growth_of_the_final_mean(end: float, expected: float) -> None:
     assert strength("offset", pair(ends(4.0, 0.0), ends(4.0, end))) == pytest.approx(expected)
 
 
-def test_an_offset_is_weaker_if_the_designed_value_is_also_far_from_zero() -> None:
+def test_offset_is_weaker_far_from_zero() -> None:
     # the range is 3; a quarter of the largest value is left by design
     assert strength("offset", pair(ends(4.0, 1.0), ends(4.0, 1.75))) == pytest.approx(0.75 * 0.5)
     assert strength("offset", pair(ends(4.0, 1.0), ends(4.0, 0.5))) == 0.0
@@ -300,7 +296,7 @@ def test_an_offset_is_weaker_if_the_value_changes_sign() -> None:
     assert found == pytest.approx(0.5 / np.sqrt(5.0))
 
 
-def test_an_offset_of_a_value_that_also_swings_in_the_designed_world_is_found_at_equal_times() -> None:
+def test_offset_of_a_swinging_value_is_found() -> None:
     swing = np.tile([2.0, -2.0], 20)
     assert strength("offset", pair(swing, swing + 2.0)) == pytest.approx(1.0)
     assert strength("offset", pair(swing, swing + 1.0)) == pytest.approx(0.5)
@@ -327,7 +323,7 @@ def test_an_offset_needs_three_values_in_each_second_half() -> None:
     assert strength("offset", pair(np.ones(20), ends(4.0, 2.0))) == 0.0
 
 
-def test_if_one_pair_has_too_few_values_no_offset_and_no_swing_is_found() -> None:
+def test_pair_with_few_values_has_no_offset() -> None:
     known, few = pair(ends(4.0, 0.0), ends(4.0, 2.0)), pair(ends(4.0, 0.0, 4), ends(4.0, 2.0, 4))
     assert strength("offset", known) == 1.0
     assert strength("offset", known, few) == strength("offset", few, known) == 0.0
@@ -354,15 +350,13 @@ SMOOTH = 37 / 59  # of the 59 pairs of neighbours in twelve fives, 11 differ in 
 
 
 @pytest.mark.parametrize(("growth", "expected"), [(2.0, 0.0), (12.0**0.5, 0.5), (6.0, 1.0), (20.0, 1.0)])
-def test_the_strength_of_a_swing_is_the_growth_of_the_deviation_at_the_end(
-    growth: float, expected: float
-) -> None:
+def test_swing_strength_is_the_growth_of_the_deviation(growth: float, expected: float) -> None:
     height = growth * 0.02
     drifted = array(np.zeros(60), square(height, *[5] * 12))
     assert strength("swing", pair(at_rest(60), drifted)) == pytest.approx(expected * SMOOTH)
 
 
-def test_a_swing_in_the_designed_world_is_compared_with_the_swing_under_the_drift() -> None:
+def test_designed_swing_is_compared_with_the_drifted_swing() -> None:
     designed = array(step(60), square(0.01, *[5] * 12))
     least = 0.02 * scale([pair(designed, designed)])
     drifted = array(np.zeros(60), square(12.0**0.5 * (0.01 + least), *[5] * 12))

@@ -65,7 +65,7 @@ def test_an_episode_is_retried_if_its_worker_dies(tank: pytest.Pytester) -> None
     assert list(tank.path.glob("*.died"))
 
 
-def test_an_episode_that_kills_every_worker_is_reported_and_the_old_recording_kept(
+def test_episode_that_kills_workers_keeps_the_old_recording(
     tank: pytest.Pytester,
 ) -> None:
     before = recorded(tank)
@@ -100,7 +100,7 @@ def test_the_reason_why_a_worker_cannot_prepare_its_test_is_reported(tank: pytes
     tank.runpytest(*RECORD, TWO).stdout.fnmatch_lines(["*not in a worker*"])
 
 
-def test_a_worker_has_the_fixtures_and_options_of_the_run_and_tears_down_at_the_end(
+def test_worker_has_the_fixtures_and_options_of_the_run(
     tank: pytest.Pytester,
 ) -> None:
     tank.makeconftest(

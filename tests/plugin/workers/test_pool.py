@@ -194,9 +194,7 @@ class Dying:
 
 
 @pytest.mark.parametrize("deaths", [0, 2, 3])
-def test_a_request_is_tried_three_times_and_each_time_on_a_new_worker(
-    deaths: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_request_is_tried_on_three_workers(deaths: int, monkeypatch: pytest.MonkeyPatch) -> None:
     kind = type("Kind", (Dying,), {"deaths": deaths, "made": 0})
     monkeypatch.setattr(pool, "Worker", kind)
     one = Pool()

@@ -90,7 +90,7 @@ def test_each_bag_is_an_episode_of_the_same_worker(project: Path) -> None:
     assert two == EpisodePlan(4, record=True, bag=project / "bags" / "two.bag")
 
 
-def test_a_replay_job_contains_the_test_the_learned_bins_and_each_recorded_site_once(project: Path) -> None:
+def test_replay_job_contains_the_test_and_learned_bins(project: Path) -> None:
     replay, pool = replays(project, run=SOUND)
     replay(Path("one.bag"), 3)
     post = pool.requests[0][0]

@@ -135,9 +135,7 @@ def test_a_worker_that_ended_is_awaited_before_its_last_output_is_read(start: An
 @pytest.mark.parametrize(
     ("status", "held"), [(-signal.SIGABRT, False), (-(pool.SIGNAL or 0), True), (0, False)]
 )
-def test_a_worker_that_the_watchdog_ended_by_a_signal_is_reported_as_hung(
-    start: Any, status: int, held: bool
-) -> None:
+def test_worker_ended_by_the_watchdog_hung(start: Any, status: int, held: bool) -> None:
     one, process, _ = start()
     process.returncode = status
     one._log.write(b'  File "/robot/keeper.py", line 12 in control\n')
@@ -169,7 +167,7 @@ def test_a_silent_worker_is_killed_even_if_it_ignores_the_signal(
         ('File "/r/n.py", line 12 in g\n', "n.py"),
     ],
 )  # fmt: skip
-def test_the_place_at_which_a_worker_hung_is_the_innermost_code_of_the_user(log: str, place: str) -> None:
+def test_hang_is_located_in_user_code(log: str, place: str) -> None:
     found = pool.place_held(log.format(ours=pool.WORKER_MAIN.parent.parent))
     assert (place in found) if place else (found == pool.describe_first([]))
     assert "m.py" not in found
@@ -393,7 +391,7 @@ def test_a_cluster_that_does_not_answer_is_refused(
         pass
 
 
-def test_each_machine_of_a_cluster_has_one_pool_until_the_run_leaves_it(
+def test_each_cluster_machine_has_one_pool(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     made: list[Any] = []
