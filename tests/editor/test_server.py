@@ -151,9 +151,7 @@ async def test_the_unsaved_buffer_is_linted_instead_of_the_file(
     assert error.severity == lsp.DiagnosticSeverity.Error
 
 
-async def test_an_edit_of_a_shared_file_updates_all_programs_that_use_it(
-    client: LanguageClient, tmp_path: Path
-) -> None:
+async def test_edit_of_a_shared_file_updates_all_its_programs(client: LanguageClient, tmp_path: Path) -> None:
     await diagnostics(client, uri(tmp_path), 2)
     node = "from shared import scaled\n" + NODE.replace("2 * message.data", "scaled(message.data)")
     node = node.replace("rospy.spin()", 'if __name__ == "__main__":\n    rospy.spin()')

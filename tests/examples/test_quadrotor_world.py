@@ -48,7 +48,7 @@ def test_the_mission_is_flown_as_designed() -> None:
         assert sum(world.parts.values()) > 14.0
 
 
-def test_near_the_start_a_payload_keeps_the_quadrotor_below_the_altitude_band() -> None:
+def test_payload_keeps_the_quadrotor_too_low() -> None:
     world = fly(1, PAYLOAD)
     assert world.failure == "too slow"
     assert abs(world.body.position.x) < 0.5

@@ -79,7 +79,7 @@ def test_some_missions_cross_the_patch_and_some_do_not() -> None:
     assert 90 < met < 150
 
 
-def test_the_patch_of_ground_is_harmless_in_the_designed_world() -> None:
+def test_muddy_ground_is_harmless_in_the_designed_world() -> None:
     for seed in SEEDS:
         assert mission(seed, patch=True).total == mission(seed, patch=False).total
 
@@ -116,7 +116,7 @@ def test_higher_gain_fixes_mud_and_harms_nothing_else(
         assert mission(seed, edits=edits).total >= designed[seed]
 
 
-def test_a_higher_gain_everywhere_misses_the_goal_in_both_worlds() -> None:
+def test_higher_gain_everywhere_fails_in_both_worlds() -> None:
     for mud in (1.0, MUD):
         assert not any(mission(seed, mud=mud, edits=EVERYWHERE).delivered for seed in SEEDS)
 
@@ -133,7 +133,7 @@ def test_running_past_the_goal_ends_the_mission() -> None:
     assert world.failure == "ran past the goal"
 
 
-def test_a_goal_counts_only_after_the_robot_stayed_for_the_handover() -> None:
+def test_goal_counts_after_a_stop_for_the_handover() -> None:
     world, wires = push(1.0, G2, 0.0, 0)
     rewards = []
     for _ in range(SHUTTLE.HANDOVER):

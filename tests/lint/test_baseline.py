@@ -51,7 +51,7 @@ def test_fingerprint_names_the_package_or_the_script(example):
     assert fingerprint(changed(flow, {"module": "follow"}), "").package == "follow"
 
 
-def test_the_fingerprint_of_a_method_that_subscribes_names_its_class(example):
+def test_fingerprint_of_a_subscribing_method_names_its_class(example):
     assert fingerprint(changed(example.flow(), {"qualname": "Node.__init__"}), "").owner == "Node"
     assert fingerprint(changed(example.flow(), {"qualname": "main"}), "").owner == ""
 
@@ -80,7 +80,7 @@ def test_vanished_flows_are_dropped_except_in_unread_files(entry):
     assert kept == (other,)
 
 
-def test_a_baseline_with_any_names_is_read_back_as_it_was_written(entry, tmp_path):
+def test_baseline_with_any_names_is_read_back(entry, tmp_path):
     odd = replace(
         entry,
         fingerprint=replace(entry.fingerprint, source='größe "x" → y', package=""),
@@ -118,7 +118,7 @@ def test_file_has_one_sorted_flow_per_line(entry):
         ('{"format": 1, "tool": "tarl-lint", "flows": 3}', "damaged"),
     ],
 )
-def test_the_error_about_a_damaged_or_foreign_file_names_the_file(tmp_path, text, complaint):
+def test_error_names_a_damaged_baseline(tmp_path, text, complaint):
     path = tmp_path / "flows.json"
     path.write_text(text)
     with pytest.raises(BaselineError, match=rf"flows\.json.*{complaint}"):
@@ -137,7 +137,7 @@ def test_an_entry_with_an_invalid_value_is_refused(entry, tmp_path, part):
         load(path)
 
 
-def test_a_failed_write_names_the_file_and_leaves_nothing_behind(entry, tmp_path):
+def test_failed_write_leaves_nothing_behind(entry, tmp_path):
     (tmp_path / "taken").mkdir()
     with pytest.raises(BaselineError, match="cannot be written"):
         save(tmp_path / "taken", Baseline((entry,)))

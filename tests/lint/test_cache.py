@@ -43,7 +43,7 @@ def entries() -> list[Path]:
     return sorted(PLACE.glob("*.json"))
 
 
-def test_a_second_run_analyses_nothing_and_gives_the_same_result(node, capsys, analysed):
+def test_second_run_analyses_nothing(node, capsys, analysed):
     first = lint(capsys, "--format", "json")
     assert analysed == ["node.py"]
     assert lint(capsys, "--format", "json") == first
@@ -87,7 +87,7 @@ def test_the_cache_of_another_version_is_ignored(node, capsys, analysed, monkeyp
     assert analysed == ["node.py", "node.py"]
 
 
-def test_with_the_option_no_cache_no_cache_is_read_or_written(node, capsys, analysed):
+def test_no_cache_option_uses_no_cache(node, capsys, analysed):
     lint(capsys, "--no-cache")
     assert not Path(".tarl").exists()
     lint(capsys)
@@ -131,7 +131,7 @@ def test_an_unwritable_cache_does_not_fail_the_run(node, capsys, analysed):
     assert analysed == ["node.py", "node.py"]
 
 
-def test_two_processes_on_a_cold_cache_agree_and_leave_it_intact(example, node, capsys, analysed):
+def test_two_processes_share_a_cold_cache(example, node, capsys, analysed):
     for number in range(20):
         (node.parent / f"node{number}.py").write_text(example.text.replace("odom", f"odom{number}"))
     command = [sys.executable, "-m", "tarl_lint", "--exit-zero", "--format", "json"]

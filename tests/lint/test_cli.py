@@ -71,7 +71,7 @@ def test_the_output_option_writes_the_report_to_a_file(node, capsys):
     )
 
 
-def test_accepted_flows_fail_the_run_only_if_the_baseline_is_ignored(node, capsys):
+def test_accepted_flows_fail_only_without_the_baseline(node, capsys):
     code, out, _ = lint(capsys, "--write-baseline")
     assert (code, out) == (0, "tarl-flows.json: 1 flow accepted (1 new, 0 removed).\n")
     code, out, _ = lint(capsys)
@@ -135,7 +135,7 @@ def test_unreadable_files_are_reported_when_the_baseline_is_written(node, capsys
         (["--exclude", "src\\gen"], "--exclude: 'src\\\\gen' has backslashes: write it with slashes, as in"),
     ],
 )
-def test_unusable_input_is_reported_in_one_sentence_with_exit_code_2(node, capsys, arguments, sentence):
+def test_unusable_input_ends_with_exit_code_2(node, capsys, arguments, sentence):
     (node.parent / "empty").mkdir()
     (node.parent / "bad.toml").write_text("selcet = []\n")
     code, out, err = lint(capsys, *arguments)
@@ -152,7 +152,7 @@ def test_version_and_help_are_printed(capsys):
         assert capsys.readouterr().out.startswith(expected)
 
 
-def test_settings_are_shown_in_the_syntax_of_the_settings_file(node, capsys):
+def test_settings_are_shown_in_file_syntax(node, capsys):
     (node.parent / "pyproject.toml").write_text('[tool.tarl-lint]\nexclude = ["vendor/"]\n')
     code, out, _ = lint(capsys, "--show-settings", "--fail-on", "implicit")
     assert code == 0

@@ -55,7 +55,7 @@ def said(in_directory, capsys):
         ),
     ],
 )
-def test_rules_that_did_not_run_are_not_reported_as_clean(said, arguments, words):
+def test_rules_that_did_not_run_are_not_clean(said, arguments, words):
     assert said(*arguments) == words
 
 
@@ -73,7 +73,7 @@ def test_rules_that_did_not_run_are_not_reported_as_clean(said, arguments, words
         ),
     ],
 )
-def test_the_report_says_which_files_have_no_subscription_or_publisher(in_directory, capsys, files, words):
+def test_report_lists_files_without_endpoints(in_directory, capsys, files, words):
     in_directory(files)
     for _ in range(2):  # the second run reads the cache
         main(["--format", "concise"])
@@ -81,7 +81,7 @@ def test_the_report_says_which_files_have_no_subscription_or_publisher(in_direct
 
 
 @pytest.mark.parametrize("follows", [False, True])
-def test_the_report_names_the_setting_for_clients_unless_it_is_on(in_directory, capsys, follows):
+def test_report_names_the_client_setting_unless_on(in_directory, capsys, follows):
     node = "import rospy\nask = rospy.ServiceProxy('speed', GetSpeed)\n"
     in_directory({"node.py": node, "pyproject.toml": f"[tool.tarl-lint]\nclients = {str(follows).lower()}\n"})
     main(["--format", "text"])
@@ -111,15 +111,13 @@ def test_silenced_findings_are_counted(said):
         ("ignore[TARL999]", ["--select", "TARL2"], True),
     ],
 )
-def test_a_comment_is_unused_only_if_all_rules_that_it_names_ran(
-    in_directory, capsys, comment, arguments, noted
-):
+def test_comment_is_unused_only_if_its_rules_ran(in_directory, capsys, comment, arguments, noted):
     in_directory({"node.py": dedent(BOTH).format(comment=f"  # tarl: {comment}")})
     main(["--format", "concise", *arguments])
     assert (" note: " in capsys.readouterr().out) is noted
 
 
-def test_a_comment_with_an_unknown_rule_has_its_own_message(in_directory, capsys):
+def test_comment_with_an_unknown_rule_has_its_message(in_directory, capsys):
     in_directory({"node.py": dedent(BOTH).format(comment="  # tarl: ignore[TARL1O1]")})
     main(["--format", "concise"])
     note = "node.py:8:28 note: there is no rule TARL1O1: correct or remove this comment.\n"

@@ -57,7 +57,7 @@ def test_the_command_line_overrides_the_settings_file(in_directory):
     )
 
 
-def test_the_search_for_settings_ends_at_the_top_of_the_repository(in_directory):
+def test_settings_search_ends_at_the_repository_root(in_directory):
     root = in_directory(
         {"pyproject.toml": '[tool.tarl-lint]\nselect = ["TARL1"]\n', "repository/node.py": ""}
     )
@@ -83,7 +83,7 @@ def test_an_unknown_key_is_refused_with_a_suggestion(in_directory):
         ("fail-on = 'always'", r"'fail-on' .* must be one of 'never', 'hazard', 'explicit', 'implicit'"),
     ],
 )
-def test_a_value_of_the_wrong_type_is_refused_with_the_expected_type(in_directory, line, complaint):
+def test_value_of_the_wrong_type_names_the_expected_type(in_directory, line, complaint):
     in_directory({"pyproject.toml": f"[tool.tarl-lint]\n{line}\n"})
     with pytest.raises(ConfigError, match=complaint):
         resolve(Options())
@@ -118,7 +118,7 @@ def test_a_named_pyproject_without_our_table_is_refused(in_directory):
         resolve(Options(config=Path("pyproject.toml")))
 
 
-def test_the_error_about_a_missing_or_invalid_settings_file_names_the_file(in_directory):
+def test_error_names_the_invalid_settings_file(in_directory):
     in_directory({"bad.toml": "select = [", "pyproject.toml": "tool.tarl-lint = 3"})
     with pytest.raises(ConfigError, match=r"missing\.toml cannot be read: No such file"):
         resolve(Options(config=Path("missing.toml")))
@@ -128,7 +128,7 @@ def test_the_error_about_a_missing_or_invalid_settings_file_names_the_file(in_di
         resolve(Options())
 
 
-def test_the_baseline_beside_the_settings_file_is_used_if_it_exists(in_directory):
+def test_baseline_beside_the_settings_is_used(in_directory):
     root = in_directory({"pyproject.toml": "[tool.tarl-lint]\n", "src/node.py": ""})
     assert resolve(Options(paths=(Path("src"),))).baseline is None
     (root / "tarl-flows.json").write_text("{}")
@@ -136,7 +136,7 @@ def test_the_baseline_beside_the_settings_file_is_used_if_it_exists(in_directory
     assert resolve(Options(paths=(Path("src"),), no_baseline=True)).baseline is None
 
 
-def test_a_named_baseline_must_exist_unless_it_is_being_written(in_directory):
+def test_named_baseline_must_exist_unless_written(in_directory):
     root = in_directory({"pyproject.toml": '[tool.tarl-lint]\nbaseline = "ci/flows.json"\n'})
     for options in (Options(), Options(write_baseline=True)):
         assert resolve(options).baseline == root / "ci/flows.json"
@@ -226,7 +226,7 @@ def test_invalid_names_and_tables_are_refused(in_directory, line, complaint):
         settings(in_directory, line)
 
 
-def test_a_wrapper_of_an_unknown_function_is_refused_with_a_suggestion():
+def test_wrapper_of_an_unknown_function_is_refused():
     with pytest.raises(
         ConfigError, match=r"'bus\.listen' .* like = 'rospy\.Subscribr', .* mean 'rospy\.Subscriber'\?"
     ):
@@ -235,7 +235,7 @@ def test_a_wrapper_of_an_unknown_function_is_refused_with_a_suggestion():
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
 @pytest.mark.parametrize("kind", ["pipe", "device", "folder"])
-def test_a_baseline_in_the_settings_must_be_a_regular_file(in_directory, kind):
+def test_baseline_must_be_a_regular_file(in_directory, kind):
     in_directory({"pyproject.toml": "[tool.tarl-lint]\nbaseline = 'accepted'\n"})
     assert resolve(Options()).baseline == Path.cwd() / "accepted"
     if kind == "pipe":

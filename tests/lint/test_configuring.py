@@ -48,7 +48,7 @@ NODE = """
         ("", "self.gain = 2.0", "self.gain * msg.data", []),
     ],
 )
-def test_constants_in_calls_that_configure_a_used_object_are_operands(
+def test_constants_that_configure_a_used_object_are_operands(
     top: str, setup: str, use: str, expected: list[str], tmp_path: Path
 ) -> None:
     analysis = analysed(tmp_path, node=NODE.format(top=top, setup=setup or "pass", use=use))

@@ -29,7 +29,7 @@ def test_entry_points_are_found_in_every_kind_of_description(tmp_path, place, te
 
 @pytest.mark.parametrize("naming", ["package.xml", "CMakeLists.txt"])
 @pytest.mark.parametrize("place", ["extras.xml", "../extras.xml", "/extras.xml"])
-def test_a_plugin_description_with_another_file_name_is_ignored_outside_the_package(tmp_path, naming, place):
+def test_oddly_named_plugin_description_counts_only_in_its_package(tmp_path, naming, place):
     package = tmp_path / "arm"
     package.mkdir()
     (package / "package.xml").write_text("<package/>")

@@ -72,10 +72,10 @@ def test_a_topic_name_without_a_default_is_unknown(tmp_path, name):
     assert ends(tmp_path, name) == ((), ())
 
 
-def test_a_literal_topic_name_does_not_count_as_a_default(tmp_path):
+def test_literal_topic_name_is_not_a_default(tmp_path):
     assert ends(tmp_path, '"cmd_vel"') == (("cmd_vel",), ())
 
 
-def test_the_default_of_a_parameter_does_not_decide_a_condition(tmp_path):
+def test_parameter_default_does_not_decide_a_condition(tmp_path):
     before = 'mode = os.environ.get("MODE", "a")\n        name = "x" if mode == "a" else "y"'
     assert ends(tmp_path, "name", before) == (("x", "y"), ())

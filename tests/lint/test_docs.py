@@ -36,16 +36,16 @@ def output(monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("command", re.findall(r"^\$ tarl-lint (examples.*)$", LINT, re.MULTILINE))
-def test_console_output_in_the_guide_matches_the_output_of_the_tool(output, command):
+def test_guide_console_output_matches_the_tool(output, command):
     (shown,) = (b for b in blocks(LINT, "console") if b.startswith(f"$ tarl-lint {command}\n"))
     assert output(*command.split()) == shown.partition("\n")[2]
 
 
-def test_the_picture_in_the_guide_matches_the_output_of_the_tool(output):
+def test_guide_picture_matches_the_tool(output):
     assert blocks(LINT, "mermaid") == [output(*PICTURED, "--format", "mermaid")]
 
 
-def test_the_annotation_in_the_guide_matches_the_output_of_the_tool(output):
+def test_guide_annotation_matches_the_tool(output):
     (shown,) = (line for line in CI.splitlines() if line.startswith("::") and "title=TARL" in line)
     assert shown in output("examples/shuttle/traveller.py", "--format", "github").splitlines()
 

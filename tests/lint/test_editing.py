@@ -114,7 +114,7 @@ LAYOUT = [
 
 
 @pytest.mark.parametrize(("name", "before", "after"), LAYOUT)
-def test_an_edit_outside_of_the_analysed_code_only_moves_lines(tmp_path, analysed, name, before, after):
+def test_edit_outside_analysed_code_only_moves_lines(tmp_path, analysed, name, before, after):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     analysed.clear()
@@ -171,7 +171,7 @@ def test_each_edit_is_compared_with_the_last_analysis(tmp_path, analysed):
     assert result == Workspace([tmp_path]).lint(second)
 
 
-def test_an_edit_can_be_compared_with_an_analysis_of_several_runs_ago(tmp_path, analysed):
+def test_edit_can_be_compared_with_an_older_analysis(tmp_path, analysed):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     for _ in range(3):
@@ -191,7 +191,7 @@ def test_an_undone_edit_needs_no_analysis(tmp_path, analysed):
     assert analysed == []
 
 
-def test_an_edit_after_an_undone_edit_is_compared_with_the_original_text(tmp_path, analysed):
+def test_edit_after_an_undo_is_compared_with_the_original(tmp_path, analysed):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     workspace.lint(edited(tmp_path, "node.py", "value > 3", "value > 4"))
@@ -202,7 +202,7 @@ def test_an_edit_after_an_undone_edit_is_compared_with_the_original_text(tmp_pat
     assert analysed == ["node.py"]  # analysed by the new session
 
 
-def test_findings_of_an_edited_program_are_final_before_others_are_analysed(tmp_path, analysed):
+def test_edited_program_is_final_before_others_are_analysed(tmp_path, analysed):
     for number in range(4):
         Path(tmp_path, f"other{number}.py").write_text(NODE.replace("/idle", f"/idle{number}"))
     workspace = Workspace([tmp_path])
@@ -254,7 +254,7 @@ def edits(rng: random.Random, text: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_session_gives_after_random_edits_the_results_of_a_new_session(tmp_path, analysed, seed):
+def test_random_edits_give_the_results_of_a_new_session(tmp_path, analysed, seed):
     rng = random.Random(seed)
     workspace = Workspace([tmp_path])
     workspace.lint({})
@@ -303,6 +303,6 @@ def test_queries_about_the_text_of_a_module_are_recorded():
     assert moved_lines("def f():\n    return 1\n", "def f():\n    return 2\n", observed.reading()) is None
 
 
-def test_a_group_of_files_is_analysed_if_its_text_contains_certain_words():
+def test_group_is_analysed_if_its_text_has_certain_words():
     assert two_sided(["rospy.Subscriber(", "pub.publish(1)"], Config())
     assert not two_sided(["rospy.Subscriber(", "# pub.publish(1)"], Config())

@@ -63,7 +63,7 @@ def test_functions_declared_as_sinks_are_publish_calls():
     assert kinds(module("node", text), sinks=("bus.send",)) == [("explicit", ("a",), ())]
 
 
-def test_an_import_finds_the_nearest_of_several_modules_with_the_same_name():
+def test_import_finds_the_nearest_module_of_its_name():
     near = module("tools", "def helper(x):\n    return 0", "one/tools.py")
     far = module("tools", "def helper(x):\n    return x", "two/tools.py")
     text = NODE.format(value="helper(msg.data)")
@@ -162,7 +162,7 @@ def test_settings_apply_to_functions_in_the_analysed_files():
     assert kinds(node, tools, sanitizers=("tools.checked",)) == []
 
 
-def test_in_settings_a_method_is_named_by_the_class_that_defines_it():
+def test_settings_name_a_method_by_its_defining_class():
     text = """
         from tools import Bus
         class Radio(Bus):
@@ -197,7 +197,7 @@ def test_wrappers_act_like_their_model_with_any_argument_positions():
     assert (flow.sink.topics, flow.sink.type) == (("b",), "Float64")
 
 
-def test_a_wrapper_can_be_declared_to_act_like_a_node_method():
+def test_wrapper_can_act_like_a_node_method():
     text = """
         import bus
         out = bus.talk(Float64, "b", 10)
@@ -207,7 +207,7 @@ def test_a_wrapper_can_be_declared_to_act_like_a_node_method():
     assert kinds(module("node", text), wrappers=wrappers) == [("explicit", ("a",), ("b",))]
 
 
-def test_a_callback_registered_with_an_unknown_object_causes_no_error():
+def test_callback_of_an_unknown_object_causes_no_error():
     text = "from elsewhere import sync\nfrom rospy import Subscriber\nsync.registerCallback(print)\n"
     text += "def f(filters):\n    filters.registerCallback(f)\nf(None)\n"
     assert analyse([module("node", text)], Config()) == ()

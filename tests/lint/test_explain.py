@@ -38,7 +38,7 @@ def test_consecutive_examples_are_separated(capsys):
     assert out.count("--------") == 1
 
 
-def test_rule_codes_in_other_files_are_codes_of_existing_rules():
+def test_rule_codes_elsewhere_exist():
     assert tuple(known_rules()) == RULES
 
 

@@ -19,7 +19,7 @@ def test_a_file_is_replaced_and_keeps_its_mode(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["flows.json"]
 
 
-def test_a_pipe_or_device_is_written_to_and_not_replaced(tmp_path):
+def test_pipe_or_device_is_not_replaced(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     read = []

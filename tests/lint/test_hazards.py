@@ -41,7 +41,7 @@ RANGE = """
         "n = len(msg.ranges)\nahead = msg.ranges[n // 2]\ncmd.linear.x = 0.3 * ahead",
     ],
 )
-def test_an_unlimited_command_computed_from_a_sensor_is_a_hazard(body):
+def test_unlimited_command_from_a_sensor_is_a_hazard(body):
     assert len(lines("TARL202", inside(RANGE, body, 8))) == 1
 
 
@@ -155,7 +155,7 @@ def test_topic_name_is_not_an_attribute_use():
     assert lines("TARL204", SENDER.format(more=looked_up).replace('"/a"', '"pub"')) == []
 
 
-def test_a_callback_that_a_subclass_overrides_is_not_a_hazard():
+def test_overridden_callback_is_no_hazard():
     base = WATCH.format(body="pass", more="").replace("Watch()", "Near()").replace(
         'rospy.init_node("watch")',
         'class Near(Watch):\n        def on_scan(self, msg):\n            print(msg)\n    rospy.init_node("watch")',
@@ -196,7 +196,7 @@ def test_an_unused_publisher_is_a_hazard(more, found):
     assert lines("TARL204", SENDER.format(more=more)) == found
 
 
-def test_a_used_publisher_of_another_class_does_not_hide_an_unused_publisher():
+def test_other_class_publisher_does_not_hide_an_unused_one():
     more = """
     class Twin:
         def __init__(self):
@@ -208,7 +208,7 @@ def test_a_used_publisher_of_another_class_does_not_hide_an_unused_publisher():
     assert lines("TARL204", SENDER.format(more=more)) == [6]
 
 
-def test_a_publisher_used_from_another_file_is_not_a_hazard():
+def test_publisher_used_in_another_file_is_no_hazard():
     user = """
     from a import Sender
     Sender().pub.publish(1.0)

@@ -71,7 +71,7 @@ def flows(system: System) -> list[tuple[str, str, str]]:
 
 
 @pytest.mark.parametrize("name", WAYS)
-def test_a_hidden_package_is_read_if_the_launch_file_names_it(name: str, folder: Path) -> None:
+def test_hidden_package_is_read_if_a_launch_file_names_it(name: str, folder: Path) -> None:
     (system,) = launched(folder, str(folder / "robot/launch" / name))
     assert flows(system) == [("/arm", "/in", "/out")]
     (problem,) = system.problems
@@ -80,7 +80,7 @@ def test_a_hidden_package_is_read_if_the_launch_file_names_it(name: str, folder:
 
 
 @pytest.mark.parametrize("named", ["arm.launch", "arm/arm.launch", "arms/arm/launch/arm.launch"])
-def test_a_launch_file_of_a_hidden_package_can_be_named(
+def test_launch_file_of_a_hidden_package_can_be_named(
     named: str, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(folder)

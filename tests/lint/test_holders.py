@@ -27,7 +27,7 @@ KEEPER = """
 TOTAL = "total = self.scaled + x + near + self.odom.twist.linear.x"
 
 
-def test_variables_that_contain_the_message_field_are_sorted_by_length(tmp_path):
+def test_variables_with_the_field_are_sorted_by_length(tmp_path):
     analysis = analysed(tmp_path, node=KEEPER)
     place = site(analysis, TOTAL)
     assert analysis.holders("odom", "pose.position.y", place)[:3] == ("near", "self.y", "keeper.y")
@@ -59,7 +59,7 @@ def test_repair_condition_uses_no_earlier_message(tmp_path):
     )
 
 
-def test_an_overwritten_field_is_not_used_in_the_condition_of_a_repair(tmp_path):
+def test_overwritten_field_is_not_in_a_repair_condition(tmp_path):
     analysis = analysed(
         tmp_path,
         node="""

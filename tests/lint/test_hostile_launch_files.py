@@ -130,7 +130,7 @@ print(*(main(arguments) for arguments in (["."], *(["--launch", one] for one in 
 
 
 @pytest.mark.parametrize("kind", ["pipes", "devices"])
-def test_pipes_and_devices_in_place_of_files_do_not_block(tmp_path, kind):
+def test_pipes_and_devices_do_not_block(tmp_path, kind):
     for name in SPECIAL:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         if kind == "pipes":

@@ -38,7 +38,7 @@ def test_an_incomplete_program_is_named_in_every_format(name, result):
     assert "pilot" in text.replace("src/pilot.py", "")
 
 
-def test_json_has_the_key_incomplete_only_if_a_program_is_incomplete(result, example):
+def test_incomplete_programs_are_marked_in_json(result, example):
     entry = {"path": "src/pilot.py", "node": "pilot", "message": CUT.message}
     assert json.loads(text_of("json", result))["incomplete"] == [entry]
     assert "incomplete" not in json.loads(text_of("json", everything(example)))
@@ -69,7 +69,7 @@ def test_junit_has_a_skipped_case(result):
         ("x = 1", ""),
     ],
 )
-def test_the_name_of_a_node_is_found_without_an_analysis(text, name):
+def test_node_name_is_found_without_an_analysis(text, name):
     assert node_name(ast.parse(text)) == name
 
 

@@ -105,7 +105,7 @@ def test_without_the_setting_an_installed_base_class_is_not_followed(workspace):
     )
 
 
-def test_editable_installs_are_found_and_code_in_pth_files_is_not_run(workspace):
+def test_editable_installs_are_found_without_running_pth_code(workspace):
     site = workspace / ".venv/lib/python3.11/site-packages"
     moved = workspace / "elsewhere"
     moved.mkdir()
@@ -158,7 +158,7 @@ def test_a_missing_package_is_named_and_the_run_continues(workspace):
     assert "'follow-installed' names 'gone', but .venv contains no Python source" in said(result)
 
 
-def test_system_packages_are_read_only_if_the_environment_includes_them(tmp_path):
+def test_system_packages_count_only_in_such_an_environment(tmp_path):
     system = tmp_path / "usr/lib/python3.11/site-packages"
     system.mkdir(parents=True)
     home = tmp_path / "env"

@@ -78,9 +78,7 @@ def flows(source: str) -> list[Flow]:
         (ROS_1, "server.insert(marker)\nserver.setCallback('grip', on_feedback)"),
     ],
 )
-def test_feedback_on_a_marker_reaches_the_messages_that_its_callback_publishes(
-    node: str, registration: str
-) -> None:
+def test_marker_feedback_reaches_the_messages_of_its_callback(node: str, registration: str) -> None:
     (flow,) = flows(node.replace("{registration}", registration))
     assert flow.kind == "explicit"
     assert (flow.source.topics, flow.source.type) == FEEDBACK

@@ -84,7 +84,7 @@ def test_the_command_runs_no_file_of_the_working_directory(place, nodes, tmp_pat
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
-def test_the_command_does_not_run_the_files_that_it_lints(place, jobs):
+def test_command_does_not_run_linted_files(place, jobs):
     (place / "node.py").write_text(NODE)
     done = run([*SCRIPT, *ARGUMENTS, "--jobs", jobs, "."], place)
     assert done.returncode == 0, done.stderr
@@ -93,7 +93,7 @@ def test_the_command_does_not_run_the_files_that_it_lints(place, jobs):
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
-def test_python_dash_m_runs_no_other_file_of_the_working_directory(place, nodes, tmp_path, jobs):
+def test_python_dash_m_runs_no_other_local_file(place, nodes, tmp_path, jobs):
     """`python -m` imports `runpy` or `importlib` from the working directory before any of our code runs."""
     (place / "trivial_program.py").write_text("")
     take_away_what_python_itself_runs([sys.executable, "-m", "trivial_program"], place)

@@ -53,7 +53,7 @@ def launched(arm: Path) -> None:  # noqa: F811
     write(arm, {"arm/launch/a.launch": f"<launch>{''.join(nodes)}</launch>"})
 
 
-def test_a_second_run_analyses_nothing_and_gives_the_same_result(arm, capsys, analysed):  # noqa: F811
+def test_second_run_uses_kept_interfaces(arm, capsys, analysed):  # noqa: F811
     launched(arm)
     first = run(capsys, "--launch", "a.launch", "--format", "json")
     assert sorted(analysed) == sorted([*PROGRAMS, *UNKNOWN])

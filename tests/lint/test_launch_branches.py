@@ -193,7 +193,7 @@ def test_a_value_that_differs_between_the_branches_is_symbolic(tmp_path: Path) -
     assert found.condition == ""
 
 
-def test_values_computed_within_a_branch_are_known_in_this_branch(tmp_path: Path) -> None:
+def test_values_of_a_branch_are_known_in_this_branch(tmp_path: Path) -> None:
     statements = """
         found = []
         if REAL:
@@ -205,7 +205,7 @@ def test_values_computed_within_a_branch_are_known_in_this_branch(tmp_path: Path
     assert [(one.name, one.value) for one in found.settings] == [("~gain", 1.0)]
 
 
-def test_settings_that_only_one_branch_makes_are_symbolic_after_the_branch(tmp_path: Path) -> None:
+def test_settings_of_one_branch_are_symbolic_afterwards(tmp_path: Path) -> None:
     statements = """
         found = []
         if REAL:

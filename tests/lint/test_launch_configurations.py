@@ -68,7 +68,7 @@ def test_saved_launch_configurations_are_restored(tmp_path: Path) -> None:
     ]
 
 
-def test_a_group_without_forwarding_knows_only_its_own_launch_configurations(tmp_path: Path) -> None:
+def test_unforwarded_group_knows_only_its_own_configurations(tmp_path: Path) -> None:
     found = launched(tmp_path, """
         def generate_launch_description():
             side, kind = (LaunchConfiguration(one, default="gone") for one in ("side", "kind"))
@@ -215,5 +215,5 @@ def test_powers_are_evaluated(text: str, value: float) -> None:
 
 
 @pytest.mark.parametrize("text", [f"2 ** {BITS}", "9 ** 9 ** 9", "(-8) ** 0.5", "1e300 ** 9", "0 ** -1"])
-def test_powers_that_are_too_large_or_not_real_are_unknown(text: str) -> None:
+def test_too_large_or_complex_powers_are_unknown(text: str) -> None:
     assert isinstance(constant(text), Unknown)

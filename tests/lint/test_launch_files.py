@@ -85,7 +85,7 @@ def test_ros1_launch_files_are_read(tmp_path: Path) -> None:
     assert settings(found, 2) == [("~rate", 5)]
 
 
-def test_values_known_only_on_the_robot_are_reported_with_their_line(tmp_path: Path) -> None:
+def test_values_known_only_on_the_robot_are_reported(tmp_path: Path) -> None:
     assert [(one.line, one.reason) for one in launched(tmp_path, ROS1).problems] == [
         (16, "<param> of drive: ~model is what a command prints on the robot"),
         (17, "<param> of drive: the argument robot has no value"),
@@ -380,7 +380,7 @@ def test_unreadable_ros2_files_are_reported(tmp_path: Path, name: str, text: str
     assert any(reason in one.reason for one in found.problems)
 
 
-def test_parameters_of_ros1_nodes_are_private_unless_yaml_gives_an_absolute_name(tmp_path: Path) -> None:
+def test_ros1_node_parameters_are_private_unless_absolute(tmp_path: Path) -> None:
     text = """
         <launch><node pkg="arm_base" type="drive" name="drive">
           <param name="/gui" value="  words  "/>
@@ -434,7 +434,7 @@ def test_expressions_in_quotes_are_evaluated(tmp_path: Path, text: str, kept: bo
     assert bool(found.nodes) is kept
 
 
-def test_sections_of_parameter_files_match_nodes_as_rclpy_matches_them() -> None:
+def test_parameter_sections_match_nodes_as_in_rclpy() -> None:
     yaml = pytest.importorskip("yaml")
     names = (
         "talker",
@@ -486,7 +486,7 @@ def test_substitutions_of_navigation_2_are_interpreted(tmp_path: Path) -> None:
     assert [one.reason for one in found.problems] == ["the parameter file $(RewrittenYaml) is not known here"]
 
 
-def test_a_launch_file_can_use_the_content_of_another_file(tmp_path: Path) -> None:
+def test_launch_file_can_use_another_file(tmp_path: Path) -> None:
     text = """
         from launch import LaunchDescription
         from launch.substitutions import AnySubstitution, FileContent
@@ -569,7 +569,7 @@ def test_an_empty_parameter_is_an_empty_text(tmp_path: Path, name: str, text: st
     assert [(one.name, one.value, one.yaml) for one in found.nodes[0].settings] == [("~world", "", None)]
 
 
-def test_the_content_of_a_file_that_is_not_text_is_unknown(tmp_path: Path) -> None:
+def test_content_of_a_non_text_file_is_unknown(tmp_path: Path) -> None:
     found = launched(tmp_path, """
         <launch>
           <node pkg="arm_base" type="part" name="part">

@@ -354,7 +354,7 @@ def private(node: LaunchedNode) -> dict[str, object]:
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_nodes_of_python_launch_files_are_found_in_many_styles(tmp_path: Path, style: str) -> None:
+def test_python_launch_styles_are_understood(tmp_path: Path, style: str) -> None:
     text, expected = STYLES[style]
     found = launched(tmp_path, text)
     assert not found.problems
@@ -397,7 +397,7 @@ def test_arguments_that_a_function_reads_are_known(tmp_path: Path) -> None:
     assert [one.name for one in found.nodes] == ["ab"]
 
 
-def test_a_python_file_that_defines_generate_launch_description_is_a_launch_file(tmp_path: Path) -> None:
+def test_file_with_generate_launch_description_is_a_launch_file(tmp_path: Path) -> None:
     launched(tmp_path, STYLES["generator and conditional expression"][0])
     (tmp_path / "launch/robot.py").write_text("def generate_launch_description():\n    pass\n")
     (package,) = read(tmp_path).packages
@@ -409,13 +409,13 @@ def test_arguments_of_a_node_remap_its_topics(tmp_path: Path) -> None:
     assert node.remaps == (("in", "inn"),)
 
 
-def test_the_line_of_a_node_is_in_the_launch_file(tmp_path: Path) -> None:
+def test_node_line_is_in_the_launch_file(tmp_path: Path) -> None:
     found = launched(tmp_path, STYLES["module of the package"][0])
     lines = (HEAD + dedent(STYLES["module of the package"][0])).splitlines()
     assert all("made(name)" in lines[one.line - 1] for one in found.nodes)
 
 
-def test_known_nodes_in_a_list_with_unknown_nodes_are_found(tmp_path: Path) -> None:
+def test_known_nodes_beside_unknown_ones_are_found(tmp_path: Path) -> None:
     text = """
         from robots_that_are_not_installed import nodes
         def generate_launch_description():

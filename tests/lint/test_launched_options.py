@@ -50,7 +50,7 @@ NODES = [
 
 
 @pytest.mark.parametrize(("arguments", "code", "flows"), [n[1:] for n in NODES], ids=[n[0] for n in NODES])
-def test_the_arguments_of_a_launched_node_determine_its_topic_names(tmp_path, arguments, code, flows):
+def test_arguments_determine_topic_names_of_a_launched_node(tmp_path, arguments, code, flows):
     body = f'<launch><node pkg="arm" type="n.py" name="n" args="{arguments}"/></launch>'
     write(tmp_path, {"arm/package.xml": MANIFEST.format("arm", "catkin"), "arm/launch/a.launch": body,
                      "arm/scripts/n.py": ROS1 + code})  # fmt: skip

@@ -94,14 +94,14 @@ def test_unlocked_access_to_state_of_callback_and_timer_is_reported(body, found)
         ("SingleThreadedExecutor", "ReentrantCallbackGroup", "self.group", 0),
     ],
 )
-def test_rclpy_callbacks_overlap_only_with_a_suitable_executor_and_group(executor, group, given, found):
+def test_rclpy_callbacks_overlap_only_with_suitable_groups(executor, group, given, found):
     text = RCLPY.format(executor=executor, group=group, given=given)
     if given == "None":
         text = text.replace(", callback_group=None", "")
     assert len(lines("TARL201", text)) == found
 
 
-def test_an_unlocked_read_in_a_custom_thread_is_also_reported_in_rclpy():
+def test_unlocked_read_in_a_thread_is_reported_in_rclpy():
     text = RCLPY.format(executor="SingleThreadedExecutor", group="ReentrantCallbackGroup", given="self.group")
     text = text.replace(
         "self.create_timer(0.1, self.on_timer, callback_group=self.group)",
@@ -156,11 +156,11 @@ GLOBAL = """
         ("pub.publish(1.0)", 0),
     ],
 )
-def test_access_to_a_global_variable_without_its_lock_is_reported(body, found):
+def test_unlocked_access_to_a_global_is_reported(body, found):
     assert len(lines("TARL201", inside(GLOBAL, body, 8))) == found
 
 
-def test_access_to_flags_and_to_state_without_any_lock_is_not_reported():
+def test_access_without_any_lock_is_not_reported():
     flag = inside(ROSPY, "self.pub.publish(self.value)", 12).replace(
         "self.value = msg.data", "self.value = True"
     )
@@ -297,7 +297,7 @@ ACTIVITY = """
     ("asked", "found"),
     [("blocking=False", 0), ("False", 0), ("blocking=True", 1), ("", 1), ("timeout=1.0", 1)],
 )
-def test_a_lock_that_no_function_waits_for_protects_no_state(asked, found):
+def test_lock_without_waiters_protects_nothing(asked, found):
     assert len(lines("TARL201", ACTIVITY.format(asked=asked))) == found
 
 
@@ -385,6 +385,6 @@ MIXED = """
 
 
 @pytest.mark.parametrize(("made", "found"), [("Queue()", 0), ("[]", 1)])
-def test_an_object_made_in_another_module_may_do_its_own_locking(made, found):
+def test_imported_object_may_do_its_own_locking(made, found):
     text = MIXIN if made == "Queue()" else MIXIN.replace(".put(", ".append(")
     assert len(lines("TARL201", text, MIXED.format(annotation="object", made=made))) == found

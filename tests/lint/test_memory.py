@@ -43,7 +43,7 @@ def instance(ctx, key):
     return obj
 
 
-def test_a_store_through_a_pointer_to_one_object_is_a_strong_update(ctx):
+def test_store_through_a_pointer_to_one_object_is_strong(ctx):
     obj = instance(ctx, "a")
     updates.write_field(ctx, pointer(obj), "x", Value(DATA))
     updates.write_field(ctx, pointer(obj), "x", Value(OTHER))
@@ -58,7 +58,7 @@ def test_store_to_one_of_two_objects_is_a_weak_update(ctx):
     assert heap.read_field(ctx, two, "x").deps == OTHER
 
 
-def test_an_object_that_represents_several_objects_is_never_updated_strongly(ctx):
+def test_summary_object_is_never_updated_strongly(ctx):
     obj = instance(ctx, "a")
     obj.many = True
     for deps in (DATA, OTHER):
@@ -66,7 +66,7 @@ def test_an_object_that_represents_several_objects_is_never_updated_strongly(ctx
     assert heap.read_field(ctx, obj, "x").deps == DATA | OTHER
 
 
-def test_a_store_to_an_unknown_element_may_change_any_element(ctx):
+def test_store_to_an_unknown_element_may_change_any(ctx):
     obj = instance(ctx, "a")
     updates.write_item(ctx, pointer(obj), const(0), Value(DATA))
     updates.add_element(ctx, pointer(obj), Value(OTHER))
@@ -107,7 +107,7 @@ def test_nested_data_is_found_without_unrelated_objects(ctx):
     assert reachable_data.deep(ctx, frozenset([empty])) == frozenset()
 
 
-def test_parts_without_data_add_nothing_to_the_data_of_their_message(ctx):
+def test_parts_without_data_add_nothing(ctx):
     message = recency.intern(ctx, "message", "m")
     message.info = 7
     message.sub("pose").sub("position")
@@ -158,7 +158,7 @@ def test_a_join_without_change_returns_the_same_object():
     assert join(value, Value(DATA)) is value
 
 
-def test_stores_of_other_entry_points_are_read_once_per_run(ctx):
+def test_foreign_stores_are_read_once_per_run(ctx):
     obj = instance(ctx, "a")
     key, other = (obj, "x"), Root("other", "other")
     ctx.shared.leave(ctx.shared.ends, other, key, Value(DATA))
@@ -183,7 +183,7 @@ def test_content_depends_on_carriers_that_contained_it(ctx, frame):
     assert graph.through(content, carriers) == {arrived}
 
 
-def test_a_call_depends_on_the_carriers_used_by_a_cached_answer(ctx, frame):
+def test_call_depends_on_carriers_of_a_cached_answer(ctx, frame):
     graph = ctx.graph
     item, first, second = (carrying(graph, frame, key) for key in ("item", "first", "second"))
     graph.hold(first, frozenset([item]))

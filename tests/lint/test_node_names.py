@@ -62,7 +62,7 @@ UNNAMED = {
 
 
 @pytest.mark.parametrize("style", NAMED)
-def test_the_name_that_the_code_gives_its_node_is_found(style: str) -> None:
+def test_node_name_in_the_code_is_found(style: str) -> None:
     assert node_name(ast.parse(dedent(NAMED[style]))) == "talker"
 
 

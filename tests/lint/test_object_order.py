@@ -30,7 +30,7 @@ def test_loops_visit_objects_in_order_of_creation() -> None:
 
 
 @pytest.mark.parametrize("node", NODES[:6], ids=lambda path: path.stem)
-def test_flows_do_not_depend_on_the_iteration_order_of_sets(
+def test_flows_do_not_depend_on_set_order(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, node: Path
 ) -> None:
     results = []

@@ -60,7 +60,7 @@ def found(modules):
     return (*findings(flows), *hazards(tracer, flows, Config()))
 
 
-def test_modules_that_only_publish_or_only_subscribe_are_not_analysed():
+def test_one_sided_modules_are_not_analysed():
     assert skipped(TALKER)
     assert skipped(LISTENER)
     assert not skipped(TALKER, LISTENER)
@@ -165,7 +165,7 @@ def test_empty_function_is_a_callback_only_as_an_argument(text, run):
     assert skipped("import rospy\n" + text) is not run
 
 
-def test_a_module_is_not_analysed_for_a_disabled_hazard_rule():
+def test_disabled_hazard_rule_needs_no_analysis():
     idle = LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data")
     assert skipped(idle, ignore=("TARL203",))
 

@@ -315,7 +315,7 @@ DECLARED = 'self.given = self.declare_parameters("", [("arm.pitch", 0.125), ("ar
         ),
     ],
 )
-def test_an_unpacked_argument_is_an_operand_where_it_is_used(tmp_path, made, before):
+def test_unpacked_argument_is_an_operand_at_its_use(tmp_path, made, before):
     text = PASSED.replace("{made}", made).replace("{before}", before)
     text = text.replace("class Node:", "from rclpy.node import Node\n    class Arm(Node):")
     analysis = analysed(tmp_path, node=text)
@@ -440,7 +440,7 @@ TABLES = """
         "dict(DEFAULTS, **rospy.get_param('~', {}))",
     ],
 )
-def test_a_table_of_constants_is_found_through_methods_that_call_each_other(tmp_path, made):
+def test_constant_table_is_found_through_mutual_calls(tmp_path, made):
     analysis = analysed(tmp_path, node=TABLES.replace("{made}", made))
     found = analysis.operands(site(analysis, "v = self.last * p['slow']"))
     assert [(operand.code, operand.value) for operand in found] == [('p["slow"]', 0.125)]

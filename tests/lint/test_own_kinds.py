@@ -20,24 +20,24 @@ def ends(case, **settings):
     return {(f.source.api, f.sink.api) for f in flows(case, **settings)}
 
 
-def test_a_service_of_rospy_is_a_source_and_its_response_a_sink():
+def test_rospy_service_is_a_source_and_its_response_a_sink():
     found = ends("sources/service_requests.py")
     assert ("rospy.Service", "rospy.Publisher.publish") in found
     assert ("rospy.Service", "rospy.Service.response") in found
 
 
-def test_a_service_of_rclpy_is_a_source_and_its_response_a_sink():
+def test_rclpy_service_is_a_source_and_its_response_a_sink():
     found = ends("sources/service_requests_rclpy.py")
     assert ("rclpy.create_service", "rclpy.Publisher.publish") in found
     assert ("rclpy.create_subscription", "rclpy.create_service.response") in found
 
 
-def test_the_response_of_a_service_names_the_service_and_its_type():
+def test_service_response_names_the_service_and_its_type():
     sink = next(f.sink for f in flows("sinks/service_and_action_results.py") if "response" in f.sink.api)
     assert (sink.topics, sink.type) == (("get_range",), "GetRange")
 
 
-def test_goals_are_sources_and_feedback_and_results_are_separate_sinks():
+def test_goals_are_sources_and_results_are_sinks():
     found = ends("sources/action_goals.py")
     assert ("rclpy.action.ActionServer", "rclpy.action.ActionServer.publish_feedback") in found
     assert ("rclpy.create_subscription", "rclpy.action.ActionServer.response") in found

@@ -147,7 +147,7 @@ def test_topic_names_use_declared_ros2_parameters(arm, capsys):
     assert flows(out) == ["/front/scan_filtered → /r1/relay → /end  explicit"]
 
 
-def test_both_branches_of_a_condition_on_an_unknown_parameter_are_analysed(arm, capsys):
+def test_unknown_parameter_has_both_branches_analysed(arm, capsys):
     source = TOP + """
 rospy.init_node("relay")
 name = rospy.get_param("~out_topic", "out")
@@ -186,7 +186,7 @@ def test_json_states_the_name_as_written_in_the_code(arm, capsys):
     ("source", "inside"),
     [(DIRECT, [param("in_topic", "/scan")]), (MODES, [param("fast", "true"), param("debug", "1")])],
 )
-def test_fingerprints_are_the_same_as_in_a_run_without_a_launch_file(arm, capsys, source, inside):
+def test_launch_file_keeps_the_fingerprints(arm, capsys, source, inside):
     write(arm, {"arm/scripts/relay.py": TOP + source})
     write(arm, {"arm/launch/a.launch": f"<launch>{node('first', *inside)}</launch>"})
     document = json.loads(run(capsys, "--launch", "a.launch", "--format", "json")[1])
@@ -304,7 +304,7 @@ def test_a_launch_file_gives_a_list_of_topics(arm, capsys):
     ]
 
 
-def test_each_iteration_over_known_elements_has_its_own_publish_call(arm, capsys):
+def test_each_known_iteration_has_its_own_publish_call(arm, capsys):
     assert system(arm, capsys, TOP + "import message_filters\n" + PAIRS, node("n")) == [
         f"/{one} → /n → /{other}  explicit" for one, other in zip("abc", "xyz", strict=True)
     ]

@@ -34,11 +34,11 @@ def parsed(text: str) -> object:
         ("/robot/ga.e", "/robot/gate", False),
     ],
 )
-def test_a_section_applies_to_the_nodes_that_match_its_pattern(pattern, node, holds):
+def test_section_applies_to_nodes_that_match_its_pattern(pattern, node, holds):
     assert matches(pattern, node) is holds
 
 
-def test_sections_may_be_nested_in_namespaces_and_later_sections_take_precedence():
+def test_later_nested_sections_take_precedence():
     text = """
         /**: {ros__parameters: {fastest: 1.0, limits: {top: 3}}}
         robot: {gate: {ros__parameters: {fastest: 2.0}}, other: {ros__parameters: {fastest: 9.0}}}
@@ -71,9 +71,7 @@ def test_invalid_yaml_and_a_missing_pyyaml_give_different_messages(monkeypatch):
         ("{gain: 2}", False, ""),
     ],
 )
-def test_the_report_names_parameter_files_that_tarl307_could_not_read(
-    tmp_path, monkeypatch, capsys, text, missing, said
-):
+def test_report_names_parameter_files_unread_by_tarl307(tmp_path, monkeypatch, capsys, text, missing, said):
     body = '<rosparam file="$(find arm)/config/a.yaml"/>'
     launch = f'<launch><node pkg="arm" type="relay.py" name="r">{body}</node></launch>'
     write(

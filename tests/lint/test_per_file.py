@@ -29,7 +29,7 @@ def test_patterns_match_files_and_everything_below_directories(
     assert ignores.silences(Finding("TARL101", Span(path, 1, 1, 1, 2), "")) is silenced
 
 
-def test_only_the_named_rules_are_silenced_and_only_below_the_root(tmp_path, monkeypatch):
+def test_named_rules_are_silenced_only_below_the_root(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     ignores = FileIgnores(tmp_path / "src", [("*.py", ("TARL102", "TARL2"))])
 

@@ -55,22 +55,22 @@ def test_programs_that_can_exchange_data_are_analysed_together(change):
     assert grouped({"one": NODE, "two": NODE, "helper": HELPER} | change) == [{"helper", "one", "two"}]
 
 
-def test_a_module_name_in_a_comment_is_not_an_import():
+def test_module_name_in_a_comment_is_no_import():
     files = {"one": NODE, "two": NODE, "helper": "# no importlib here\n" + HELPER}
     assert len(grouped(files)) == 2
 
 
-def test_a_program_that_another_file_imports_is_analysed_with_that_file():
+def test_imported_program_is_analysed_with_its_importer():
     test = "import one\nif __name__ == '__main__':\n    one.Node()\n"
     assert grouped({"one": NODE, "test_one": test, "helper": HELPER}) == [{"helper", "one", "test_one"}]
 
 
-def test_an_import_cycle_that_no_program_imports_stays_in_one_group():
+def test_unimported_import_cycle_stays_in_one_group():
     files = {"one": NODE + "import two\n", "two": NODE + "import one\n", "helper": HELPER}
     assert grouped(files) == [{"helper", "one", "two"}]
 
 
-def test_after_an_edit_only_the_programs_that_read_the_file_are_analysed(tmp_path, monkeypatch):
+def test_edit_reruns_only_programs_that_read_the_file(tmp_path, monkeypatch):
     for name, text in {"one": NODE, "two": NODE, "helper": HELPER}.items():
         Path(tmp_path, f"{name}.py").write_text(text)
     monkeypatch.chdir(tmp_path)

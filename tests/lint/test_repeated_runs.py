@@ -64,7 +64,7 @@ def linked(*lines):
         ["if msg.data > 0:", "    twice = 2", "    self.pub.register(lambda: twice)"],
     ],
 )
-def test_stores_to_objects_of_one_run_do_not_rerun_the_entry_point(lines):
+def test_stores_to_objects_of_one_run_rerun_nothing(lines):
     assert linked(*lines).runs["on"] == 1
 
 
@@ -92,7 +92,7 @@ def test_stores_to_objects_of_one_run_do_not_rerun_the_entry_point(lines):
         ],
     ],
 )  # fmt: skip
-def test_a_run_reads_the_values_that_an_earlier_run_stored(lines):
+def test_run_reads_values_of_earlier_runs(lines):
     machine = linked(*lines)
     assert machine.runs["on"] > 1
     assert [flow.kind for flow in Tracer(machine).flows()] == ["explicit"]
@@ -139,7 +139,7 @@ def test_only_storing_entry_points_run_again_after_a_merge():
     assert machine.runs["other"] == 1
 
 
-def test_records_of_calls_are_dropped_when_no_entry_point_runs_again():
+def test_call_records_are_dropped_after_the_last_run():
     machine = linked("self.pub.publish(self.double(msg.data))")
     assert machine.runs["on"] == 1
     assert any(frame.function.name == "on" for frame in machine.frames.values())

@@ -232,7 +232,7 @@ def chosen_later(number: int) -> str:
 
 @pytest.mark.parametrize("number", [2, MANY - 1, MANY + 8, MANY_CARRIERS + 2])
 @pytest.mark.parametrize(("made", "kind"), [(many, "explicit"), (chosen_later, "implicit")])
-def test_a_field_with_merged_values_passes_on_all_its_values(number, made, kind):
+def test_merged_field_passes_on_all_values(number, made, kind):
     found = flows(linked(made(number)))
     assert {(f.kind, *f.source.topics) for f in found} == {(kind, f"in{n}") for n in range(number)}
 

@@ -13,7 +13,7 @@ def commands(result: Result) -> list[str]:
     return [line for line in text_of("github", result).splitlines() if line.startswith("::")]
 
 
-def test_github_gets_one_annotation_per_publish_call_most_severe_first(example):
+def test_github_gets_one_annotation_per_publish_call(example):
     first, hazard, old, unused = commands(everything(example))
     assert hazard.startswith("::error file=node.py,line=11,")
     assert first == (
@@ -32,7 +32,7 @@ def test_github_annotations_are_escaped(example):
     assert hazard.endswith("::scan [raw] reaches nothing, 100 %25 lost.")
 
 
-def test_findings_that_do_not_fail_the_run_are_github_notices(example):
+def test_harmless_findings_are_github_notices(example):
     (command,) = commands(Result(findings=(example.finding(),)))
     assert command.startswith("::notice ")
 

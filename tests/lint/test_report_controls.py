@@ -68,7 +68,7 @@ def rendered(tmp_path, name, source, sink):
 @pytest.mark.parametrize("name", sorted(FORMATS))
 @settings(max_examples=25)
 @given(source=TOPICS, sink=TOPICS)
-def test_no_report_is_broken_by_special_characters_in_a_topic(tmp_path_factory, name, source, sink):
+def test_special_characters_in_a_topic_break_no_report(tmp_path_factory, name, source, sink):
     directory = tmp_path_factory.mktemp("node")
     text = rendered(directory, name, source, sink)
     assert not STEERING.search(text)
@@ -92,7 +92,7 @@ def test_line_breaks_in_a_topic_are_escaped(tmp_path):
     [["no\x1b[2J.py"], ["--config", "no\x9b\u202e.toml"], ["--no\x1b[2J"], ["--launch", "no\x1b[2J.launch"]],
     ids=["file", "settings", "option", "launch file"],
 )
-def test_no_error_message_passes_on_control_characters_of_its_arguments(arguments, capsys):
+def test_error_messages_pass_on_no_control_characters(arguments, capsys):
     assert main(arguments) == 2
     told = capsys.readouterr().err
     assert told.startswith("tarl-lint: ")

@@ -42,7 +42,7 @@ def test_a_report_of_exactly_the_maximum_size_is_accepted(monkeypatch):
     assert not taken("".join(noise))
 
 
-def test_only_a_long_list_of_steps_is_reduced_to_its_chain(example):
+def test_only_long_step_lists_are_reduced_to_a_chain(example):
     flow = example.flow()
     exact = replace(flow, steps=flow.steps[:1] * LONGEST, chain=(1, 2))
     longer = replace(exact, steps=(*exact.steps, flow.steps[-1]))
@@ -70,7 +70,7 @@ def test_a_text_is_shortened_to_a_width_in_columns(text, width, shown):
     assert crop(text, width, "…") == shown
 
 
-def test_tabs_and_escaped_line_ends_count_in_the_width_of_a_text():
+def test_tabs_and_escaped_line_ends_count_in_the_width():
     assert [columns(text) for text in ("abc", "漢", "e\u0301", "é")] == [3, 2, 1, 1]
     assert tabs("\tx") == "    x"
     assert location(Span("a\nb.py", 2, 3, 4, 5)) == "a\\nb.py:2:3"
@@ -123,7 +123,7 @@ def processes(monkeypatch: pytest.MonkeyPatch, *lines: int, jobs: int | None = N
     return groups._workers(tasks, jobs)  # type: ignore[arg-type]
 
 
-def test_a_large_tree_uses_as_many_processes_as_its_largest_group_allows(monkeypatch):
+def test_processes_are_limited_by_the_largest_group(monkeypatch):
     many = groups.MANY_LINES
     assert processes(monkeypatch, many - 1) == 1
     assert processes(monkeypatch, *[many // 4] * 4) == 4
@@ -133,7 +133,7 @@ def test_a_large_tree_uses_as_many_processes_as_its_largest_group_allows(monkeyp
     assert processes(monkeypatch, 1, 1, jobs=0) == 1
 
 
-def test_only_the_processors_that_this_process_may_use_are_counted(monkeypatch):
+def test_only_usable_processors_are_counted(monkeypatch):
     monkeypatch.setattr("os.sched_getaffinity", lambda process: {*range(5 - process)}, raising=False)
     assert groups._processors() == 5
     monkeypatch.delattr("os.sched_getaffinity")

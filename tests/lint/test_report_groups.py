@@ -31,7 +31,7 @@ def finding(path: str = "src/a.py", package: str = "p", code: str = "TARL201", *
     return replace(one, **changes)
 
 
-def test_findings_are_grouped_by_package_with_tests_and_examples_last():
+def test_findings_are_grouped_by_package():
     some = [
         finding("b/x.py", "b"),
         finding("a/tests/x.py", "a"),
@@ -70,7 +70,7 @@ def test_paths_of_tests_and_examples_are_recognised(path, aside):
     assert (groups[-1].name == TESTS_AND_EXAMPLES) is aside
 
 
-def test_the_overview_lists_the_data_and_the_conditions_of_each_published_topic():
+def test_overview_lists_data_and_conditions_per_topic():
     flows = [
         flow("/scan", "/cmd", 1),
         flow("/odom", "/cmd", 2),
@@ -94,7 +94,7 @@ def test_the_overview_lists_the_data_and_the_conditions_of_each_published_topic(
     assert [*overview(flows[:-1], View())] == []  # five publish calls fit on a screen
 
 
-def test_names_in_the_overview_are_wrapped_and_long_lists_are_abbreviated():
+def test_long_lists_in_the_overview_are_abbreviated():
     assert [*_wrapped(["a", "b", "c"], 4)] == ["a,", "b,", "c"]
     assert [*_wrapped(["a", "b", "c"], 5)] == ["a, b,", "c"]
     assert [*_wrapped([], 6)] == []
@@ -143,7 +143,7 @@ CUT = SimpleNamespace(path="big.py", message="it was cut")
 BROKEN = SimpleNamespace(path="bad.py", line=7, message="it cannot be read")
 
 
-def test_the_code_quality_report_contains_new_findings_and_errors_and_incomplete_programs():
+def test_code_quality_report_has_new_findings_and_errors():
     some = (finding(fingerprint="f"), finding(fingerprint="g", status="accepted"))
     found = gitlab.document(result(findings=some, errors=(BROKEN,), statistics=SimpleNamespace(cut=(CUT,))))
     assert [(one["check_name"], one["severity"]) for one in found] == [
@@ -259,7 +259,7 @@ def test_omitted_findings_are_counted_if_there_are_any():
     assert told["message"]["text"].startswith("2 flows reduced to the shortest chain of statements")
 
 
-def test_new_findings_come_before_accepted_findings_and_severe_findings_before_minor_ones():
+def test_new_and_severe_findings_come_first():
     failing = SimpleNamespace(failing={"TARL201"})
     accepted, silenced = finding(status="accepted"), finding(code="TARL101")
     order = [finding(), finding(code="TARL202"), finding(code="TARL102"), accepted, silenced]
@@ -278,7 +278,7 @@ def test_wrapper_settings_contain_only_positions_that_were_set():
     assert settings._toml(["x"]) == '["x"]'
 
 
-def test_the_legend_follows_the_first_flows_if_chains_are_shown(monkeypatch):
+def test_legend_follows_the_first_flows_with_chains(monkeypatch):
     monkeypatch.setattr(text, "_flows", lambda flows, *_: [(("flow", ""),)] * len(flows))
     monkeypatch.setattr(text, "_hazard", lambda *_: [(("hazard", ""),)])
     monkeypatch.setattr(text, "_legend", lambda _: [(("legend", ""),)])
@@ -301,7 +301,7 @@ def test_the_legend_follows_the_first_flows_if_chains_are_shown(monkeypatch):
     assert told(View()) == []
 
 
-def test_each_item_of_the_compact_json_has_its_own_line(monkeypatch):
+def test_each_item_of_compact_json_has_its_own_line(monkeypatch):
     monkeypatch.setattr(
         json2, "document", lambda _: {"a": 1, "b": [], "c": [1], "d": [1, 2, 3], "e": {"x": []}}
     )

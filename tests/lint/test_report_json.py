@@ -107,7 +107,7 @@ def test_the_text_is_ascii_and_parses_to_the_document(example, result):
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 3])
-def test_the_text_is_the_document_as_the_standard_library_indents_it(result, count):
+def test_text_is_the_document_indented_by_the_library(result, count):
     """The text is written finding by finding; the bytes are those of the whole document."""
     changed = replace(result, findings=result.findings[:count])
     lines = [*map(plain, render("json", changed, View()))]

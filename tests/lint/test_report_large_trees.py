@@ -86,7 +86,7 @@ def test_flows_beyond_the_requested_number_are_counted(many, most):
     assert "10 flows in 10 files: 7 explicit, 3 implicit." in shown
 
 
-def test_long_lists_of_steps_are_reduced_to_the_shortest_chain(example):
+def test_long_step_lists_become_the_shortest_chain(example):
     finding = example.finding()
     steps = (*finding.flow.steps[:-1], *[example.step("delta = goal - pos")] * 10, finding.flow.steps[-1])
     long = replace(finding, flow=replace(finding.flow, steps=steps, chain=(1, 2, len(steps) - 1)))

@@ -64,7 +64,7 @@ def test_paths_through_boxes_correspond_to_flows(example):
     assert sum(len(file) for _, file in drawn.files) == 3
 
 
-def test_a_leading_slash_does_not_distinguish_topics_and_unknown_topics_stay_separate(example):
+def test_leading_slash_does_not_distinguish_topics(example):
     odom = example.finding()
     drawn = picture(
         Result(findings=(into(odom, "cmd", 1), into(odom, "/cmd", 2), into(odom, "", 3), into(odom, "", 4)))

@@ -62,7 +62,7 @@ def test_each_step_is_a_code_flow_location_with_its_role(example):
     assert condition["location"]["physicalLocation"]["region"]["startLine"] == 15
 
 
-def test_a_result_is_at_the_publish_call_and_refers_to_the_subscription(example):
+def test_result_is_at_the_publish_call(example):
     (found,) = results(everything(example))
     (place,) = found["locations"]
     assert place["physicalLocation"]["artifactLocation"] == {"uri": "node.py", "uriBaseId": "%SRCROOT%"}
@@ -129,7 +129,7 @@ def test_rules_carry_their_help_as_text_and_as_markdown(example):
         assert rules[found["ruleIndex"]]["id"] == found["ruleId"]
 
 
-def test_flows_have_the_level_note_and_other_findings_the_level_warning(example):
+def test_flows_are_notes_and_other_findings_warnings(example):
     levels = {r["ruleId"]: r["level"] for r in run_of(everything(example))["results"]}
     assert levels == {"TARL001": "warning", "TARL101": "note", "TARL102": "note", "TARL203": "warning"}
 
@@ -146,7 +146,7 @@ def test_unanalysed_files_are_notifications(example):
 
 
 @pytest.mark.parametrize(("most", "found"), [(2, 0), (3, 1), (4, 2), (6, 4), (9, 4)])
-def test_a_cut_report_keeps_the_errors_and_counts_them_among_its_results(example, most, found):
+def test_cut_report_keeps_and_counts_errors(example, most, found):
     whole = everything(example)
     (run,) = document(replace(whole, errors=whole.errors * 2), Cut(most, 0))["runs"]
     codes = [one["ruleId"] for one in run["results"]]

@@ -210,7 +210,7 @@ def test_a_baseline_is_counted_by_flows_and_hazards():
         ("TARL9", (), "there is no rule TARL9: correct or remove this comment."),
     ],
 )
-def test_the_report_gives_the_reason_why_a_comment_silences_nothing(code, rules, reason):
+def test_report_says_why_a_comment_silences_nothing(code, rules, reason):
     comment = Suppression("a.py", 3, 5, code)
     if not rules:
         assert comment.rules == ()

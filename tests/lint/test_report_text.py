@@ -95,7 +95,7 @@ def test_vanished_flows_are_named(example, result_of):
     assert "  and 5 more\n" in shown(result_of(vanished=many, baseline=Path("tarl-flows.json")))
 
 
-def test_unreadable_files_and_other_files_that_were_not_analysed_are_listed(example, result_of):
+def test_unreadable_and_unanalysed_files_are_listed(example, result_of):
     unknown = replace(
         example.finding(), flow=replace(example.flow(), source=replace(example.source(), topics=()))
     )
@@ -113,7 +113,7 @@ def test_unreadable_files_and_other_files_that_were_not_analysed_are_listed(exam
     ) in text
 
 
-def test_unreadable_files_are_only_counted_if_their_rule_is_disabled(result_of):
+def test_unreadable_files_are_counted_if_their_rule_is_disabled(result_of):
     result = result_of(errors=(SourceError("old.py", 3, "This is Python 2."),), names_errors=False)
     for name in ("text", "concise"):
         assert "old.py" not in shown(result, name=name)
@@ -169,7 +169,7 @@ def test_a_terminal_without_unicode_gets_ascii(example, result_of):
     assert shown(result, View(glyphs=ASCII)).isascii()
 
 
-def test_carets_stand_below_the_call_after_tabs_and_wide_characters(result_of):
+def test_carets_stand_below_the_call_after_wide_characters(result_of):
     line = "\tx = '漢字'; pub.publish(vel)"
     column = line.index("pub") + 1
     hazard = Finding("TARL201", Span("node.py", 1, column, 1, column + 3), "…")
@@ -179,7 +179,7 @@ def test_carets_stand_below_the_call_after_tabs_and_wide_characters(result_of):
     assert carets == "     │                 ^^^"
 
 
-def test_a_long_call_is_shown_by_its_first_and_last_lines(result_of):
+def test_long_call_is_shown_by_its_ends(result_of):
     text = "pub.publish(\n" + "".join(f"    x{i},\n" for i in range(9)) + ")\n"
     hazard = Finding("TARL201", Span("node.py", 1, 1, 11, 2), "…")
     lines = shown(replace(result_of(hazard), texts={"node.py": text})).splitlines()
@@ -193,7 +193,7 @@ def test_a_long_call_is_shown_by_its_first_and_last_lines(result_of):
     ]
 
 
-def test_findings_of_a_deleted_file_are_shown_without_a_code_frame(example, result_of):
+def test_findings_of_a_deleted_file_have_no_frame(example, result_of):
     text = shown(replace(result_of(example.finding()), texts={}))
     assert text.startswith("node.py:18:9 publishes progress (Float64) in travel\n\n    TARL101")
 

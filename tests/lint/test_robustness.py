@@ -78,7 +78,7 @@ def reasons(result: Result) -> dict[str, str]:
         (b"import rospy\n" + b"x = 1\n" * (LARGEST // 6), "The file has more than 2 MB: move data out"),
     ],
 )  # fmt: skip
-def test_a_file_that_cannot_be_analysed_is_named_with_advice(lint, data, reason):
+def test_unanalysable_file_is_named_with_advice(lint, data, reason):
     assert reason in reasons(lint({"odd.py": data}))["odd.py"]
 
 
@@ -133,7 +133,7 @@ def test_an_unusual_but_valid_file_is_analysed(lint, data):
     ],
     ids=range(23),
 )  # fmt: skip
-def test_deep_and_long_code_is_either_analysed_or_named_in_the_report(lint, value):
+def test_deep_code_is_analysed_or_named(lint, value):
     result = lint({"odd.py": NODE.format(value)})
     assert set(reasons(result).values()) <= {
         "The code is nested too deeply to be parsed: split the expression, or exclude the file.",
@@ -142,7 +142,7 @@ def test_deep_and_long_code_is_either_analysed_or_named_in_the_report(lint, valu
 
 
 @pytest.mark.parametrize("header", ["def f{}(msg):", "class C{}:", "for i{} in rospy:", "with rospy as c{}:"])
-def test_deep_blocks_are_either_analysed_or_named_in_the_report(lint, header):
+def test_deep_blocks_are_analysed_or_named(lint, header):
     text = (
         "import rospy\n" + "".join(" " * i + header.format(i) + "\n" for i in range(95)) + " " * 95 + "pass\n"
     )
@@ -211,7 +211,7 @@ def test_control_characters_in_code_are_escaped(lint, capsys):
     assert "# \\x1b]0;owned\\x07" in capsys.readouterr().out
 
 
-def test_many_small_files_are_linted_in_one_and_in_two_processes(lint):
+def test_many_small_files_are_linted_in_two_processes(lint):
     files = {
         f"n{i}.py": f"import n{i // 2}\n\ndef f(x):\n    return x + {i}\n"
         for i in range(5_000 if SLOW else 400)

@@ -38,7 +38,7 @@ def test_every_rule_has_both_kinds_of_snippets():
         assert rule.SUMMARY[0].islower()
 
 
-def test_a_finding_is_at_the_publish_call_and_names_both_topics():
+def test_finding_at_the_publish_call_names_both_topics():
     text = known_rules()["TARL101"].INVALID[0]
     from inspect import cleandoc
 

@@ -63,7 +63,7 @@ def test_unparsable_file_is_an_error_and_the_rest_is_linted(example, in_director
     assert result.statistics.files == 1
 
 
-def test_a_file_on_which_the_parser_crashes_is_an_error(example, in_directory, lint, monkeypatch):
+def test_parser_crash_is_an_error(example, in_directory, lint, monkeypatch):
     def parsed(script):
         if script.path == "odd.py":
             raise AssertionError("boom")
@@ -94,7 +94,7 @@ def test_a_file_that_disappears_meanwhile_is_an_error(example, in_directory, lin
     ]
 
 
-def test_a_crash_of_the_analysis_is_reported_in_one_sentence(example, in_directory, lint, crash, monkeypatch):
+def test_analysis_crash_is_reported_in_one_sentence(example, in_directory, lint, crash, monkeypatch):
     in_directory({"node.py": example.text})
     with pytest.raises(
         AnalysisBug, match=r"has a bug .*KeyError: 'graph', test_runner\.py:\d+\).*TARL_DEBUG=1"
@@ -125,7 +125,7 @@ def test_results_of_sanitizers_are_not_tainted(example, in_directory, lint):
     assert "TARL101" not in [f.code for f in lint().findings]
 
 
-def test_a_silenced_flow_is_counted_and_a_comment_without_effect_is_reported(example, in_directory, lint):
+def test_silenced_flow_is_counted_and_useless_comment_reported(example, in_directory, lint):
     text = example.text.replace("pub.publish(vel)", "pub.publish(vel)  # tarl: ignore[TARL101]")
     in_directory({"node.py": text, "clean.py": "x = 1  # tarl: ignore\n"})
     result = lint()
@@ -134,7 +134,7 @@ def test_a_silenced_flow_is_counted_and_a_comment_without_effect_is_reported(exa
     assert [(s.path, s.line) for s in result.unused] == [("clean.py", 1)]
 
 
-def test_a_comment_for_a_rule_that_did_not_run_is_not_reported(example, in_directory, lint):
+def test_comment_for_a_rule_that_did_not_run_is_accepted(example, in_directory, lint):
     in_directory({"node.py": example.text.replace("(vel)", "(vel)  # tarl: ignore[TARL101]", 1)})
     assert lint(select=("TARL102",)).unused == ()
 
@@ -220,9 +220,7 @@ def test_equal_nodes_of_two_ros_packages_are_distinguished(example, in_directory
         ("implicit", (), False),
     ],
 )
-def test_each_level_of_the_option_fail_on_includes_the_lower_levels(
-    example, in_directory, level, codes, fails
-):
+def test_each_fail_on_level_includes_the_lower_ones(example, in_directory, level, codes, fails):
     in_directory({})
     result = Result(findings=tuple(replace(example.finding(), code=code) for code in codes))
     assert exceeds(result, resolve(Options(fail_on=level))) is fails

@@ -87,7 +87,7 @@ def test_waiting_call_reads_new_fields_of_other_entry_points(store, obj):
     assert not same(store, reads)
 
 
-def test_a_call_does_not_see_data_that_was_stored_on_another_path(store, obj):
+def test_call_does_not_see_data_of_another_path(store, obj):
     store.put((obj, "x"), BOTTOM)
     reads = noted(store, obj)
     hidden(store, obj, "x", Value(DATA))
@@ -114,7 +114,7 @@ def test_call_sees_data_anywhere_in_the_enclosing_object(store, obj):
     assert not same(store, reads)
 
 
-def test_a_store_into_a_part_of_an_object_prevents_the_replay(store, obj):
+def test_store_into_a_part_prevents_the_replay(store, obj):
     reads = noted(store, obj)
     inner = obj.sub("x").sub("y")
     assert same(store, reads)
@@ -122,7 +122,7 @@ def test_a_store_into_a_part_of_an_object_prevents_the_replay(store, obj):
     assert not same(store, reads)
 
 
-def test_a_call_always_sees_a_change_in_the_description_of_an_object(store, obj):
+def test_changed_object_description_is_always_seen(store, obj):
     reads = noted(store, obj)
     obj.describe("another thing")
     assert not same(store, reads)
@@ -149,7 +149,7 @@ def test_pointer_counts_only_if_the_call_sees_its_holder(store, obj):
     assert not same(store, reads)
 
 
-def test_a_wait_ignores_keys_to_which_no_other_entry_point_stores():
+def test_wait_ignores_keys_without_foreign_stores():
     shared, root, other = Shared(), Root("one", "test"), Root("other", "test")
     mine, theirs = (Obj("instance", "a"), "x"), (Obj("instance", "b"), "x")
     shared.leave(shared.pauses, other, theirs, Value(DATA))
@@ -168,7 +168,7 @@ def test_a_wait_ignores_keys_to_which_no_other_entry_point_stores():
     assert Store(shared, root).heard() == {theirs: Value(DATA)}
 
 
-def test_reads_that_do_not_depend_on_the_path_are_merged_once(obj):
+def test_path_independent_reads_are_merged_once(obj):
     inner, outer = Reads(objects={obj: 3}), Reads()
     outer.add(inner)
     assert outer.objects == {obj: 3}
@@ -209,7 +209,7 @@ def test_the_start_of_a_loop_also_includes_later_stores(store):
 # --- carriers ---------------------------------------------------------------------------------------------
 
 
-def test_cached_reachability_is_valid_until_a_carrier_passes_on_more_data():
+def test_cached_reachability_is_valid_until_more_data_passes():
     machine = linked(NESTED)
     graph = machine.graph
     place = graph.places[0]
@@ -224,7 +224,7 @@ def test_cached_reachability_is_valid_until_a_carrier_passes_on_more_data():
     assert graph.through(frozenset([item]), frozenset([carried])) != first
 
 
-def test_a_cached_reachability_result_records_the_carriers_on_which_it_depends():
+def test_cached_reachability_records_its_carriers():
     machine = linked(NESTED)
     graph = machine.graph
     place = graph.places[0]
@@ -240,7 +240,7 @@ def test_a_cached_reachability_result_records_the_carriers_on_which_it_depends()
     assert asked[0] == asked[1] != {}
 
 
-def test_a_call_records_that_it_allocates_an_object_that_already_exists(store):
+def test_call_records_allocating_an_existing_object(store):
     machine = linked(NESTED)
     frame = next(iter(machine.frames.values()))
     machine.store = store

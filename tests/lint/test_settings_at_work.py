@@ -118,7 +118,7 @@ def test_paths_are_excluded_by_patterns(lint, arguments, found):
     assert [line.split(":")[0] for line in lint(files, *arguments)] == found
 
 
-def test_extend_exclude_adds_to_the_settings_and_exclude_replaces_them(lint, capsys):
+def test_extend_exclude_adds_and_exclude_replaces(lint, capsys):
     files = dict.fromkeys(["a.py", "gen/b.py", "vendor/c.py"], PLAIN) | settings('exclude = ["gen/"]')
     assert [line.split(":")[0] for line in lint(files, "--extend-exclude", "vendor")] == ["a.py"]
     assert [line.split(":")[0] for line in lint(files, "--exclude", "vendor")] == ["a.py", "gen/b.py"]
@@ -164,7 +164,7 @@ def test_a_named_settings_file_is_used(lint):
     assert lint(files, "--config", "strict.toml") == []
 
 
-def test_a_run_without_findings_says_whether_its_flow_rules_are_disabled(in_directory, capsys):
+def test_run_without_findings_names_disabled_flow_rules(in_directory, capsys):
     in_directory({"a.py": PLAIN})
     assert main(["--select", "TARL2"]) == 0
     assert capsys.readouterr().out == "No hazard in 1 file.\n"

@@ -63,7 +63,7 @@ def test_a_setting_refuses_invalid_values(key, value):
     assert KEYS[key][0](value) is None
 
 
-def test_an_unknown_key_of_a_wrapper_is_refused_by_name():
+def test_unknown_wrapper_key_is_refused_by_name():
     with pytest.raises(
         ValueError, match=r"the wrapper 'a.b' has no key 'topics': its keys are callback, extra, like, "
     ):
@@ -79,7 +79,7 @@ def test_a_pattern_with_backslashes_is_refused(pattern, meant):
 
 
 @pytest.mark.parametrize(("text", "number"), [("auto", None), ("1", 1), ("12", 12)])
-def test_a_number_of_processes_is_one_or_more_or_auto(text, number):
+def test_number_of_processes_is_positive_or_auto(text, number):
     assert options._jobs(text) == number
 
 
@@ -100,7 +100,7 @@ def parsed(*arguments: str) -> Any:
     return options.options(options.parser().parse_args(arguments))
 
 
-def test_without_options_the_working_directory_is_linted_with_the_cache():
+def test_defaults_lint_the_working_directory():
     found = parsed()
     assert (found.paths, found.stdin, found.cache, found.jobs, found.fail_on) == (
         (Path(),),

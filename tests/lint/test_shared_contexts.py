@@ -83,7 +83,7 @@ rospy.Subscriber("in", F, on)
 
 
 @pytest.mark.usefixtures("sharing")
-def test_the_conditions_of_all_callers_decide_whether_a_shared_call_runs(tmp_path):
+def test_conditions_of_all_callers_decide_a_shared_call(tmp_path):
     (tmp_path / "node.py").write_text(CHOSEN)
     assert [f.kind for f in analyse([tmp_path]).flows] == ["implicit"]
 
@@ -114,7 +114,7 @@ def test_conditions_of_other_callers_do_not_decide_a_shared_result(tmp_path):
 
 
 @pytest.mark.usefixtures("sharing")
-def test_each_call_that_supplies_a_callback_stays_a_separate_subscription(tmp_path):
+def test_each_callback_supplier_stays_a_separate_subscription(tmp_path):
     (tmp_path / "node.py").write_text(
         "import rospy\npub = rospy.Publisher('out', F)\n"
         "def listen(topic, callback):\n    rospy.Subscriber(topic, F, callback)\n"

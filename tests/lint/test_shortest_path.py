@@ -47,7 +47,7 @@ def test_the_reported_path_is_a_shortest_path(graph: tuple[list[list[int]], dict
 
 
 @given(graphs(), st.lists(st.sets(st.integers(0, 6)), min_size=1, max_size=3))
-def test_a_search_that_several_subscriptions_share_finds_the_paths_of_separate_searches(
+def test_shared_search_finds_the_paths_of_separate_searches(
     graph: tuple[list[list[int]], dict[int, int]], starts: list[set[int]]
 ) -> None:
     formers, statements = graph
@@ -71,7 +71,7 @@ def reached_from(start: set[int], formers: list[list[int]]) -> set[int]:
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
-def test_every_flow_has_a_path_from_arrival_to_publish_call(case: Path) -> None:
+def test_every_flow_has_a_path_to_its_publish_call(case: Path) -> None:
     flows = analyse([case]).flows
     assert flows
     for flow in flows:

@@ -50,7 +50,7 @@ def test_reversing_a_graph_lists_the_predecessors_of_each_node():
     assert _reversed([{1, 2}, set(), {1}]) == [[], [0, 2], [0]]
 
 
-def test_reachability_follows_data_and_control_edges_within_a_given_set_of_nodes():
+def test_reachability_stays_within_the_given_nodes():
     data, control = [[1], [2], [], [4], []], [[3], [], [], [], []]
     assert closure([0], [data]) == {0, 1, 2}
     assert closure([0], [data, control]) == {0, 1, 2, 3, 4}
@@ -194,7 +194,7 @@ def written(source: str, name: str = "f"):
         ("f()", "f", "data", None, "call"),
     ],
 )
-def test_the_role_of_a_step_is_known_or_follows_from_its_syntax(source, name, dependence, known, role):
+def test_role_of_a_step_follows_from_its_syntax(source, name, dependence, known, role):
     body = f"def f():\n    {source}" if source == "return" else source
     one = written(body, name)
     if source == "return":
@@ -230,7 +230,7 @@ class Node:
 """
 
 
-def test_the_outline_of_a_module_lists_its_locks_and_names():
+def test_module_outline_lists_locks_and_names():
     found = Outline(ast.parse(SOURCE))
     assert found.locks == {
         "LOCK": "LOCK",
@@ -252,7 +252,7 @@ def test_the_outline_of_a_module_lists_its_locks_and_names():
     ]
 
 
-def test_a_call_is_found_by_its_start_and_end_position():
+def test_call_is_found_by_its_position():
     found = Outline(ast.parse("f(1)(2)\ng()\n"))
     outer, inner = found.call((1, 0, 1, 7)), found.call((1, 0, 1, 4))
     assert outer is not None
@@ -292,7 +292,7 @@ def test_wrapper_takes_the_arguments_of_the_wrapped_function():
         ("something else", "Something else."),
     ],
 )  # fmt: skip
-def test_mistakes_on_the_command_line_are_reported_in_one_sentence(message, sentence):
+def test_command_line_mistakes_are_reported_in_one_sentence(message, sentence):
     assert _sentence(message, KNOWN) == sentence
 
 
@@ -348,7 +348,7 @@ def f(a, b=(1,
 """
 
 
-def test_a_compound_statement_spans_its_header_up_to_the_colon():
+def test_compound_statement_spans_its_header():
     text = Text(SimpleNamespace(tree=ast.parse(HEADERS), text=HEADERS, path="a.py", name="a"))
     found = {}
     for written in text.by_start.values():
@@ -400,7 +400,7 @@ def test_equal_statements_of_a_function_are_numbered():
     assert text.site(branch).text == "if a and b:"
 
 
-def test_calls_between_a_condition_and_its_value_are_steps_in_order():
+def test_calls_between_condition_and_value_are_ordered_steps():
     """A helper, called through two calls, returns one of two values under a condition of the caller."""
     outer = frame()
     inner = frame(frame(outer, 3), 5)

@@ -9,7 +9,7 @@ def parsed(data):
     return parse("pkg/node.py", data, "pkg.node")
 
 
-def test_a_file_becomes_a_module_with_its_name_and_text():
+def test_file_becomes_a_named_module():
     module = parsed(b"x = 1\n")
     assert isinstance(module, Module)
     assert (module.path, module.name, module.text) == ("pkg/node.py", "pkg.node", "x = 1\n")
@@ -55,7 +55,7 @@ def test_a_package_is_distinguished_from_a_module():
     assert module.is_package
 
 
-def test_a_notebook_is_recognised_even_if_its_text_is_valid_python():
+def test_notebook_is_recognised_even_as_valid_python():
     error = parse("a.ipynb", b'{"cells": []}', "a")
     assert isinstance(error, SourceError)
     assert "jupyter nbconvert --to script" in error.message

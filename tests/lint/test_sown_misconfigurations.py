@@ -124,7 +124,7 @@ def found(folder: Path, capsys: pytest.CaptureFixture[str]) -> list[dict[str, st
 
 
 @pytest.mark.parametrize("kind", SOWN)
-def test_an_injected_misconfiguration_is_found_and_nothing_else_is_reported(kind, tmp_path, capsys):
+def test_only_the_injected_misconfiguration_is_reported(kind, tmp_path, capsys):
     code, message, edits = SOWN[kind]
     folder = Path(shutil.copytree(EXAMPLE, tmp_path / "src"))
     for name, old, new in edits:

@@ -27,7 +27,7 @@ def place(example, in_directory) -> Path:
     return in_directory({"node.py": example.text, "clean.py": "import rospy\n\n\ndef f(x):\n    return x\n"})
 
 
-def test_a_run_on_a_clean_file_imports_no_heavy_modules(place):
+def test_run_on_a_clean_file_imports_no_heavy_modules(place):
     program = f"""
 import sys
 from tarl_lint.cli import main
@@ -59,7 +59,7 @@ assert main([]) == 0
     assert "\x1b" not in out
 
 
-def test_a_file_in_which_nothing_subscribes_or_publishes_needs_no_analysis(place):
+def test_file_without_endpoints_needs_no_analysis(place):
     program = """
 import sys
 from tarl_lint.cli import main

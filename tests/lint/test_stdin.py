@@ -20,14 +20,14 @@ def lint(monkeypatch, capsys):
     return go
 
 
-def test_the_text_from_stdin_replaces_the_text_of_the_named_file(example, in_directory, lint):
+def test_stdin_replaces_the_text_of_the_named_file(example, in_directory, lint):
     in_directory({"src/node.py": "x = 1\n"})
     code, out, _ = lint(example.text, "-", "--stdin-filename", "src/node.py", "--format", "concise")
     assert code == 1
     assert out.startswith("src/node.py:18:9 TARL101 ")
 
 
-def test_text_on_stdin_needs_neither_a_name_nor_an_existing_file(example, in_directory, lint):
+def test_stdin_needs_no_existing_file(example, in_directory, lint):
     in_directory({})
     assert lint(example.text, "-", "--format", "concise")[1].startswith("stdin.py:18:9 TARL101 ")
     assert lint(example.text, "-", "--stdin-filename", "new/a.py", "--format", "concise")[1].startswith(

@@ -36,7 +36,7 @@ FERRY = """
 """
 
 
-def test_a_script_node_has_the_taint_list_of_the_paper(tmp_path):
+def test_script_node_has_the_taint_list_of_the_paper(tmp_path):
     (flow,) = analysed(tmp_path, ferry=FERRY).flows
     assert flow.kind == "explicit"
     assert (flow.source.topics, flow.source.type, flow.source.callback) == (("/gps",), "Odometry", "arrived")
@@ -244,7 +244,7 @@ def test_context_includes_the_callers_of_a_step(tmp_path):
     assert steps(flow, "data") == ["def on(self, msg):", "self.v = msg.data", "self.out.publish(self.v)"]
 
 
-def test_a_wrapper_is_named_by_the_call_that_supplies_the_callback(tmp_path):
+def test_wrapper_is_named_by_the_call_with_the_callback(tmp_path):
     (flow,) = analysed(
         tmp_path,
         node="""
@@ -328,7 +328,7 @@ def test_two_runs_give_the_same_result(tmp_path):
 
 
 @pytest.mark.parametrize("key", ["msg.name", "msg.name + 'x'", "str(msg.name)"])
-def test_a_store_under_a_key_that_data_chose_is_a_step(tmp_path, key):
+def test_store_under_a_chosen_key_is_a_step(tmp_path, key):
     node = f"""
         import rospy
         def on(msg):

@@ -51,7 +51,7 @@ def test_comments_for_another_rule_or_tool_silence_nothing(comment):
     assert kept(f"pub.publish(x)  {comment}\n", finding(1)) == ["TARL101"]
 
 
-def test_a_comment_silences_if_it_is_on_a_line_of_the_call():
+def test_comment_on_a_line_of_the_call_silences_it():
     text = "a = 1  # tarl: ignore\npub.publish(\n    x,  # tarl: ignore\n)\n"
     assert kept(text, finding(2, end=4)) == []
     assert kept(text, finding(4)) == ["TARL101"]

@@ -107,7 +107,7 @@ def test_unread_node_may_connect_topics_of_its_remappings(workspace, capsys):
     assert "not read: the package base is not in the workspace\n  remaps i → /raw, o → /safe\n" in out
 
 
-def test_chains_can_be_queried_from_a_sensor_to_an_actuator(workspace, capsys):
+def test_chains_are_queried_from_sensor_to_actuator(workspace, capsys):
     file = launched(
         workspace,
         relay("one", "/scan", "/mid") + relay("two", "/odom", "/mid") + relay("out", "/mid", "/cmd"),
@@ -126,7 +126,7 @@ def test_chains_can_be_queried_from_a_sensor_to_an_actuator(workspace, capsys):
     assert "No node that was read uses /sacn." in run(capsys, "--launch", file, "--from", "/sacn")[1]
 
 
-def test_nodes_without_a_launch_file_have_the_names_in_their_code(workspace, capsys):
+def test_unlaunched_nodes_have_the_names_in_their_code(workspace, capsys):
     _, out, _ = run(capsys, "--to", "/out")
     assert out.startswith(".: ") or ", names as in the code: 1 node" in out
     assert flows(out) == ["/in → /relay → /out  explicit"]
@@ -154,7 +154,7 @@ def test_the_number_of_chains_is_limited():
     assert (len(found), more) == (MOST, True)
 
 
-def test_main_blocks_and_functions_of_imported_modules_do_not_run(workspace, capsys):
+def test_main_blocks_of_imported_modules_do_not_run(workspace, capsys):
     node = """\
         #!/usr/bin/env python3
         import rospy
@@ -185,7 +185,7 @@ def test_main_blocks_and_functions_of_imported_modules_do_not_run(workspace, cap
     assert "unasked" not in out
 
 
-def test_fingerprints_are_the_same_as_in_a_run_without_a_launch_file(workspace, capsys):
+def test_launch_file_leaves_fingerprints_unchanged(workspace, capsys):
     file = launched(workspace, relay("one", "/scan", "/cmd_vel"))
     (system,) = json.loads(run(capsys, "--launch", file, "--format", "json")[1])["systems"]
     plain = json.loads(run(capsys, ".", "--format", "json")[1])["diagnostics"]
@@ -196,7 +196,7 @@ def test_fingerprints_are_the_same_as_in_a_run_without_a_launch_file(workspace, 
 
 
 @pytest.mark.parametrize("arguments", [["--launch", "all"], ["--to", "/cmd_vel"]])
-def test_the_json_of_the_example_is_valid_by_its_schema(arguments, capsys, monkeypatch):
+def test_json_of_the_example_is_valid(arguments, capsys, monkeypatch):
     monkeypatch.chdir(EXAMPLE)
     document = json.loads(run(capsys, *arguments, "--format", "json")[1])
     jsonschema.validate(document, SCHEMA)
@@ -268,7 +268,7 @@ def test_user_mistakes_are_reported_in_sentences(workspace, capsys, arguments, m
     assert message in err
 
 
-def test_a_launch_file_is_found_by_its_name_in_the_workspace(capsys, monkeypatch, tmp_path):
+def test_launch_file_is_found_by_name(capsys, monkeypatch, tmp_path):
     monkeypatch.chdir(EXAMPLE)
     by_path = run(capsys, "--launch", "scout_navigation/launch/bringup.launch.py")
     assert by_path[0] == 0
@@ -305,7 +305,7 @@ def test_a_wrong_launch_argument_or_name_is_an_error(capsys, monkeypatch, argume
     assert message in err
 
 
-def test_topic_names_with_the_same_ending_are_suggested_for_an_unknown_topic(capsys, monkeypatch):
+def test_similar_topics_are_suggested_for_an_unknown_one(capsys, monkeypatch):
     monkeypatch.chdir(EXAMPLE)
     _, out, _ = run(capsys, "--launch", "bringup.launch.py", "--from", "scan")
     assert "No node that was read uses /scan. Did you mean /scout/rear/scan?" in out
@@ -353,7 +353,7 @@ def test_node_row_is_followed_by_its_remappings_and_services(workspace, capsys):
     )
 
 
-def test_parameters_that_a_group_names_by_the_node_are_counted(workspace, capsys):
+def test_group_parameters_named_by_the_node_are_counted(workspace, capsys):
     write(workspace, {"arm/config/limits.yaml": "pid: {p: 1.0, i: 0.1}\n"})
     body = (
         '<group ns="left"><rosparam file="$(find arm)/config/limits.yaml" ns="one"/><param name="one/speed" value="1"/>'

@@ -27,7 +27,7 @@ def picture(*edges: str) -> Drawing:
 LINE = ("t a > n one", "n one > t b", "t b > n two", "n two > t c")
 
 
-def test_a_chain_of_nodes_has_one_name_in_each_column():
+def test_chain_of_nodes_has_one_name_per_column():
     assert drawn(*LINE) == [["t a"], ["n one"], ["t b"], ["n two"], ["t c"]]
     assert drawn() == []
 
@@ -42,7 +42,7 @@ def test_a_cycle_is_cut_where_it_closes():
     assert drawn(*LINE, "t c > n one") == [["t a"], ["n one"], ["t b"], ["n two"], ["t c"]]
 
 
-def test_a_column_is_ordered_by_the_mean_height_of_the_inputs():
+def test_column_is_ordered_by_the_height_of_its_inputs():
     crossing = picture("t a > n z", "t b > n y", "t c > n x", "t a > n x", "t a > n w", "t b > n w")
     # heights: a 0, b 1, c 2; means: z 0, y 1, x (2 + 0) / 2 = 1, w (0 + 1) / 2 = 0.5; equal means by name
     assert layers(crossing) == [["t a", "t b", "t c"], ["n z", "n w", "n x", "n y"]]

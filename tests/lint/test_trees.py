@@ -31,7 +31,7 @@ def plain(nodes):
 
 
 @pytest.mark.parametrize("text", TEXTS)
-def test_all_nodes_are_found_in_the_order_of_the_tree(text):
+def test_nodes_are_found_in_tree_order(text):
     tree = ast.parse(text)
     assert set(walk(tree)) == set(plain(ast.walk(tree)))
     for node in plain(ast.walk(tree)):

@@ -89,7 +89,7 @@ PROGRAMS: dict[str, Callable[[], str]] = {
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_the_analysis_of_a_program_takes_a_bounded_number_of_statements(name):
+def test_analysis_takes_a_bounded_number_of_statements(name):
     assert work(PROGRAMS[name]()).total < MOST
 
 
@@ -98,13 +98,13 @@ def test_work_grows_linearly_with_the_number_of_methods():
     assert two < 2.6 * one
 
 
-def test_flows_of_a_large_program_are_found_within_its_budget():
+def test_large_program_is_analysed_within_its_budget():
     text = node(chain(8, 6))
     (flow,) = engine.analyse([Module("node.py", "node", text, ast.parse(text))], Config())
     assert (flow.kind, flow.source.topics, flow.sink.topics) == ("explicit", ("in0",), ("out",))
 
 
-def test_ignoring_values_without_a_source_does_not_change_the_flows():
+def test_ignoring_sourceless_values_changes_no_flow():
     text = node(chain(4, 2), subscriptions=2)
     module = Module("node.py", "node", text, ast.parse(text))
     assert engine.trace([module], Config())[1] == engine.analyse([module], Config()) != ()
@@ -139,7 +139,7 @@ rospy.Subscriber("a", Float64, on)
 """
 
 
-def test_calls_without_data_into_irrelevant_modules_have_a_small_budget():
+def test_irrelevant_modules_without_data_have_a_small_budget():
     given, idle = (work(USER.format(start=50, given=g), TOOL).total for g in ("msg.data", "1"))
     assert idle < IRRELEVANT_CALL_LIMIT + 100 < given
 
@@ -222,7 +222,7 @@ rospy.Subscriber("a", Float64, on)
     assert lines == {4, 5}
 
 
-def test_an_entry_point_is_not_rerun_for_its_own_stores():
+def test_own_stores_do_not_rerun_an_entry_point():
     text = "import rospy\nx = []\nfor i in range(3):\n    x.append([i])\nprint(x, rospy.Publisher('a', F))\n"
     assert work(text).total < 20
 
@@ -239,7 +239,7 @@ def callback(body: str) -> str:
 @pytest.mark.parametrize(
     "again", ["    if x > 1:\n        x = x + 1\n", "    for i in range(9):\n        x = x + i\n"]
 )
-def test_a_value_changed_in_many_places_has_a_bounded_number_of_edges(again):
+def test_often_changed_value_has_a_bounded_number_of_edges(again):
     machine = work(callback(again * 1_500))
     assert machine.graph.edges < 1.2 * MAX_EDGES
     assert list(machine.cut) == ["node.py"]

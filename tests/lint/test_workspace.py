@@ -196,7 +196,7 @@ def test_configurations_are_interpreted(tmp_path: Path) -> None:
     assert [one["name"] for one in group["parameters"]] == ["max_x", "max_y"]
 
 
-def test_values_in_a_cfg_file_that_are_not_constant_are_reported(tmp_path: Path) -> None:
+def test_non_constant_values_in_a_cfg_file_are_reported(tmp_path: Path) -> None:
     text = CFG.replace("10, 1, 100.0", "rospy.get_param('rate'), 1, 100.0").replace('"Arm")', "name)")
     (tmp_path / "Arm.cfg").write_text(text)
     found, problems = configurations(tmp_path / "Arm.cfg")
@@ -296,7 +296,7 @@ def test_cmake_files_are_read(tmp_path: Path) -> None:
     assert (found.uses_setup, found.python_packages) == (True, (("arm", "python/arm"),))
 
 
-def test_manifests_give_the_build_type_and_do_not_expand_entities(tmp_path: Path) -> None:
+def test_manifests_give_the_build_type_without_entities(tmp_path: Path) -> None:
     assert manifest(package(tmp_path / "a", "arm"))[0].kind == "catkin"
     assert manifest(package(tmp_path / "b", "arm", "ament_python"))[0].kind == "ament_python"
     write(tmp_path / "c", package_DOT_xml="<!DOCTYPE x [<!ENTITY a 'b'>]><package><name>&a;</name></package>")
@@ -338,7 +338,7 @@ def workspace(tmp_path: Path) -> Workspace:
     return read(tmp_path / "ws/src")
 
 
-def test_a_hidden_package_is_found_by_name_and_path_but_not_listed(tmp_path: Path) -> None:
+def test_hidden_package_is_found_but_not_listed(tmp_path: Path) -> None:
     found = workspace(tmp_path)
     assert [(one.package.name, one.marker) for one in found.hidden] == [
         ("old", tmp_path / "ws/src/old/COLCON_IGNORE")
@@ -359,7 +359,7 @@ def test_visible_package_wins_over_a_hidden_one(tmp_path: Path) -> None:
     assert (arm.folder, found.hidden) == (tmp_path / "arm", ())
 
 
-def test_the_file_that_hides_a_package_is_searched_in_the_package_first(tmp_path: Path) -> None:
+def test_package_file_hides_it_first(tmp_path: Path) -> None:
     package(tmp_path / "arms/left", "left")
     write(tmp_path / "arms", CATKIN_IGNORE="")
     write(package(tmp_path / "arms/right", "right"), COLCON_IGNORE="")

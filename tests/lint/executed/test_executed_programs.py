@@ -46,7 +46,7 @@ def test_the_linter_reports_flows_that_executions_show():
 
 @slow
 @pytest.mark.parametrize("batch", range(1, 13))
-def test_the_linter_reports_flows_that_executions_of_thousands_of_programs_show(batch):
+def test_linter_reports_the_flows_of_executed_programs(batch):
     assert_reported(range(batch * BATCH, (batch + 1) * BATCH))
 
 
@@ -78,7 +78,7 @@ def test_an_execution_shows_what_was_published():
     assert dependences(NODE, 1, 40) == {("a", "out")}
 
 
-def test_an_unhandled_exception_of_the_executed_program_is_raised_as_unhandled_error():
+def test_unhandled_exception_of_a_program_is_an_unhandled_error():
     with pytest.raises(UnhandledError):
         run(NODE, ("b", 0))
 
@@ -92,7 +92,7 @@ def test_a_random_program_depends_only_on_its_seed():
     assert Generator(5).program() == Generator(5).program() != Generator(6).program()
 
 
-def test_shrinking_removes_statements_that_a_tested_property_does_not_need():
+def test_shrinking_removes_irrelevant_statements():
     left = shrunk(NODE, lambda text: ("a", "out") in dependences(text, 1, 40))
     assert "raise" in left
     assert "on_b" not in left

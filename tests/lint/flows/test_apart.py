@@ -101,7 +101,7 @@ def test_a_base_class_subscribes_for_its_subclasses(tmp_path):
     }
 
 
-def test_a_topic_name_that_is_found_late_adds_no_second_source(tmp_path):
+def test_late_topic_name_adds_no_second_source(tmp_path):
     node = (
         "import rospy\nfrom std_msgs.msg import Float64\n"
         "class Node:\n"
@@ -132,7 +132,7 @@ def test_helper_with_an_unknown_topic_is_reported_once(tmp_path):
     }
 
 
-def test_a_line_that_subscribes_to_very_many_topics_has_one_source(tmp_path):
+def test_line_with_many_subscriptions_has_one_source(tmp_path):
     names = [f"t{number}" for number in range(MAX_APART + 10)]
     node = (
         "import rospy\nfrom std_msgs.msg import Float64\n"
@@ -145,7 +145,7 @@ def test_a_line_that_subscribes_to_very_many_topics_has_one_source(tmp_path):
     assert len(heard) <= MAX_APART + 1
 
 
-def test_a_helper_has_no_unused_subscription_if_all_its_calls_were_read(tmp_path):
+def test_fully_read_helper_has_no_unused_subscription(tmp_path):
     text = HELPER + "rospy.init_node('node')\nInput('level', Float64)\nprint(Input('stop', Bool).value)\n"
     (tmp_path / "node.py").write_text(text, encoding="utf-8")
     chosen = Config(root=tmp_path, select=("TARL203",))
@@ -209,7 +209,7 @@ def pairs(text: str) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
     return [(flow.source.topics, flow.sink.topics) for flow in flows(text)]
 
 
-def test_publishers_of_a_helper_class_are_sinks_of_their_own() -> None:
+def test_publishers_of_a_helper_class_are_separate_sinks() -> None:
     text = OUTPUT + (
         "left, right = Output('left'), Output('right')\n"
         "rospy.Subscriber('a', Float64, lambda msg: left.send(msg.data))\n"
@@ -238,7 +238,7 @@ def test_publishers_that_get_the_same_messages_are_one_sink() -> None:
     assert pairs(text) == [(("a",), ("left", "right"))]
 
 
-def test_a_publisher_that_is_chosen_by_data_depends_on_the_choice() -> None:
+def test_publisher_chosen_by_data_depends_on_the_choice() -> None:
     text = OUTPUT + (
         "left, right = Output('left'), Output('right')\n"
         "rospy.Subscriber('a', Float64, lambda msg: (left if msg.data > 0 else right).send(1.0))\n"
@@ -258,7 +258,7 @@ def test_known_and_unknown_topics_of_a_helper_have_separate_sinks() -> None:
     assert pairs(text) == [(("a",), ("known",)), (("b",), ())]
 
 
-def test_a_publish_call_with_very_many_publishers_has_one_sink() -> None:
+def test_call_with_very_many_publishers_has_one_sink() -> None:
     names = [f"t{number}" for number in range(MAX_APART + 10)]
     uses = "".join(
         f"rospy.Subscriber('a', Float64, lambda msg: Output('{n}').send(msg.data))\n" for n in names

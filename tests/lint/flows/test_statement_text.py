@@ -68,7 +68,7 @@ FUNCTIONS = """\
 """
 
 
-def test_functions_and_lambdas_are_found_by_their_position_in_the_source():
+def test_functions_and_lambdas_are_found_by_position():
     text = text_of(FUNCTIONS)
     names = {pos: written.qualname for pos, written in text.functions.items()}
     assert names == {(1, 0): "f", (2, 8): "<lambda>", (6, 4): "C.g", (10, 4): "<lambda>", (11, 0): "k"}

@@ -580,7 +580,7 @@ def test_loop_over_publishers_connects_them_through_shared_state():
     assert ends(node(wiring).replace("\n    def rows(self)", methods)) == EVERYTHING
 
 
-def test_flows_of_a_table_row_that_may_be_missing_are_also_found():
+def test_flows_of_an_optional_table_row_are_found():
     wiring = """
         table = {"a": self.on_a}
         if len(self.names) > 2:
@@ -625,7 +625,7 @@ def test_a_table_of_many_rows_is_one_source():
     assert len(found) == 1
 
 
-def test_each_row_of_a_long_table_has_flows_of_its_own():
+def test_each_row_of_a_long_table_has_its_own_flows():
     topics = [f"t{number}" for number in range(MAX_ROWS)]
     found = flows(node(f"for topic in {topics}:\n    self.listen(topic, self.on_a)"))
     assert sorted(flow.source.topics for flow in found) == sorted((topic,) for topic in topics)

@@ -70,7 +70,7 @@ EMPTY = ["names = []", "names = ()"]
 
 @pytest.mark.parametrize("wiring", WIRINGS)
 @pytest.mark.parametrize("names", UNKNOWN_OR_EMPTY)
-def test_a_list_that_may_be_empty_may_also_have_elements(names, wiring):
+def test_possibly_empty_list_may_have_elements(names, wiring):
     text = NODE.format(names=indent(names, " " * 8), wiring=indent(wiring, " " * 8))
     lines = text.splitlines()
     assert [lines[flow.sink.span.line - 1].endswith("there") for flow in flows(text)] == [True]

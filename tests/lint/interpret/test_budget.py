@@ -35,7 +35,7 @@ def test_a_program_within_its_budget_is_analysed_completely():
     assert run(CALLS, HELPERS).cut == {}
 
 
-def test_a_program_that_has_spent_its_budget_executes_few_statements_per_run(monkeypatch):
+def test_program_beyond_its_budget_executes_few_statements(monkeypatch):
     whole = executed()
     monkeypatch.setattr(state, "PROGRAM_LIMIT", 0)
     assert executed() == whole
@@ -44,7 +44,7 @@ def test_a_program_that_has_spent_its_budget_executes_few_statements_per_run(mon
     assert 10 <= executed() < whole - 30
 
 
-def test_no_function_is_entered_after_a_run_has_reached_its_statement_limit(monkeypatch):
+def test_no_function_is_entered_beyond_the_statement_limit(monkeypatch):
     whole = executed()
     monkeypatch.setattr(fixpoint, "MAX_STATEMENTS", 10)
     assert 10 <= executed() < whole - 30

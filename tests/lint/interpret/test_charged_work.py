@@ -85,7 +85,7 @@ def test_cyclic_objects_are_read_again_only_after_a_store(monkeypatch):
     assert 0 < large < 1.5 * small
 
 
-def test_the_number_of_object_reads_grows_linearly_with_the_number_of_statements(monkeypatch):
+def test_object_reads_grow_linearly_with_statements(monkeypatch):
     few, many = (reads_of_objects(monkeypatch, ring(8, steps)) for steps in (60, 120))
     assert 0 < many < 2.2 * few
 
@@ -113,7 +113,7 @@ def test_entry_points_of_an_imported_file_use_the_program_budget():
     assert machine.work.charged_to("run.py") == "run.py"
 
 
-def test_a_program_has_its_own_budget_even_if_another_file_imports_it():
+def test_imported_program_has_its_own_budget():
     inner = SHARED["pkg/inner.py"] + "if __name__ == '__main__':\n    rospy.spin()\n"
     machine = linked({"inner.py": inner, "test_inner.py": "from inner import on_a\n"})
     assert machine.work.charged_to("inner.py") == "inner.py"

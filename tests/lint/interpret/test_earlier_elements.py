@@ -228,7 +228,7 @@ root = Table(Row(Leaf(one), Leaf(a), Leaf(two)), Row(Leaf(b), Leaf(three)))
 
 
 @pytest.mark.parametrize("title", sections(PROGRAMS))
-def test_earlier_objects_in_a_loop_decide_whether_later_objects_are_called(title: str) -> None:
+def test_earlier_objects_decide_whether_later_ones_are_called(title: str) -> None:
     leaves = LEAVES
     for name, mark in zip(("FIRST", "SECOND", "THIRD"), title.partition(": ")[2].split("; "), strict=True):
         leaves = leaves.replace(name, mark)

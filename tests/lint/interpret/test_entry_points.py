@@ -227,7 +227,7 @@ def test_definitions_inside_other_statements_are_entry_points(text):
         ),
     ],
 )
-def test_a_function_with_a_decorator_of_another_package_may_be_called(text):
+def test_function_with_a_foreign_decorator_may_be_called(text):
     assert differing(HEAD + dedent(text)) == {}
 
 

@@ -106,12 +106,12 @@ def test_code_after_a_handler_ignores_a_caught_exception(raised, caught):
     assert flows(AROUND.format(raised=raised, caught=caught)) == []
 
 
-def test_an_exception_whose_name_has_two_definitions_may_be_of_either_class():
+def test_exception_with_two_definitions_may_be_of_either_class():
     twice = "if rospy:\n    class Fault(ValueError):\n        pass\nelse:\n    class Fault(Exception):\n        pass\n"
     assert flows(AROUND.format(raised="Fault", caught="ValueError"), classes=twice) == ["implicit"]
 
 
-def test_an_exception_that_no_inner_handler_catches_reaches_the_outer_handler():
+def test_uncaught_inner_exception_reaches_the_outer_handler():
     outer = """\
     try:
         try:
@@ -130,7 +130,7 @@ def test_an_exception_that_no_inner_handler_catches_reaches_the_outer_handler():
 
 
 @pytest.mark.parametrize(("caught", "kinds"), [("ValueError", []), ("KeyError", ["implicit"])])
-def test_the_exception_of_a_called_function_is_caught_by_its_class(caught, kinds):
+def test_exception_of_a_called_function_is_caught_by_class(caught, kinds):
     body = f"""\
     try:
         self.risky(msg.data)
@@ -141,7 +141,7 @@ def test_the_exception_of_a_called_function_is_caught_by_its_class(caught, kinds
     assert flows(body) == kinds
 
 
-def test_a_finally_block_passes_an_exception_on_unless_it_returns():
+def test_finally_passes_an_exception_on_unless_it_returns():
     body = """\
     try:
         if msg.data > 1:
@@ -157,7 +157,7 @@ def test_a_finally_block_passes_an_exception_on_unless_it_returns():
 
 
 @pytest.mark.parametrize("leaving", ["raise ValueError", "return", "return self.risky(0)"])
-def test_stores_before_an_exception_and_in_a_finally_block_are_kept(leaving):
+def test_stores_before_an_exception_are_kept(leaving):
     publish = "self.pub.publish(self.x)"
     assert flows(f"self.x = msg.data\n{leaving}", publish) == ["explicit"]
     final = f"try:\n    {leaving}\nfinally:\n    self.x = msg.data"
@@ -194,7 +194,7 @@ def test_a_handler_sees_what_was_stored_before_the_exception():
     assert flows(called.format(after="self.pub.publish(self.x)", handler="pass")) == []
 
 
-def test_the_next_iteration_depends_on_conditions_later_in_the_loop():
+def test_next_iteration_depends_on_later_conditions():
     body = """\
     for i in (1, 2):
         if self.x:
@@ -231,13 +231,13 @@ def test_an_exception_carries_its_arguments_through_handlers(raised, published):
         assert flows(body.format(raised=raised, inner=inner, published=published)) == ["explicit"]
 
 
-def test_the_text_of_a_failing_library_call_quotes_its_arguments():
+def test_text_of_a_failing_library_call_quotes_its_arguments():
     body = "try:\n    float({})\nexcept ValueError as error:\n    self.pub.publish(str(error))"
     assert flows(body.format("msg.data")) == ["explicit"]
     assert flows(body.format("1.0")) == []
 
 
-def test_a_handler_gets_no_data_of_exceptions_that_it_cannot_catch():
+def test_handler_gets_only_data_of_caught_exceptions():
     body = """\
     try:
         if self.x:
@@ -274,7 +274,7 @@ def test_handler_for_a_library_exception_catches_a_failing_call():
         ("(KeyboardInterrupt, OSError)", ["implicit"]),
     ],
 )
-def test_a_failing_call_raises_no_exception_that_ends_the_program(handled, kinds):
+def test_failing_call_does_not_end_the_program(handled, kinds):
     body = f"""\
     while True:
         try:

@@ -83,7 +83,7 @@ def test_entry_points_run_until_nothing_changes(monkeypatch):
     assert not reached()
 
 
-def test_a_crash_on_one_file_is_stored_if_requested_and_raised_otherwise(monkeypatch):
+def test_crash_on_one_file_is_stored_or_raised(monkeypatch):
     def crash(*_: object) -> bool:
         raise KeyError("x")
 

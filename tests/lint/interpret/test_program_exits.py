@@ -35,7 +35,7 @@ main()
 @pytest.mark.parametrize(
     "leaving", ["sys.exit(1)", "sys.exit()", "exit()", "quit(3)", "os._exit(1)", "os.abort()", "stop()"]
 )
-def test_the_statements_after_an_exit_call_depend_on_its_condition(leaving: str) -> None:
+def test_code_after_an_exit_call_depends_on_its_condition(leaving: str) -> None:
     assert not differing(_node(f"if msg.data > 1.0:\n        {leaving}", "control"))
 
 
@@ -49,7 +49,7 @@ def test_the_statements_after_an_exit_call_depend_on_its_condition(leaving: str)
         ("try:\n        if msg.data > 1.0: sys.exit(1)\n    except:\n        pass", "clean"),
     ],
 )
-def test_statements_depend_on_an_exit_call_only_if_no_handler_catches_it(body: str, kind: str) -> None:
+def test_exit_call_counts_only_if_no_handler_catches_it(body: str, kind: str) -> None:
     assert not differing(_node(body, kind))
 
 

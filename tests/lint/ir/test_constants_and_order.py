@@ -24,7 +24,7 @@ def const(value: object, pos: ir.Pos = FIRST) -> ir.Const:
 PI = ir.Attribute(ir.Name("math", "global", 0, SECOND), "pi", SECOND)
 
 
-def test_a_number_computed_from_one_literal_has_the_position_of_that_literal():
+def test_number_from_one_literal_has_its_position():
     assert computed(sum_of(PI, const(6))) == FIRST
     assert computed(sum_of(const(1), const(2, SECOND))) == WHOLE
     assert computed(sum_of(PI, PI)) == WHOLE
@@ -49,7 +49,7 @@ def test_a_number_computed_from_one_literal_has_the_position_of_that_literal():
         (ir.Call(PI, (const(1),), (("k", const(1)),), WHOLE, 0), False),
     ],
 )
-def test_an_expression_of_literals_and_mathematical_constants_counts_as_literal(expr, literal):
+def test_expression_of_literals_counts_as_a_literal(expr, literal):
     assert of_literals(expr) is literal
 
 
@@ -59,7 +59,7 @@ def test_numbers_are_listed_in_source_order_without_booleans():
     assert numbers(sum_of(one, ir.Call(PI, (listed, three), (), WHOLE, 0), PI)) == [one, two, three]
 
 
-def test_the_postdominator_of_a_branch_is_where_both_paths_join():
+def test_postdominator_of_a_branch_joins_both_paths():
     # 1 branches to 2 and 3, which meet in 4
     edges = {1: {"then": 2, "else": 3}, 2: {"": 4}, 3: {"": 4}, 4: {"": EXIT}}
     nearest = postdominators(edges, [1, 2, 3, 4])
@@ -69,7 +69,7 @@ def test_the_postdominator_of_a_branch_is_where_both_paths_join():
     assert list(passed(1, EXIT, nearest)) == [1, 4]
 
 
-def test_the_exit_postdominates_the_last_statement_of_an_endless_loop():
+def test_exit_postdominates_an_endless_loop():
     edges = {1: {"": 2}, 2: {"": 3}, 3: {"": 2}}
     assert postdominators(edges, [1, 2, 3]) == {EXIT: EXIT, 1: 2, 2: 3, 3: EXIT}
 

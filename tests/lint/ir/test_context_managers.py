@@ -112,7 +112,7 @@ def test_context_manager_acts_like_its_generator(seed):
         "yield from given",
     ],
 )
-def test_a_generator_that_cannot_be_divided_stays_as_it_is(body):
+def test_indivisible_generator_stays_as_it_is(body):
     (function,) = ast.parse(f"@contextmanager\ndef manager(given):\n    {body}").body
     assert isinstance(function, ast.FunctionDef)
     assert divided(function) is function.body

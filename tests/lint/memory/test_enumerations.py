@@ -53,7 +53,7 @@ def test_sequences_in_the_class_become_marked_members(ctx, channel):
     assert not enumerations.is_member(private)
 
 
-def test_each_member_of_an_enumeration_is_a_separate_mapping_key(ctx, channel):
+def test_each_enum_member_is_a_separate_mapping_key(ctx, channel):
     cls, _ = channel
     member = ctx.store.get((cls, "SCAN"))
     assert member.item_keys() == frozenset([ClassKey(next(iter(member.pts)).key)])
@@ -104,21 +104,21 @@ def test_the_members_are_the_public_attributes_with_known_values(ctx, channel):
     assert enumerations.members(ctx, cls) is None
 
 
-def test_a_constant_selects_the_enumeration_member_whose_value_is_this_constant(ctx, channel):
+def test_constant_selects_the_enum_member_of_its_value(ctx, channel):
     cls, _ = channel
     assert enumerations.with_value(ctx, cls, const(3)) == ctx.store.get((cls, "LEVEL"))
     assert enumerations.with_value(ctx, cls, const(4)) is None
     assert enumerations.with_value(ctx, cls, ONE) is None
 
 
-def test_the_members_of_an_enumeration_are_also_a_mapping_from_their_names(ctx, channel):
+def test_enum_maps_names_to_members(ctx, channel):
     cls, _ = channel
     (table,) = enumerations.by_name(ctx, pointer(cls)).pts
     assert ctx.store.get((table, item_field("LEVEL"))) == ctx.store.get((cls, "LEVEL"))
     assert enumerations.by_name(ctx, pointer(table)) is None
 
 
-def test_the_initialiser_of_a_base_class_is_bound_to_the_member(ctx):
+def test_base_initialiser_is_bound_to_the_enum_member(ctx):
     base = a_class(ctx, "Named", external=("enum.Enum",))
     cls = a_class(ctx, "Level", base)
     member = made(ctx, "instance", "low")

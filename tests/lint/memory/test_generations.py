@@ -190,20 +190,20 @@ def test_programs_with_chains_of_objects_have_the_marked_flows(title):
 
 
 @pytest.mark.parametrize(("record", "body"), [(r, body) for r, bodies in RECORDS.items() for body in bodies])
-def test_a_record_that_is_replaced_by_a_modified_copy_takes_little_work(record, body):
+def test_record_replaced_by_a_copy_takes_little_work(record, body):
     text = f"{HEAD}{CLASSES[record]}    def moved(self, d):\n        {body}\n{OTHERS}{MOVING}"
     assert differing(text) == {}
     assert work(text).total < MOST_WORK
 
 
 @pytest.mark.parametrize("title", sections(CLOSURES))
-def test_a_closure_that_replaces_itself_when_called_takes_little_work(title):
+def test_closure_that_replaces_itself_takes_little_work(title):
     text = HEAD + sections(CLOSURES)[title] + STEPPING
     assert differing(text) == {}
     assert work(text).total < MOST_WORK
 
 
-def test_the_last_object_of_a_long_chain_represents_all_further_objects(ctx, frame):
+def test_last_object_of_a_long_chain_represents_the_rest(ctx, frame):
     cls = recency.intern(ctx, "class", "A", "A")
     cls.info = ClassInfo("A", "A")
     site = generations.site_of(cls, frame, ROOT_CALL)

@@ -35,7 +35,7 @@ def test_repeated_data_edges_are_stored_once(graph, node):
     assert graph.control[b] == set()
 
 
-def test_a_value_that_depends_on_itself_also_depends_on_its_own_conditions(graph, node):
+def test_self_dependent_value_keeps_its_conditions(graph, node):
     decision = node("loop")
     a = node("a", (decision, "body"))
     graph.flow([a], a)
@@ -43,7 +43,7 @@ def test_a_value_that_depends_on_itself_also_depends_on_its_own_conditions(graph
     assert graph.control[a] == {decision}
 
 
-def test_a_program_at_its_edge_limit_gets_only_a_few_further_edges(graph, node, monkeypatch):
+def test_program_at_its_edge_limit_gets_few_further_edges(graph, node, monkeypatch):
     monkeypatch.setattr(value_flow_graph, "MAX_EDGES", 1)
     graph.flow([node("a"), node("b")], node("c"))
     assert len(graph.data[node("c")]) == 2
@@ -115,7 +115,7 @@ def test_a_copy_of_a_live_node_is_live(graph, node):
     assert graph.unchosen(a) in graph.live
 
 
-def test_a_carrier_counts_the_distinct_items_that_it_passed_on(graph, node):
+def test_carrier_counts_its_distinct_items(graph, node):
     carrier, item = node("carrier"), node("item")
     assert graph.passed_by(carrier) == 0
     graph.hold(carrier, frozenset())
@@ -127,7 +127,7 @@ def test_a_carrier_counts_the_distinct_items_that_it_passed_on(graph, node):
     assert not graph.as_passed({carrier: 0})
 
 
-def test_content_depends_on_every_carrier_in_which_it_was_stored(graph, node):
+def test_content_depends_on_every_carrier_that_stored_it(graph, node):
     item, other, first, second = (node(key) for key in ("item", "other", "first", "second"))
     graph.hold(first, frozenset([item]))
     (arrived,) = graph.through(frozenset([item]), frozenset([first]))
@@ -140,7 +140,7 @@ def test_content_depends_on_every_carrier_in_which_it_was_stored(graph, node):
     assert graph.through(frozenset([item]), frozenset()) == {item}
 
 
-def test_cached_and_uncached_queries_of_the_content_give_the_same_result(graph, node, monkeypatch):
+def test_cached_content_queries_give_the_same_result(graph, node, monkeypatch):
     item, other, carrier = (node(key) for key in ("item", "other", "carrier"))
     graph.hold(carrier, frozenset([item]))
     carry = carrier
@@ -154,7 +154,7 @@ def test_cached_and_uncached_queries_of_the_content_give_the_same_result(graph, 
     assert graph.arriving_through(item, {carrier}) == {item}
 
 
-def test_content_arrives_by_the_same_nodes_after_cached_results_were_dropped(graph, node):
+def test_content_arrives_by_the_same_nodes_without_a_cache(graph, node):
     item, carrier = node("item"), node("carrier")
     graph.hold(carrier, frozenset([item]))
     (first,) = graph.through(frozenset([item]), frozenset([carrier]))

@@ -86,7 +86,7 @@ def test_field_data_includes_data_of_the_whole_object(ctx):
     assert heap.content(ctx, made(ctx, "ext", "library")) is UNKNOWN
 
 
-def test_an_unset_message_field_has_the_value_that_other_runs_stored_there(ctx):
+def test_unset_message_field_has_values_of_other_runs(ctx):
     message = made(ctx, "message", "m")
     ctx.shared.leave(ctx.shared.ends, ctx.store.root, (message, "x"), ONE)
     assert heap.read_field(ctx, message, "x") == Value(frozenset([1]), frozenset([message.sub("x")]))
@@ -96,7 +96,7 @@ def test_an_unset_message_field_has_the_value_that_other_runs_stored_there(ctx):
     assert heap.written_here(ctx, message, "x")
 
 
-def test_attributes_of_a_function_are_stored_apart_from_its_parameter_defaults(ctx):
+def test_function_attributes_are_separate_from_parameter_defaults(ctx):
     closure = a_function(ctx, "f")
     assert heap.renamed(ctx, closure, "x") == (closure, "<x>")
     updates.write_field(ctx, pointer(closure), "x", ONE)
@@ -115,7 +115,7 @@ def test_attributes_of_a_function_are_stored_apart_from_its_parameter_defaults(c
         ("goal", "publish_feedback"),
     ],
 )
-def test_an_unset_attribute_of_a_library_object_is_its_bound_method(ctx, kind, name):
+def test_unset_attribute_of_a_library_object_is_a_bound_method(ctx, kind, name):
     obj = made(ctx, kind, "a")
     (method,) = heap.default(ctx, obj, name).pts
     assert (method.kind, method.info) == ("method", (obj, name))
@@ -132,7 +132,7 @@ def test_unknown_object_has_only_callables_that_ros_knows(ctx, name, held):
     assert heap.read_or_hold(ctx, pointer(instance), name) is TWO
 
 
-def test_an_unset_field_has_the_default_of_its_kind_of_object(ctx):
+def test_unset_field_has_the_default_of_its_object_kind(ctx):
     listed, ext = made(ctx, "sequence", "a"), recency.intern(ctx, "ext", "numpy", "numpy")
     instance = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((listed, ANY), ONE)
@@ -176,7 +176,7 @@ def test_a_class_attribute_is_inherited_by_instances_and_subclasses(ctx):
     assert heap.read_field(ctx, obj, "unset") is BOTTOM
 
 
-def test_an_unset_attribute_of_an_opaque_class_is_a_library_object(ctx):
+def test_unset_attribute_of_an_opaque_class_is_a_library_object(ctx):
     obj = an_instance(ctx, a_class(ctx, "A", external=("base.Node",)))
     (held,) = heap.read_field(ctx, obj, "thing").pts
     assert (held.kind, held.key) == ("lib", ("inherited", "self", "thing"))
@@ -185,7 +185,7 @@ def test_an_unset_attribute_of_an_opaque_class_is_a_library_object(ctx):
     assert heap.read_field(ctx, obj, "[0]") is BOTTOM
 
 
-def test_attributes_are_read_from_and_stored_in_a_replaced_attribute_dictionary(ctx):
+def test_replaced_attribute_dictionary_is_used(ctx):
     obj, table = an_instance(ctx, a_class(ctx, "A")), made(ctx, "mapping", "table")
     assert heap.replaced_attributes(ctx, obj) == frozenset()
     ctx.store.put((obj, "__dict__"), pointer(table))
@@ -196,7 +196,7 @@ def test_attributes_are_read_from_and_stored_in_a_replaced_attribute_dictionary(
     assert ctx.store.get((table, "['x']")) == BOTH
 
 
-def test_decorators_decide_whether_a_function_is_bound_to_class_or_instance(ctx):
+def test_decorators_decide_how_a_function_is_bound(ctx):
     cls = a_class(ctx, "A")
     obj = an_instance(ctx, cls)
     plain, static, of_class = (
@@ -218,7 +218,7 @@ def test_decorators_decide_whether_a_function_is_bound_to_class_or_instance(ctx)
     assert heap.bind(ctx, both, obj, cls).deps == {1}
 
 
-def test_names_imported_with_a_star_are_found_directly_and_through_other_modules(ctx):
+def test_star_imports_are_found_through_other_modules(ctx):
     (program,) = ctx.programs.values()
     module = ctx.module_objects[program.name]
     inner, outer = (recency.intern(ctx, "module", name, name) for name in ("inner", "outer"))
@@ -242,7 +242,7 @@ def test_an_unknown_index_reads_the_join_of_all_elements(ctx):
     assert heap.read_any(ctx, obj) == BOTH
 
 
-def test_an_unknown_index_of_a_library_object_reads_a_part_of_it(ctx):
+def test_unknown_index_of_a_library_object_reads_a_part(ctx):
     obj = made(ctx, "lib", "a")
     first = obj.sub("[0]")
     assert heap.read_any(ctx, obj).pts == {first, obj.sub("[]")}
@@ -251,7 +251,7 @@ def test_an_unknown_index_of_a_library_object_reads_a_part_of_it(ctx):
     assert reachable_data.deep(ctx, heap.read_any(ctx, obj).pts) == {1}
 
 
-def test_a_read_through_a_pointer_includes_the_data_of_the_pointer(ctx):
+def test_read_through_a_pointer_includes_the_pointer_data(ctx):
     one, two = made(ctx, "sequence", "a"), made(ctx, "sequence", "b")
     ctx.store.put((one, "x"), ONE)
     ctx.store.put((two, "x"), TWO)
@@ -263,7 +263,7 @@ def test_a_read_through_a_pointer_includes_the_data_of_the_pointer(ctx):
     assert heap.arrive(ctx, ONE, frozenset([5])).deps == {1, 5}
 
 
-def test_iteration_yields_elements_of_a_sequence_and_keys_of_a_mapping(ctx):
+def test_iteration_yields_elements_or_keys(ctx):
     listed, mapping = made(ctx, "sequence", "a"), made(ctx, "mapping", "b")
     ctx.store.put((listed, "[0]"), ONE)
     ctx.store.put((mapping, "['k']"), TWO)
@@ -282,7 +282,7 @@ def test_iteration_yields_elements_of_a_sequence_and_keys_of_a_mapping(ctx):
     assert heap.elements(ctx, pointer(obj)).deps == {1, 2}
 
 
-def test_iteration_over_the_attributes_of_an_object_yields_their_names(ctx):
+def test_iteration_over_attributes_yields_their_names(ctx):
     obj = an_instance(ctx, a_class(ctx, "A"))
     other = an_instance(ctx, a_class(ctx, "B", external=("Unknown",)), "other")
     ctx.store.put((obj, "speed"), TWO)
@@ -307,7 +307,7 @@ def test_items_of_dunder_dict_are_attributes(ctx, external, field):
 # --- stores -------------------------------------------------------------------------------------------
 
 
-def test_a_weak_update_keeps_the_former_value_or_the_default(ctx):
+def test_weak_update_keeps_the_former_value(ctx):
     obj = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((cls, "x"), ONE)
     updates.weaken(ctx, obj, "x", TWO)
@@ -315,20 +315,20 @@ def test_a_weak_update_keeps_the_former_value_or_the_default(ctx):
 
 
 @pytest.mark.parametrize("kind", ["bound", "ext", "method"])
-def test_a_store_into_a_function_of_a_library_is_dropped(ctx, kind):
+def test_store_into_a_library_function_is_dropped(ctx, kind):
     obj = recency.intern(ctx, kind, "a", "a")
     updates.write_field(ctx, pointer(obj), "x", ONE)
     assert not obj.fields
 
 
-def test_adding_an_element_to_an_object_without_elements_does_nothing(ctx):
+def test_adding_to_an_object_without_elements_does_nothing(ctx):
     module, listed = recency.intern(ctx, "module", "a"), made(ctx, "sequence", "b")
     updates.add_element(ctx, Value(pts=frozenset([module, listed])), ONE)
     assert not module.fields
     assert heap.read_any(ctx, listed).deps == {1}
 
 
-def test_a_negative_index_counts_from_the_end_if_the_length_is_known(ctx):
+def test_negative_index_counts_from_a_known_end(ctx):
     obj = made(ctx, "sequence", "a")
     base = pointer(obj)
     ctx.store.put((obj, "[0]"), ONE)
@@ -341,7 +341,7 @@ def test_a_negative_index_counts_from_the_end_if_the_length_is_known(ctx):
     assert heap.read_field(ctx, obj, "[0]").deps == {1, 3}
 
 
-def test_reading_the_keys_of_a_mapping_again_leaves_no_reference_cycles(ctx):
+def test_repeated_key_reads_leave_no_reference_cycles(ctx):
     """The garbage collector is paused during an analysis."""
     mapping = made(ctx, "mapping", "b")
     ctx.store.put((mapping, "['again']"), TWO)
@@ -351,7 +351,7 @@ def test_reading_the_keys_of_a_mapping_again_leaves_no_reference_cycles(ctx):
     assert gc.collect() == 0
 
 
-def test_the_keys_of_a_mapping_depend_on_the_data_that_chose_them(ctx):
+def test_mapping_keys_depend_on_the_data_that_chose_them(ctx):
     mapping, listed = made(ctx, "mapping", "a"), made(ctx, "sequence", "b")
     key = Value(frozenset([5]))
     updates.write_item(ctx, Value(pts=frozenset([mapping, listed])), key, ONE)
@@ -363,7 +363,7 @@ def test_the_keys_of_a_mapping_depend_on_the_data_that_chose_them(ctx):
     assert ctx.store.get((other, "['k']")) is ONE
 
 
-def test_a_store_under_one_of_several_possible_keys_changes_only_these_keys(ctx):
+def test_store_under_several_possible_keys_changes_only_these(ctx):
     mapping, listed = made(ctx, "mapping", "a"), made(ctx, "sequence", "b")
     for key in "kmn":
         ctx.store.put((mapping, item_field(key)), BOTTOM)
@@ -402,7 +402,7 @@ def test_object_created_on_one_path_has_no_value_elsewhere(ctx):
     assert joins.joined(ctx, [ctx.store.pop(), {}])[obj, "[0]"] is ONE
 
 
-def test_all_paths_without_a_store_contribute_the_former_value_only_once(ctx):
+def test_paths_without_a_store_contribute_the_value_once(ctx):
     obj = made(ctx, "sequence", "a")
     ctx.store.put((obj, "x"), ONE)
     assert joins.joined(ctx, [{(obj, "x"): TWO}, {}, {}])[obj, "x"] == BOTH
@@ -430,7 +430,7 @@ def test_the_same_kind_and_key_give_the_same_object(ctx):
     assert recency.intern(ctx, "ext", "a") is not obj
 
 
-def test_each_loop_iteration_and_each_call_allocates_its_own_object(ctx, frame):
+def test_each_iteration_and_call_allocates_its_own_object(ctx, frame):
     obj = recency.allocate(ctx, "sequence", frame, "slot")
     assert ctx.store.get((obj, BORN)) is BOTTOM
     ctx.store.put((obj, "[0]"), ONE)
@@ -461,7 +461,7 @@ def test_unreferenced_older_library_object_is_dropped(ctx, frame):
     assert ctx.store.get((obj, "x")) in (None, ABSENT)
 
 
-def test_copied_fields_include_parts_and_are_joined_with_existing_values(ctx):
+def test_copied_fields_include_parts_and_are_joined(ctx):
     one, two = made(ctx, "lib", "a"), made(ctx, "lib", "b")
     ctx.store.put((one, "x"), ONE)
     ctx.store.put((one.sub("pose"), "y"), ONE)
@@ -488,7 +488,7 @@ def test_clearing_the_fields_of_an_object_clears_its_parts(ctx):
 # --- reachable ----------------------------------------------------------------------------------------
 
 
-def test_temporary_objects_are_kept_only_if_a_kept_object_refers_to_them(ctx, frame):
+def test_unreferenced_temporary_objects_are_dropped(ctx, frame):
     names = ("returned", "inside", "held", "bound", "given", "gone")
     objects = {name: recency.allocate(ctx, "lib", frame, name) for name in names}
     bound = recency.intern(ctx, "bound", "method")
@@ -536,7 +536,7 @@ def test_variables_are_kept_while_ros_may_call_an_inner_function(ctx, frame):
     assert abstract_gc.lasting(delta, frame, [], frozenset(), ctx.store.reads) == {}
 
 
-def test_a_reachable_part_keeps_its_enclosing_object_and_definition_alive():
+def test_reachable_part_keeps_its_enclosing_object():
     whole, receiver, named, default = (Obj("lib", key) for key in ("a", "b", "c", "d"))
     bound = Obj("bound", "m")
     bound.info = (receiver, [pointer(default)], {"k": named.sub("x")})
@@ -556,7 +556,7 @@ def test_cache_of_data_inside_objects_stays_up_to_date(ctx, length):
     assert reachable_data.deep(ctx, first) == {2}
 
 
-def test_the_definition_of_a_message_gives_the_definitions_of_its_parts(ctx):
+def test_message_definition_includes_its_parts(ctx):
     message = made(ctx, "message", "m")
     assert object_contents.defined(ctx, message.sub("linear")) == ""
     message.defined = "Twist"
@@ -565,7 +565,7 @@ def test_the_definition_of_a_message_gives_the_definitions_of_its_parts(ctx):
     assert object_contents.defined(ctx, message.sub("unknown")) == ""
 
 
-def test_a_message_counts_as_replaced_when_all_of_its_fields_are_replaced(ctx):
+def test_message_is_replaced_when_all_fields_are(ctx):
     message = made(ctx, "message", "m")
     message.defined, message.info = "Vector3", 7
     for name in "xy":
@@ -602,7 +602,7 @@ def test_states_share_userdata_under_the_names_of_their_remapping(ctx):
     assert heap.read(ctx, userdata.userdata(ctx, state), "mine") is ONE
 
 
-def test_a_name_that_contains_a_parameter_has_a_placeholder_for_the_parameter():
+def test_name_with_a_parameter_has_a_placeholder():
     known: list[ParameterName] = []
     (text,) = symbolic_names.text_of_parameter(known, "~scan", const("scan")) or ()
     assert isinstance(text, Symbolic)
@@ -623,7 +623,7 @@ def test_a_name_that_contains_a_parameter_has_a_placeholder_for_the_parameter():
         ([], "~scan", pointer(Obj("lib", 1))),
     ],
 )
-def test_a_parameter_whose_default_is_not_text_has_no_placeholder_in_names(known, name, default):
+def test_parameter_with_a_non_text_default_has_no_placeholder(known, name, default):
     assert symbolic_names.text_of_parameter(known, name, default) is None
 
 
@@ -638,7 +638,7 @@ def test_launch_file_may_replace_the_default_of_a_parameter():
     assert symbolic_names.with_default(pointer(Obj("lib", 1))) is None
 
 
-def test_only_an_array_that_was_made_without_data_has_a_known_shape(ctx):
+def test_only_an_array_without_data_has_a_known_shape(ctx):
     array, other, table = made(ctx, "lib", "array"), made(ctx, "lib", "other"), made(ctx, "sequence", "table")
     for obj in (array, table):
         ctx.store.put((obj, heap.SHAPE), ONE)
@@ -663,7 +663,7 @@ def test_newest_object_becomes_older_when_another_is_created(ctx, frame):
     assert ctx.store.get((box, "x")) is None
 
 
-def test_an_object_with_callbacks_represents_all_objects_of_its_allocation_site(ctx, frame):
+def test_object_with_callbacks_represents_all_of_its_site(ctx, frame):
     box = recency.intern(ctx, "instance", "box")
     ctx.given.add(box)
     recency.renew(ctx, box, frame)
@@ -699,7 +699,7 @@ def test_try_catches_an_exception_with_a_matching_handler():
     assert attempt.catches("", NO_CLASSES) is None
 
 
-def test_a_handler_gets_only_the_exceptions_that_it_may_catch():
+def test_handler_gets_only_matching_exceptions():
     attempt = Attempt(0, [], (frozenset(["KeyError"]), frozenset(["OSError"])))
     attempt.raised = {"KeyError": const(1), "OSError": const(2), "": const(3)}
     caught = attempt.caught(frozenset(["KeyError"]), NO_CLASSES)

@@ -32,7 +32,7 @@ def made(ctx, key: object, kind: str = "mapping") -> Obj:
     return obj
 
 
-def test_contents_are_cached_until_something_is_stored_in_the_object(ctx):
+def test_contents_are_cached_until_the_next_store(ctx):
     outer, other = made(ctx, "outer"), made(ctx, "other")
     ctx.store.put((outer, "a"), ONE)
     ctx.store.put((outer, "b"), pointer(other))
@@ -73,7 +73,7 @@ def test_running_call_depends_on_contents_that_it_reads(ctx, wrote):
     assert ctx.store.reads.objects[obj] == obj.stamp
 
 
-def test_a_search_is_still_valid_after_stores_that_change_no_data(ctx):
+def test_search_stays_valid_if_no_data_changed(ctx):
     chain = [made(ctx, number) for number in range(2 * reachable_data.FEW)]
     for outer, inner in zip(chain, chain[1:] + chain[:1], strict=True):
         ctx.store.put((outer, "next"), pointer(inner))
@@ -111,7 +111,7 @@ def _interpreter() -> tuple[Interpreter, Frame]:
 
 @settings(max_examples=150, deadline=None)
 @given(STORES)
-def test_searches_give_the_same_result_with_and_without_cached_contents(stores):
+def test_cached_searches_give_the_same_result(stores):
     ctx, frame = _interpreter()
     store = ctx.store
     objects = [made(ctx, number, ("mapping", "lib", "sequence")[number % 3]) for number in range(OBJECTS)]

@@ -56,7 +56,7 @@ def test_a_wrapper_has_the_attributes_of_its_function(ctx: Interpreter) -> None:
     assert function_attributes.attribute(ctx, functions[0], "x") is ONE
 
 
-def test_the_default_of_getattr_counts_unless_the_function_has_the_attribute(ctx: Interpreter) -> None:
+def test_getattr_default_counts_unless_the_function_has_the_attribute(ctx: Interpreter) -> None:
     function, other, partial = a_function(ctx, "f"), a_function(ctx, "g"), recency.intern(ctx, "partial", "p")
 
     def found(*objects: Obj) -> Value:
@@ -85,9 +85,7 @@ def test_the_default_of_getattr_counts_unless_the_function_has_the_attribute(ctx
         ("/near", "part/level", "/near/part/level"),
     ],
 )
-def test_blackboard_keys_are_prefixed_with_the_namespace_of_their_client(
-    namespace: str, key: str, name: str
-) -> None:
+def test_blackboard_keys_have_the_namespace_of_their_client(namespace: str, key: str, name: str) -> None:
     assert Naming(namespace).absolute(key) == name
 
 

@@ -93,7 +93,7 @@ def test_absorbed_stores_are_undone_when_the_absorbing_layer_closes(store, obj):
     assert store.get(key) is ONE
 
 
-def test_only_stores_outside_of_frames_count_as_changes_of_the_state(store, obj, frame):
+def test_stores_in_frames_do_not_change_the_state(store, obj, frame):
     tick = store.tick
     store.put((frame, "local"), ONE)
     assert store.tick == tick
@@ -112,7 +112,7 @@ def test_variables_are_private_unless_a_closure_captures_them(store, obj, frame)
     assert store.own() == [(frame, "x"), (obj, "x")]
 
 
-def test_many_nodes_of_a_summary_field_are_merged_into_one(store, obj):
+def test_nodes_of_a_summary_field_are_merged(store, obj):
     store.gather = lambda _, value: Value(frozenset([9]), value.pts)
     for name, gathered in [("*", True), ("<keys>", True), ("<length>", True), ("x", False)]:
         store.put((obj, name), BOTH)
@@ -122,7 +122,7 @@ def test_many_nodes_of_a_summary_field_are_merged_into_one(store, obj):
     assert as_it_is((obj, "*"), BOTH) is BOTH
 
 
-def test_a_store_marks_the_object_and_its_holders_as_holding_data(store, obj):
+def test_store_marks_the_object_and_its_holders(store, obj):
     holder, outer = Obj("instance", "b"), Obj("instance", "c")
     store.put((holder, "held"), pointer(obj))
     store.put((outer, "held"), pointer(holder))
@@ -143,7 +143,7 @@ def test_a_constant_is_not_data(store, obj):
     assert obj.changes == ["x"]
 
 
-def test_holders_of_objects_that_may_become_older_objects_are_recorded(store, obj):
+def test_holders_of_future_older_objects_are_recorded(store, obj):
     library = Obj("lib", "l")
     store.put((obj, "x"), pointer(library))
     function = Obj("closure", "f")
@@ -152,7 +152,7 @@ def test_holders_of_objects_that_may_become_older_objects_are_recorded(store, ob
     assert function.holders == {}
 
 
-def test_assigning_the_dict_of_an_object_increments_the_edition_of_the_state(store, obj):
+def test_assigning_dunder_dict_increments_the_edition(store, obj):
     store.put((obj, "x"), ONE)
     assert store.shared.edition == 0
     store.put((obj, "__dict__"), ONE)
@@ -162,7 +162,7 @@ def test_assigning_the_dict_of_an_object_increments_the_edition_of_the_state(sto
 # --- reads --------------------------------------------------------------------------------------------
 
 
-def test_reads_of_values_that_the_same_call_stored_are_not_recorded(store, obj):
+def test_own_stores_are_not_recorded_as_reads(store, obj):
     mine, other = (obj, "mine"), (obj, "other")
     store.put(mine, ONE)
     store.get(mine)
@@ -250,7 +250,7 @@ def test_nested_call_omits_keys_stored_by_its_caller(obj):
     assert (outer.whole, outer.waits, outer.heard, outer.admitted) == (False, True, 6, {other: ONE})
 
 
-def test_the_same_reads_are_merged_again_only_after_a_path_ended(obj):
+def test_equal_reads_are_merged_after_a_path_ended(obj):
     key = (obj, "x")
     outer, inner = Reads(written={key}), Reads(keys={key})
     outer.add(inner)
@@ -262,7 +262,7 @@ def test_the_same_reads_are_merged_again_only_after_a_path_ended(obj):
     assert outer.keys == {key}
 
 
-def test_completing_a_mapping_adds_missing_entries_and_keeps_existing_ones():
+def test_completing_a_mapping_keeps_existing_entries():
     mine = {"a": 1}
     complete(mine, {"a": 2, "b": 3})
     assert mine == {"a": 1, "b": 3}
@@ -310,7 +310,7 @@ def test_new_source_or_new_data_makes_recorded_reads_outdated(store):
     assert same(store, Reads(held={5: 1}), graph)
 
 
-def test_recorded_reads_are_outdated_when_a_new_object_has_fields_or_holders(store, obj):
+def test_new_object_fields_make_recorded_reads_outdated(store, obj):
     library = Obj("lib", "l")
     assert same(store, Reads(objects={library: NEW}))
     store.put((obj, "x"), pointer(library))
@@ -321,7 +321,7 @@ def test_recorded_reads_are_outdated_when_a_new_object_has_fields_or_holders(sto
     assert not same(store, Reads(objects={obj: NEW}))
 
 
-def test_recorded_reads_are_outdated_when_an_object_begins_to_represent_several_objects(store, obj):
+def test_summary_object_makes_recorded_reads_outdated(store, obj):
     outer, inner = Reads(), Reads(single={obj})
     outer.add(inner)
     assert same(store, outer)
@@ -335,7 +335,7 @@ def test_recorded_reads_are_outdated_when_an_object_begins_to_represent_several_
 # --- shared stores ------------------------------------------------------------------------------------
 
 
-def test_a_run_begins_with_the_stores_of_all_entry_points(shared, obj):
+def test_run_begins_with_stores_of_all_entry_points(shared, obj):
     mine, other, once = Root("mine", "callback"), Root("other", "callback"), Root("once", "timer", once=True)
     key = (obj, "x")
     assert shared.entry(key, mine) is None
@@ -348,7 +348,7 @@ def test_a_run_begins_with_the_stores_of_all_entry_points(shared, obj):
     assert shared.entry(key, mine) == Value(frozenset([1, 2, 3]))
 
 
-def test_the_stores_during_a_wait_are_the_stores_of_other_entry_points(shared, obj):
+def test_stores_during_a_wait_are_foreign_stores(shared, obj):
     mine, other = Root("mine", "callback"), Root("other", "callback")
     key = (obj, "x")
     shared.leave(shared.ends, mine, key, ONE)
@@ -358,7 +358,7 @@ def test_the_stores_during_a_wait_are_the_stores_of_other_entry_points(shared, o
     assert shared.others(key, other) == ONE
 
 
-def test_changing_a_stored_value_reruns_the_entry_points_that_read_it(shared, obj):
+def test_changed_value_reruns_the_entry_points_that_read_it(shared, obj):
     reader, writer = Root("reader", "callback"), Root("writer", "callback", once=True)
     key = (obj, "x")
     shared.entry(key, reader)
@@ -445,7 +445,7 @@ def test_new_object_is_invisible_to_others_until_a_wait(store, obj):
 # --- waits --------------------------------------------------------------------------------------------
 
 
-def test_reads_after_a_wait_depend_on_the_stores_of_other_entry_points(store, obj):
+def test_reads_after_a_wait_include_foreign_stores(store, obj):
     key, other = (obj, "x"), Root("other", "callback")
     store.put(key, ONE)
     store.shared.leave(store.shared.ends, other, key, TWO)
@@ -458,7 +458,7 @@ def test_reads_after_a_wait_depend_on_the_stores_of_other_entry_points(store, ob
     assert store.heard() == {key: TWO}
 
 
-def test_a_store_that_adds_nothing_new_reruns_no_entry_point(store, obj):
+def test_store_of_known_data_reruns_nothing(store, obj):
     store.put((obj, "x"), BOTH)
     store.shared.leave(store.shared.ends, Root("other", "callback"), (obj, "x"), TWO)
     store.waited = True
@@ -474,12 +474,12 @@ def test_local_variable_read_after_a_wait_has_no_foreign_data(store, frame):
     assert store.root.heeds == set()
 
 
-def test_a_wait_skips_keys_that_no_other_entry_point_stores_to(store, obj):
+def test_wait_skips_keys_without_foreign_stores(store, obj):
     store.root.heeds.add((obj, "x"))
     assert store.heard() == {}
 
 
-def test_an_entry_point_publishes_no_values_that_came_from_other_entry_points(store, obj):
+def test_entry_point_publishes_no_foreign_values(store, obj):
     key = (obj, "x")
     assert store.admit(key, BOTH, TWO) is BOTH
     assert key not in store.foreign
@@ -514,7 +514,7 @@ def test_a_released_frame_keeps_no_states(frame):
     assert (frame.recorded, frame.passed, frame.heads) == (None, None, {})
 
 
-def test_only_the_frame_of_a_class_body_has_an_owner_class(ctx, frame):
+def test_only_a_class_body_frame_has_an_owner_class(ctx, frame):
     assert frame.owner_class() is None
     (program,) = ctx.programs.values()
     body = Frame("body", 2, program.function, program, ctx.module_objects[program.name])

@@ -49,7 +49,7 @@ def instance(cls: Obj) -> Obj:
 # --- values -------------------------------------------------------------------------------------------
 
 
-def test_a_join_has_the_nodes_objects_and_constants_of_both_values():
+def test_join_has_nodes_objects_and_constants_of_both():
     one, two = Obj("lib", 1), Obj("lib", 2)
     both = join(
         Value(frozenset([1]), frozenset([one]), frozenset(["a"])),
@@ -58,7 +58,7 @@ def test_a_join_has_the_nodes_objects_and_constants_of_both_values():
     assert both == Value(frozenset([1, 2]), frozenset([one, two]), frozenset(["a", "b"]))
 
 
-def test_joining_with_bottom_changes_nothing_and_joining_with_unknown_constants_gives_unknown():
+def test_joining_with_bottom_changes_nothing():
     value = constants(1)
     assert join(value, BOTTOM) is value
     assert join(BOTTOM, value) is value
@@ -70,14 +70,14 @@ def test_joining_with_bottom_changes_nothing_and_joining_with_unknown_constants_
 @pytest.mark.parametrize(
     "change", [{"deps": frozenset([9])}, {"pts": frozenset([Obj("lib", 0)])}, {"consts": None}]
 )
-def test_values_are_equal_only_if_their_nodes_objects_and_constants_are_equal(change):
+def test_equal_values_have_equal_nodes_objects_and_constants(change):
     parts = {"deps": frozenset([1]), "pts": frozenset(), "consts": frozenset([1])}
     assert Value(**parts) == Value(**parts)
     assert Value(**parts) != Value(**{**parts, **change})
     assert join(Value(**parts), Value(**{**parts, **change})) != Value(**parts)
 
 
-def test_a_value_may_have_more_string_constants_than_other_constants():
+def test_value_may_have_more_strings_than_other_constants():
     few, many = frozenset(range(MAX_CONSTS)), frozenset(map(str, range(MAX_TEXTS)))
     assert join_consts(few, frozenset([0])) is few
     assert join_consts(few, frozenset([MAX_CONSTS])) is None
@@ -136,7 +136,7 @@ def test_objects_are_iterated_in_order_of_creation():
 # --- objects ------------------------------------------------------------------------------------------
 
 
-def test_an_embedded_object_has_an_access_path_and_an_outermost_object():
+def test_embedded_object_has_an_access_path():
     message = Obj("message", "m")
     part = message.sub("pose").sub("x")
     assert part is message.sub("pose").sub("x")
@@ -158,7 +158,7 @@ def test_parts_beyond_the_maximum_depth_share_one_object():
     assert nested.sub("x") is not nested
 
 
-def test_a_matrix_has_a_bounded_number_of_separately_tracked_elements():
+def test_matrix_has_a_bounded_number_of_tracked_elements():
     row = Obj("lib", "matrix").sub("[0]")
     cells = [row.sub(f"[{n}]") for n in range(MAX_CELLS + 1)]
     assert len(set(cells)) == MAX_CELLS + 1
@@ -194,7 +194,7 @@ def test_a_released_object_has_no_references_to_other_objects():
 # --- classes ------------------------------------------------------------------------------------------
 
 
-def test_the_method_resolution_order_lists_a_shared_base_once_and_last():
+def test_method_resolution_lists_a_shared_base_last():
     base = made_class("base")
     left, right = made_class("left", base), made_class("right", base)
     assert lineage(made_class("both", left, right))[1:] == [left, right, base]

@@ -90,5 +90,5 @@ BODIES = """\
 
 
 @pytest.mark.parametrize("body", sections(BODIES).values(), ids=sections(BODIES))
-def test_a_choice_between_publishers_decides_only_if_their_topics_or_nodes_differ(body):
+def test_publisher_choice_decides_only_between_different_topics(body):
     assert differing(f"{HEAD}{body}rclpy.init()\nrclpy.spin(One())\n") == {}

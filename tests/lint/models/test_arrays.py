@@ -20,7 +20,7 @@ def fills(made: str) -> str:
 
 
 @pytest.mark.parametrize("name", sorted(catalog.RESERVING))
-def test_a_library_call_fills_an_array_that_was_created_without_data(name):
+def test_library_call_fills_an_empty_array(name):
     assert differing(in_callback(fills(f"{name}(4)"), HEAD)) == {}
 
 

@@ -81,6 +81,6 @@ out.publish(bisect.bisect([1.0, 2.0], 1.0, key=lambda x: x - now["pose"]))  # po
 
 
 @pytest.mark.parametrize("title", sections(BODIES))
-def test_the_key_of_a_table_decides_which_value_is_chosen(title: str) -> None:
+def test_table_key_decides_the_chosen_value(title: str) -> None:
     body = sections(BODIES)[title].replace("\n", "\n    ")
     assert not differing_topics(f"{HEAD}def step(event):\n    {body}\nrospy.Timer(1.0, step)\nrospy.spin()\n")

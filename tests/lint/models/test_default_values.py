@@ -142,6 +142,6 @@ def test_entries_of_default_dictionaries_are_found(program: str) -> None:
     assert differing_topics(HEAD + program) == {}
 
 
-def test_topic_names_from_a_default_value_are_shown_as_defaults() -> None:
+def test_topic_name_from_a_default_is_shown_as_default() -> None:
     (first, second) = flows(HEAD + sections(PROGRAMS)["a list of rows"])
     assert {first.source.default_topics, second.source.default_topics} == {("a",), ("b",)}

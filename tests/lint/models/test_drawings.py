@@ -35,7 +35,7 @@ def test_a_function_that_draws_changes_the_current_figure(call, mark):
     assert differing(in_callback(BODY.format(call=call, mark=mark), HEAD)) == {}
 
 
-def test_a_function_draws_no_figure_in_a_module_without_pyplot():
+def test_module_without_pyplot_draws_no_figure():
     body = BODY.format(call="library.draw_networkx(msg.data)", mark="clean").replace("plt", "library")
     assert differing(in_callback(body, "import library")) == {}
 
@@ -84,7 +84,7 @@ def test_no_figure_is_shared_between_programs():
     assert found({"shared": SHARED} | programs) == {("one", "image")}
 
 
-def test_the_functions_of_pyplot_draw_into_the_figure_of_their_program():
+def test_pyplot_draws_into_the_figure_of_its_program():
     both = PROGRAM.format(main=f"{MAINS['one']}\n    while True:\n        {MAINS['two']}")
     assert found({"shared": SHARED, "one": both}) == {("one", "image"), ("one", "two")}
 

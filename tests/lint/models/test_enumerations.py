@@ -117,9 +117,7 @@ CALLBACKS = ("functools.partial(self.on, channel)", "lambda msg, channel=channel
 
 @pytest.mark.parametrize("callback", CALLBACKS)
 @pytest.mark.parametrize("style", STYLES)
-def test_enumeration_members_with_tuple_values_name_topics_and_are_separate_keys(
-    style: str, callback: str
-) -> None:
+def test_enum_members_with_tuples_name_topics(style: str, callback: str) -> None:
     text = FLEET.format(body=STYLES[style].strip() or "pass", callback=callback)
     if style == "a property of a base class":
         text = text.replace("\nclass Channel(enum.Enum):", BASE)

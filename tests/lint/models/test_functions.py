@@ -801,7 +801,7 @@ def test_each_function_with_a_model_has_a_test():
 
 
 @pytest.mark.parametrize(("name", "body"), COVERED, ids=[name for name, _ in COVERED])
-def test_the_result_of_a_modelled_function_has_the_data_of_its_arguments(name, body):
+def test_modelled_function_returns_data_of_its_arguments(name, body):
     path = WHERE.get(name, name)
     modules = {path.rpartition(".")[0]} - {
         "",

@@ -46,12 +46,12 @@ def ends(make: str, main: str) -> list[tuple[str, tuple[str, ...], tuple[str, ..
 
 @pytest.mark.parametrize("main", MAINS.values(), ids=MAINS)
 @pytest.mark.parametrize("subscribe", [DIRECT, *HELD.values()], ids=["called directly", *HELD])
-def test_a_stored_reference_to_a_subscribe_method_makes_a_subscription(subscribe, main):
+def test_stored_subscribe_method_makes_a_subscription(subscribe, main):
     assert ends(PLAIN.format(subscribe=subscribe), main) == [("explicit", ("in",), ("out",))]
 
 
 @pytest.mark.parametrize("main", MAINS.values(), ids=MAINS)
-def test_a_stored_reference_to_a_publisher_method_makes_a_publisher(main):
+def test_stored_publisher_method_makes_a_publisher(main):
     make = 'make = node.create_publisher; self.pub = make(Float64, "out", 10)'
     assert ends(f"{make}\n        {DIRECT}", main) == [("explicit", ("in",), ("out",))]
 

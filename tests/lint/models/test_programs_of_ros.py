@@ -418,5 +418,5 @@ CASES = dict(one.split("\n", 1) for one in PROGRAMS.removeprefix("### ").split("
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_data_of_received_messages_reaches_sent_messages_as_in_ros(title):
+def test_received_data_reaches_sent_messages_as_in_ros(title):
     assert differing(f"{HEAD}{CASES[title]}\nrospy.spin()\n") == {}

@@ -160,7 +160,7 @@ out.publish(2.0)  # clean
 
 
 @pytest.mark.parametrize("title", sections(BODIES))
-def test_the_event_decides_whether_the_code_after_the_wait_runs(title: str) -> None:
+def test_event_decides_whether_code_after_the_wait_runs(title: str) -> None:
     body = sections(BODIES)[title].replace("\n", "\n    ")
     assert not differing(
         f"{HEAD}def work():\n    {body}\nthreading.Thread(target=work).start()\nrospy.spin()\n"

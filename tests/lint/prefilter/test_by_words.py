@@ -55,11 +55,11 @@ def test_comments_and_prose_do_not_count_as_code(text, kept):
         ("rospy.ServiceProxy('a', F)", False),
     ],
 )
-def test_a_word_shows_that_a_module_may_subscribe_or_publish(text, found):
+def test_word_shows_that_a_module_may_subscribe_or_publish(text, found):
     assert endpoint_words(Config())(text) is found
 
 
-def test_functions_in_the_settings_add_words_that_make_a_module_relevant():
+def test_settings_add_words_that_make_a_module_relevant():
     assert endpoint_words(Config(tf2=True))("tf.lookupTransform(a, b)")
     assert endpoint_words(Config(), clients=True)("rospy.ServiceProxy('a', F)")
     assert endpoint_words(Config(sources=("bus.listen",)))("listen('a', f)")
@@ -83,7 +83,7 @@ def grouped(**texts: str) -> list[list[str]]:
     return [[one.name for one in group] for group in groups(scripts(**texts), Config())]
 
 
-def test_a_group_includes_imported_modules_and_orders_them_before_their_importers():
+def test_group_lists_imported_modules_first():
     assert grouped(a=PUBLISHER + "import b\n", b="import c\n", c="x = 1\n", d="import e\n", e="x = 1\n") == [
         ["c", "b", "a"]
     ]
@@ -130,7 +130,7 @@ def test_relative_imports_are_resolved_in_the_package(statement, found):
     assert made == ([["p.m", "p.a"]] if found else [["p.a"]])
 
 
-def test_relative_imports_in_an_init_file_start_at_its_own_package():
+def test_relative_imports_in_init_start_at_its_package():
     assert grouped(p__init=f"{PUBLISHER}from . import m\n", p__m="x = 1\n") == [["p.m", "p"]]
     assert grouped(p__init=f"{PUBLISHER}from .x import m\n", p__m="x = 1\n") == [["p"]]
 

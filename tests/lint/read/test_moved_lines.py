@@ -36,7 +36,7 @@ def moved(new: str, old: str = OLD, *, unread=UNREAD, answers=(), whole: bool = 
     return moved_lines(dedent(old), dedent(new), Reading(frozenset(unread), tuple(answers), whole))
 
 
-def test_in_an_unchanged_text_all_read_lines_keep_their_numbers():
+def test_unchanged_text_keeps_its_line_numbers():
     found = moved(OLD)
     assert found == {line: line for line in (1, 3, 4, 5, 7, 10, 11, 12, 14, 15)}
 
@@ -73,7 +73,7 @@ def test_edits_that_the_analysis_ignores_only_shift_line_numbers():
         ("return y\n", "return y\n\nz = 1\n"),
     ],
 )
-def test_a_change_of_code_that_the_analysis_read_requires_a_new_analysis(was, now):
+def test_changed_code_that_was_read_is_analysed_again(was, now):
     assert was in OLD
     assert moved(OLD.replace(was, now)) is None
 
@@ -184,7 +184,7 @@ def functions(tree: ast.AST) -> dict[str, ast.FunctionDef | ast.AsyncFunctionDef
     return found
 
 
-def test_at_first_no_function_counts_as_read_by_the_analysis():
+def test_no_function_counts_as_read_at_first():
     assert watched(module(FUNCTIONS)).reading() == Reading(frozenset(PLACES.values()), (), whole=False)
 
 
@@ -193,14 +193,14 @@ def test_at_first_no_function_counts_as_read_by_the_analysis():
     [len, list, lambda body: body[0], lambda body: body[:1], lambda body: None in body,
      lambda body: operator.add(body, []), lambda body: [*reversed(body)], ast.unparse],
 )  # fmt: skip
-def test_using_the_body_of_a_function_counts_as_reading_it(read):
+def test_using_a_function_body_counts_as_reading(read):
     watch = watched(module(FUNCTIONS))
     body = functions(watch.tree)["g"].body
     read(body if read is not ast.unparse else functions(watch.tree)["g"])
     assert watch.reading().unread == frozenset(PLACES.values()) - {PLACES["g"]}
 
 
-def test_a_new_recording_forgets_which_bodies_were_read_and_keeps_the_statements():
+def test_new_recording_forgets_read_bodies():
     first = watched(module("def f():\n    return 1\n"))
     len(functions(first.tree)["f"].body)
     second = watched(first)
@@ -208,7 +208,7 @@ def test_a_new_recording_forgets_which_bodies_were_read_and_keeps_the_statements
     assert ast.unparse(second.tree) == "def f():\n    return 1"
 
 
-def test_queries_about_the_text_and_uses_of_the_whole_text_are_recorded():
+def test_text_queries_and_whole_text_uses_are_recorded():
     watch = watched(module("x = 1\n"))
     assert displayed(watch) == "x = 1\n"
     assert watch.contains("x")

@@ -18,7 +18,7 @@ def written(folder: Path, files: dict[str, str]) -> None:
         (folder / name).write_text(text)
 
 
-def test_a_module_is_named_from_the_folder_above_its_outermost_package(tmp_path):
+def test_module_is_named_from_its_outermost_package(tmp_path):
     written(
         tmp_path, dict.fromkeys(("a/__init__.py", "a/b/__init__.py", "a/b/c.py", "a/loose/d.py", "tool"), "")
     )
@@ -59,7 +59,7 @@ def test_declared_folders_of_packages_are_import_roots(tmp_path, folders, name):
     assert Layout().module(f"{tmp_path}/src/inner/m.py") == (name, False)
 
 
-def test_a_file_belongs_to_the_ros_package_of_the_nearest_manifest(tmp_path):
+def test_file_belongs_to_the_package_of_the_nearest_manifest(tmp_path):
     manifest = "<package><name>{}</name></package>"
     written(
         tmp_path,

@@ -72,7 +72,7 @@ HELD = [
 
 
 @pytest.mark.parametrize(("body", "held", "tried"), HELD)
-def test_the_locks_that_a_statement_holds_or_tries_to_take_are_found(body, held, tried):
+def test_held_and_tried_locks_of_a_statement_are_found(body, held, tried):
     node, outline = place(body)
     assert locks_around(node, outline) == held
     assert tried_around(node, outline) == tried
@@ -109,7 +109,7 @@ def test_a_lock_has_the_name_of_its_variable(text, name):
         ("while here:\n    pass\nwith self.a:\n    pass", set()),
     ],
 )
-def test_locks_taken_after_a_check_for_an_early_return_are_found(body, asked):
+def test_locks_after_an_early_return_are_found(body, asked):
     node, outline = place(body)
     assert asked_before(node, outline) == asked
 
@@ -168,5 +168,5 @@ ACCESSES = [
 
 
 @pytest.mark.parametrize(("body", "expected"), ACCESSES)
-def test_an_access_is_classified_as_a_read_a_replacement_or_a_change(body, expected):
+def test_access_is_a_read_a_replacement_or_a_change(body, expected):
     assert found(body) == expected

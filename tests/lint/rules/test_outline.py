@@ -34,7 +34,7 @@ def outline(text: str = TEXT) -> Outline:
     return Outline(ast.parse(dedent(text)))
 
 
-def test_locks_and_condition_variables_have_the_name_of_their_lock():
+def test_condition_variables_have_the_name_of_their_lock():
     assert outline().locks == {
         "lock": "lock",
         "first": "first",
@@ -44,7 +44,7 @@ def test_locks_and_condition_variables_have_the_name_of_their_lock():
     }
 
 
-def test_values_assigned_to_a_name_are_listed_by_its_last_part():
+def test_assigned_values_are_listed_by_name():
     found = {name: [*map(ast.unparse, values)] for name, values in outline().assigned.items()}
     assert found["ready"] == ["False", "True"]
     assert found["second"] == ["threading.RLock()"]

@@ -44,7 +44,7 @@ def expression(text: str) -> ast.expr:
         ("x", "both", "both"),
     ],
 )
-def test_the_side_on_which_a_condition_bounds_a_value_is_determined(test, holds, fails):
+def test_bounded_side_of_a_value_is_determined(test, holds, fails):
     assert side(expression(test), holds=True) == holds
     assert side(expression(test), holds=False) == fails
 

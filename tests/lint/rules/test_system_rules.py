@@ -85,7 +85,7 @@ def test_similar_spellings_of_names_are_recognised(one, other, alike):
         ("/arm/open", "/arm/open", False),
     ],
 )
-def test_names_in_a_namespace_that_differ_by_whole_words_are_recognised(one, other, alike):
+def test_names_that_differ_by_whole_words_are_recognised(one, other, alike):
     assert longer_alike(one, other) is longer_alike(other, one) is alike
 
 
@@ -100,7 +100,7 @@ def test_private_name_of_the_same_node_is_similar():
     assert messages(301, node("/s", end("publishes", "speech/a", "String")), hears) == [], "no node /speech"
 
 
-def test_an_endpoint_has_a_single_type_if_exactly_one_type_is_known():
+def test_endpoint_has_one_type_if_exactly_one_is_known():
     assert [single(end("calls", "a", kind)) for kind in ("Twist", "Twist | Pose", "AnyMsg", "")] == [
         "Twist",
         "",
@@ -112,7 +112,7 @@ def test_an_endpoint_has_a_single_type_if_exactly_one_type_is_known():
 HEARS, SAYS = end("subscribes", "cmd_vel"), end("publishes", "cmd_val")
 
 
-def test_the_report_of_a_subscription_without_a_publisher_names_a_similar_topic():
+def test_subscription_without_publisher_names_a_similar_topic():
     assert messages(301, node("/a", HEARS), node("/b", SAYS)) == [
         "/a subscribes to /cmd_vel (Twist), which no node publishes; /b publishes /cmd_val, to which no node subscribes"
     ]
@@ -133,7 +133,7 @@ def test_the_report_of_a_subscription_without_a_publisher_names_a_similar_topic(
         [node("/b", end("publishes", "/left/cmd_vel")), node("/c", unread=True)],
     ],
 )
-def test_a_subscription_that_may_have_a_publisher_is_not_reported(others):
+def test_subscription_with_a_possible_publisher_is_not_reported(others):
     assert messages(301, node("/a", HEARS), *others) == []
 
 
@@ -181,7 +181,7 @@ def test_a_subscription_whose_type_no_publisher_has_is_reported():
         (Qos(reliable=True), None, []),
     ],
 )
-def test_a_subscription_that_requests_a_stricter_qos_than_offered_is_reported(asked, offered, refused):
+def test_subscription_with_stricter_qos_is_reported(asked, offered, refused):
     says = end("publishes", "cmd_vel", qos=offered)
     found = messages(
         303, node("/a", replace(HEARS, qos=asked)), node("/b", says), node("/c", end("publishes", "x"))
@@ -191,7 +191,7 @@ def test_a_subscription_that_requests_a_stricter_qos_than_offered_is_reported(as
     ]
 
 
-def test_the_report_of_a_client_without_a_server_names_a_similar_service():
+def test_client_without_a_server_names_a_similar_service():
     calls, serves = end("calls", "home", "Trigger"), end("serves", "~home", "Trigger")
     assert messages(304, node("/client", calls), node("/arm", serves)) == [
         "/client calls /home (Trigger), which no node offers; /arm offers /arm/home"
@@ -224,7 +224,7 @@ def author(
     return node(name, interface=Interface("n.py", flows=flows), **given)
 
 
-def test_two_nodes_that_publish_commands_on_the_same_topic_are_reported(example):
+def test_two_command_publishers_on_one_topic_are_reported(example):
     found = messages(
         305, author(example, "/b"), author(example, "/a"), author(example, "/c", remaps=(("cmd_vel", "raw"),))
     )
@@ -236,7 +236,7 @@ def test_two_nodes_that_publish_commands_on_the_same_topic_are_reported(example)
     assert messages(305, author(example, "/a"), node("/b", unread=True)) == []
 
 
-def test_a_stale_command_is_reported_with_the_launched_names_of_both_topics(example):
+def test_stale_command_is_reported_with_both_topics(example):
     stale = replace(
         example.finding(), flow=replace(example.flow(), sink=replace(example.sink(), type="Twist"))
     )
@@ -282,7 +282,7 @@ NONE = "/k has no parameter {}: the launch file sets it without effect"
         (Setting("~in", FILE, yaml="a: 1"), ["in"]),
     ],
 )
-def test_a_setting_of_a_parameter_that_the_node_lacks_is_reported(setting, absent):
+def test_setting_of_a_missing_parameter_is_reported(setting, absent):
     assert messages(307, keeper("/k", setting)) == [NONE.format(name) for name in absent]
 
 

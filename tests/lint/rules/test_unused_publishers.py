@@ -76,7 +76,7 @@ def test_unused_publisher_in_a_library_is_not_reported():
     assert found("MADE", foot="\n") == [1], "no other code can reach a publisher without a name"
 
 
-def test_a_name_that_another_module_imports_may_be_used_there():
+def test_name_imported_elsewhere_may_be_used_there():
     other = "from a import pub\npub.publish(1.0)\n"
     assert found("pub = MADE", other) == []
     assert found("pub = MADE", "import b\n") == [1]
@@ -100,7 +100,7 @@ B().send()
     ("bases", "others", "expected"),
     [("", "", [3]), ("Base", "", [3]), ("", "A", []), ("Base, robot.B", "", [])],
 )
-def test_a_class_that_may_inherit_shares_the_publishers_of_its_base(bases, others, expected):
+def test_possible_subclass_shares_the_publishers_of_its_base(bases, others, expected):
     assert found(CLASSES.format(bases=bases, others=others)) == expected
 
 

@@ -90,17 +90,17 @@ def test_programs_are_analysed_once_and_their_reports_are_reused(performed):
     assert performed[2:] == ["b.py"]
 
 
-def test_programs_of_edited_files_come_first_and_then_small_programs(performed):
+def test_edited_programs_come_first_and_then_small_ones(performed):
     examine(scripts(30, 10, 20, 40), Config(), Memory("d.py"), partly=lambda *_: None)
     assert performed == ["d.py", "b.py", "c.py", "a.py"]
 
 
-def test_programs_keep_their_order_if_no_partial_results_are_requested(performed):
+def test_programs_keep_their_order_without_partial_results(performed):
     examine(scripts(30, 10, 20), Config(), Memory("c.py"))
     assert performed == ["a.py", "b.py", "c.py"]
 
 
-def test_final_findings_are_reported_after_one_two_and_four_programs(performed):
+def test_final_findings_come_after_one_two_and_four_programs(performed):
     told: list[tuple[int, list[str]]] = []
     examine(
         scripts(*range(7)),
@@ -159,7 +159,7 @@ def test_reports_of_programs_are_joined_without_repetitions():
     )
 
 
-def test_a_crash_is_reported_as_a_bug_and_raised_when_debugging(monkeypatch):
+def test_crash_is_reported_as_a_bug(monkeypatch):
     def crash(_: Script) -> Module:
         raise KeyError("x")
 
@@ -200,7 +200,7 @@ def test_an_accepted_finding_joins_the_baseline(in_directory, tmp_path):
         workspace.accept(first, result)
 
 
-def test_reports_are_kept_for_ten_runs_after_their_last_use():
+def test_reports_are_kept_for_ten_unused_runs():
     memory = editing._Memory(Config(), Cache(None))
     memory.put("a", Report(ended=("x",)))
     for _ in range(editing.KEPT_RUNS):
@@ -214,7 +214,7 @@ def test_reports_are_kept_for_ten_runs_after_their_last_use():
     assert (memory._known, memory.report("a"), memory.plan("a")) == ({}, None, [])
 
 
-def test_files_are_edited_if_their_digest_differs_from_the_last_complete_run():
+def test_edited_files_differ_from_the_last_complete_run():
     memory = editing._Memory(Config(), Cache(None))
     assert memory.edited({"a.py": "1"}) == frozenset()
     memory.save()

@@ -78,7 +78,7 @@ def test_the_largest_task_starts_first(pool, monkeypatch):
 
 @pytest.mark.parametrize(("count", "chunk"), [(31, 1), (32, 2), (64, 3)])
 @pytest.mark.usefixtures("safe_path")
-def test_many_tasks_are_divided_into_sixteen_chunks_for_each_process(pool, count, chunk):
+def test_tasks_are_divided_into_sixteen_chunks_per_process(pool, count, chunk):
     in_processes(str, range(count), [1] * count, 2, silent)
     assert pool.chunk == chunk
 
@@ -91,7 +91,7 @@ def test_a_failing_task_ends_the_other_tasks(pool):
     assert "PYTHONSAFEPATH" not in os.environ
 
 
-def test_the_result_is_none_if_the_system_does_not_support_processes(monkeypatch):
+def test_result_is_none_without_process_support(monkeypatch):
     monkeypatch.setattr(workers, "_context", lambda: None)
     assert in_processes(str, [1], [1], 2, silent) is None
 

@@ -32,7 +32,7 @@ def launched(name: str = "k", **given: Any) -> LaunchedNode:
     return LaunchedNode("arm", "k.py", name, given.pop("namespace", "/n"), FILE, 3, **given)
 
 
-def test_a_node_has_its_own_parameters_and_the_parameters_of_enclosing_namespaces():
+def test_node_has_parameters_of_enclosing_namespaces():
     node = launched(
         settings=(
             Setting("~a", FILE, 1),
@@ -70,11 +70,11 @@ VALUES = {
     [("~a", 1), ("~l", ("x", 2)), ("~none", DEFAULT), ("~t", None), ("~r", None), ("~m", None), ("b", "y"),
      ("/c", True), ("~t/u", 3), (ARGUMENTS, None)],
 )  # fmt: skip
-def test_only_scalars_and_lists_of_scalars_are_known_values_of_parameters(name, value):
+def test_only_scalars_and_their_lists_are_known_parameters(name, value):
     assert fixed([name], VALUES, "/n/k") == ({} if value is None else {name: value})
 
 
-def test_the_command_line_ends_with_the_arguments_that_ros_adds():
+def test_command_line_ends_with_the_arguments_of_ros():
     node = launched(arguments="--fast 'a b' scan:=/s", remaps=(("odom", "o"), ("scan", "/s")))
     assert command_line(node, Launch(FILE), "/n/k") == {
         ARGUMENTS: ("k.py", "--fast", "a b", "scan:=/s", "odom:=o", "__name:=k", "__log:=node.log")
@@ -107,14 +107,14 @@ def end(role: str, *names: str, **given: Any) -> Endpoint:
     return Endpoint(role, names, "T", given.pop("span", AT), **given)  # type: ignore[arg-type]
 
 
-def test_a_launched_node_sees_parameters_below_a_name_as_a_table():
+def test_launched_node_sees_nested_parameters_as_a_table():
     node = Launched("/n/k", (("/n/k/a/b", 1), ("/n/k/a/c/d", 2), ("/n/k/e", 3), ("/n/f", 4), ("/n/k/g", 5)))
     assert node.value("~a") == {"b": 1, "c": {"d": 2}}
     assert (node.value("~e"), node.value("f"), node.value("g"), node.value("/n/f")) == (3, 4, 5, 4)
     assert node.value("~none") is DEFAULT
 
 
-def test_an_endpoint_is_undetermined_unless_it_has_exactly_one_name(example):
+def test_endpoint_without_exactly_one_name_is_undetermined(example):
     assert not undetermined(Interface("n.py", endpoints=(end("calls", "a"),), flows=(example.finding(),)))
     assert undetermined(Interface("n.py", endpoints=(end("calls", "a"), end("calls"))))
     assert undetermined(Interface("n.py", endpoints=(end("calls", "a", "b"),)))

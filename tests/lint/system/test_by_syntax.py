@@ -130,7 +130,7 @@ class A(Node):
         ("10, 5", ["a"], None),
     ],
 )  # fmt: skip
-def test_the_profile_of_a_wrapper_is_the_argument_beside_the_topic(profile, topics, found):
+def test_wrapper_profile_is_the_argument_beside_the_topic(profile, topics, found):
     tree = ast.parse(TABLE.format(profile))
     call = next(
         one for one in ast.walk(tree) if isinstance(one, ast.Call) and "create" in ast.unparse(one.func)
@@ -160,7 +160,7 @@ def call_in(tree: ast.Module, text: str) -> tuple[int, int, int, int]:
     [("", RELIABLE), (", qos_profile_sensor_data", EFFORT), (", profile=qos_profile_sensor_data", EFFORT),
      (", profile=other", None), (", *more", None)],
 )  # fmt: skip
-def test_the_call_of_a_wrapper_passes_the_profile_or_leaves_the_default(given, found):
+def test_wrapper_call_passes_the_profile_or_the_default(given, found):
     tree = ast.parse(WRAPPER.format(f"node.sub(F, name, f{given})"))
     outline = Outline(tree)
     inside = [(outline, call_in(tree, "self.create_subscription"))]
@@ -177,7 +177,7 @@ def test_the_call_of_a_wrapper_passes_the_profile_or_leaves_the_default(given, f
         ([], None),
     ],
 )
-def test_all_calls_of_a_wrapper_may_pass_the_same_profile(calls, found):
+def test_wrapper_calls_may_share_a_profile(calls, found):
     tree = ast.parse(WRAPPER.format("\n".join(calls)))
     assert of_call(Outline(tree), call_in(tree, "self.create_publisher")) == found
 
@@ -192,7 +192,7 @@ def test_all_calls_of_a_wrapper_may_pass_the_same_profile(calls, found):
         ("[('bell', String), ('bell', Bool), ('door', Bool)]", None),
     ],
 )
-def test_the_rows_of_a_table_state_the_type_of_each_topic(rows, found):
+def test_table_rows_state_topic_types(rows, found):
     outline = Outline(ast.parse(f"TOPICS = {rows}"))
     end = Endpoint("subscribes", ("bell", "door"), "Bool | String", Span("a.py", 1, 1, 1, 2))
     parts = separated(end, ["std_msgs/Bool", "std_msgs/String", "demo/Bool"], [outline])
@@ -213,7 +213,7 @@ def test_a_function_of_another_module_may_return_the_profile():
     assert of_call(Outline(call), at, [Outline(ast.parse(two))]) is None
 
 
-def test_the_quality_of_service_is_unknown_where_there_is_no_call():
+def test_quality_of_service_is_unknown_without_a_call():
     assert of_call(Outline(ast.parse("f(1)")), (1, 0, 1, 3)) is None
 
 
@@ -259,7 +259,7 @@ def test_an_alias_in_cpp_is_not_a_message_type(tmp_path, before, written, kind):
     assert [one.type for one in named_topics(package, "drive")] == [kind]
 
 
-def test_the_topics_of_cpp_are_the_literals_in_its_calls(tmp_path, monkeypatch):
+def test_cpp_topics_are_literals_in_calls(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
     (tmp_path / "CMakeLists.txt").write_text(

@@ -172,7 +172,7 @@ def test_parameter_names_composed_in_a_ros2_program_are_known(tmp_path: Path, ti
         ("front/path", "rospy.Publisher('way', Path, queue_size=1); print('back/path')", True),
     ],
 )
-def test_private_and_longer_names_do_not_use_the_remapped_name(
+def test_longer_names_do_not_use_the_remapped_name(
     tmp_path: Path, old: str, code: str, reported: bool
 ) -> None:
     program = f"{ROSPY}from nav_msgs.msg import Path\n{code}\nrospy.spin()\n"

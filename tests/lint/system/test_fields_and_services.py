@@ -60,7 +60,7 @@ MADE = [
 
 
 @pytest.mark.parametrize(("body", "found"), MADE)
-def test_a_field_that_a_new_message_does_not_have_is_absent(body, found):
+def test_unknown_field_of_a_new_message_is_absent(body, found):
     text = "def f():\n" + "\n".join(f"    {line}" for line in body.split("\n"))
     assert absent(text) == found
     assert absent(body) == found, "at the top of a module"
@@ -89,7 +89,7 @@ RECEIVED = [
 
 
 @pytest.mark.parametrize(("register", "function", "found"), RECEIVED)
-def test_a_field_that_a_received_message_does_not_have_is_absent(register, function, found):
+def test_unknown_field_of_a_received_message_is_absent(register, function, found):
     assert absent(f"{function}\n{register}") == found
 
 
@@ -154,11 +154,11 @@ class Seam:
         (TWICE, 0),
     ],
 )  # fmt: skip
-def test_a_synchronizer_passes_messages_in_the_order_of_its_filters(made, found):
+def test_synchronizer_passes_messages_in_filter_order(made, found):
     assert absent(SYNCHRONIZED.format(made)) == [("Image", "cols"), ("CameraInfo", "cols")][:found]
 
 
-def test_no_field_counts_as_absent_if_the_message_type_is_unknown():
+def test_no_field_is_absent_if_the_type_is_unknown():
     module = Module(
         "a.py", "a", "", ast.parse("from demo.msg import Twist\ndef f():\n    t = Twist()\n    t.x = 1")
     )

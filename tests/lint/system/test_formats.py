@@ -63,7 +63,7 @@ def test_every_format_of_the_linter_shows_launch_files(robot, capsys):
         assert report(capsys, form)
 
 
-def test_concise_has_a_line_for_each_hazard_flow_and_unreadable_file(robot, capsys):
+def test_concise_has_a_line_per_hazard_flow_and_unreadable_file(robot, capsys):
     assert report(capsys, "concise").splitlines() == [
         f"arm/scripts/broken.py:2:1 TARL001 {UNREADABLE}",
         f"arm/launch/a.launch:3:1 {HAZARD} {MESSAGE}",
@@ -115,7 +115,7 @@ def schema() -> Any:
     return json.loads(Path(str(found[0].locate())).read_text("utf-8"))
 
 
-def test_sarif_has_hazards_as_results_and_each_system_as_a_graph(robot, capsys, schema):
+def test_sarif_has_hazards_as_results_and_systems_as_graphs(robot, capsys, schema):
     document = json.loads(report(capsys, "sarif"))
     assert list(jsonschema.Draft4Validator(schema).iter_errors(document)) == []
     (log,) = document["runs"]

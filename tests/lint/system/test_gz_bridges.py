@@ -179,14 +179,14 @@ def test_the_yaml_file_of_a_bridge_has_its_topics(cart, capsys, name, text):
 
 
 @pytest.mark.parametrize("text", ["- [", "5", "a: b"])
-def test_a_damaged_yaml_file_of_a_bridge_has_no_topics(cart, capsys, text):
+def test_damaged_bridge_file_has_no_topics(cart, capsys, text):
     write(cart, {"cart/config/bridge.yaml": text})
     file = launched(cart, """<node pkg="ros_gz_bridge" exec="parameter_bridge" name="b">
         <param name="config_file" value="$(find-pkg-share cart)/config/bridge.yaml"/></node>""")  # fmt: skip
     assert ends(bridge(capsys, file)) == ([], [], [])
 
 
-def test_a_yaml_file_outside_of_the_workspace_is_not_read(cart, capsys, tmp_path_factory):
+def test_yaml_file_outside_the_workspace_is_not_read(cart, capsys, tmp_path_factory):
     other = tmp_path_factory.mktemp("elsewhere") / "bridge.yaml"
     other.write_text(CONFIG)
     file = launched(cart, f"""<node pkg="ros_gz_bridge" exec="parameter_bridge" name="b">
@@ -239,7 +239,7 @@ def test_unread_file_may_start_a_missing_publisher(cart, capsys, place):
     assert ("TARL301" in out) is not bool(place)
 
 
-def test_no_conclusion_is_drawn_from_arguments_that_may_be_incomplete(cart, capsys):
+def test_incomplete_arguments_allow_no_conclusion(cart, capsys):
     text = """
         from launch import LaunchDescription
         from launch_ros.actions import Node

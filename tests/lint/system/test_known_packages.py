@@ -144,7 +144,7 @@ def test_fields_of_messages_are_read_from_their_definitions(tmp_path):
     assert found == {"robot/Whole": expected, "robot/Part": {"whole": "robot/Whole", "x": ""}}
 
 
-def test_the_inputs_of_a_multiplexer_are_those_in_its_parameters(tmp_path):
+def test_multiplexer_inputs_are_in_its_parameters(tmp_path):
     mux = """<node pkg="twist_mux" type="twist_mux" name="mux"><rosparam>
       topics: [{{name: a, topic: {}, timeout: 0.5, priority: 1}}]
     </rosparam></node>"""
@@ -156,7 +156,7 @@ def test_the_inputs_of_a_multiplexer_are_those_in_its_parameters(tmp_path):
     assert codes(tmp_path / "d", pilot.format(unknown.replace("{{", "{"))) == []
 
 
-def test_the_inputs_of_a_multiplexer_of_ros_2_are_nested_parameters():
+def test_ros2_multiplexer_inputs_are_nested_parameters():
     names = {"topics.joy.topic": "joy_vel", "topics.nav.topic": "nav_vel", "topics.nav.priority": 5}
     mux = Instance(node("twist_mux", "twist_mux"), "/mux")
     known = typed(mux, {**names, "locks.stop.topic": "e_stop", "use_stamped": False}, ros2=True)
@@ -168,7 +168,7 @@ def test_the_inputs_of_a_multiplexer_of_ros_2_are_nested_parameters():
     assert not typed(mux, {"topics": "all"}, ros2=True).certain
 
 
-def test_the_type_of_a_multiplexer_of_ros_2_depends_on_its_version():
+def test_ros2_multiplexer_type_depends_on_its_version():
     mux = Instance(node("twist_mux", "twist_mux"), "/mux")
     given: list[tuple[dict[str, object], bool, str]] = [
         ({}, False, "Twist"), ({}, True, ""), ({"use_stamped": True}, True, "TwistStamped"),
@@ -208,7 +208,7 @@ pub.publish()
         ("Other", "", ["TARL301"]),
     ],
 )
-def test_a_node_with_computed_names_uses_only_the_types_in_its_code(tmp_path, kind, imported, found):
+def test_node_with_computed_names_uses_the_types_in_its_code(tmp_path, kind, imported, found):
     text = UNNAMED.format(kind="Bool" if kind == "Twist" else kind, imported=imported)
     (tmp_path / "robot").mkdir()
     (tmp_path / "robot/other.py").write_text(text.replace("(), Bool,", f"(), {kind},"))

@@ -23,7 +23,7 @@ def test_no_flow_passes_through_nodes_that_exclude_each_other(workspace, capsys)
     assert "/real (unless $(arg sim))" in out
 
 
-def test_flows_pass_through_each_of_two_alternative_nodes_with_the_same_name(workspace, capsys):
+def test_flows_pass_through_both_alternative_nodes(workspace, capsys):
     real = RELAY.format("driver", 'unless="$(arg sim)"', "/scan", "/points")
     simulated = RELAY.format("driver", 'if="$(arg sim)"', "/fake", "/points")
     file = launched(workspace, f'<arg name="sim"/>{real}{simulated}{relay("planner", "/points", "/goal")}')

@@ -48,7 +48,7 @@ def listed(capsys: pytest.CaptureFixture[str], arm: Path, body: str) -> list[tup
     return [(one["missing"], one["name"], one["certain"]) for one in system.get("one_sided", ())]
 
 
-def test_topics_services_and_actions_without_the_other_endpoint_are_listed(arm, capsys):
+def test_endpoints_without_the_other_side_are_listed(arm, capsys):
     assert listed(capsys, arm, relay("one", "scan", "out") + CLIENT_NODE) == [
         ("publishes", "/scan", True),
         ("serves", "/reset", True),
@@ -75,7 +75,7 @@ def test_remapping_of_an_unread_node_may_be_the_publisher(arm, capsys):
     assert listed(capsys, arm, relay("one", "scan", "out") + driver) == []
 
 
-def test_parts_that_were_not_read_make_a_missing_endpoint_uncertain(arm, capsys):
+def test_unread_parts_make_a_missing_endpoint_uncertain(arm, capsys):
     driver = '<node pkg="base" type="laser" name="laser"/>'
     assert listed(capsys, arm, relay("one", "scan", "out") + driver) == [("publishes", "/scan", False)]
     missing = '<include file="$(find base)/launch/base.launch"/>'

@@ -95,7 +95,7 @@ def test_a_named_launch_file_must_be_readable(arm, capsys, name, text, reason):
     )
 
 
-def test_an_included_launch_file_that_cannot_be_read_is_reported(arm, capsys):
+def test_unreadable_included_launch_file_is_reported(arm, capsys):
     write(arm, {"arm/launch/part.launch": "<launch>"})
     launch(arm, '<include file="$(find arm)/launch/part.launch"/>')
     code, out, _ = run(capsys, "--launch", "a.launch", "--format", "concise")
@@ -127,7 +127,7 @@ def test_a_comment_silences_a_hazard_in_a_launch_file(arm, capsys, comment):
     assert run(capsys, "--launch", "a.launch")[0] == 1
 
 
-def test_a_comment_about_launched_systems_is_not_useless_in_other_runs(arm, capsys):
+def test_comment_about_launched_systems_is_not_useless(arm, capsys):
     source = RELAY.replace("publish(2.0 * msg.data))", "publish(msg.data))  # tarl: ignore[TARL306]")
     write(arm, {"arm/scripts/relay.py": source})
     assert "for this comment to silence" not in run(capsys, "arm")[1]
@@ -164,7 +164,7 @@ def test_exclude_applies_to_launch_files(arm, capsys):
         assert "arm/launch/b.launch: 1 node" in out
 
 
-def test_a_vanished_hazard_is_named_and_removed_from_the_baseline(arm, capsys):
+def test_vanished_hazard_leaves_the_baseline(arm, capsys):
     baseline = arm / "tarl-flows.json"
     assert run(capsys, "--launch", "all", "--write-baseline")[0] == 0
     kept = json.loads(baseline.read_text())
@@ -183,7 +183,7 @@ def test_a_vanished_hazard_is_named_and_removed_from_the_baseline(arm, capsys):
     assert "hazards" not in json.loads(baseline.read_text())
 
 
-def test_the_number_of_flows_is_limited_and_the_rest_is_counted(arm, capsys):
+def test_flows_beyond_the_limit_are_counted(arm, capsys):
     launch(arm, "".join(relay(f"n{number}", "middle", f"/out{number}") for number in range(4)))
     for form in ("text", "concise", "github"):
         out = run(capsys, "--launch", "a.launch", "--format", form, "--max-paths", "3")[1]
@@ -246,13 +246,13 @@ def test_the_option_show_settings_prints_the_settings(arm, capsys):
         ),
     ],
 )
-def test_options_that_cannot_be_combined_are_refused_in_one_sentence(arm, capsys, arguments, message):
+def test_incompatible_options_are_refused_in_one_sentence(arm, capsys, arguments, message):
     code, _, err = run(capsys, *arguments)
     assert code == 2
     assert message in err
 
 
-def test_text_says_that_no_rule_about_launch_files_is_enabled(arm, capsys):
+def test_text_says_that_no_launch_rule_is_enabled(arm, capsys):
     assert (
         "No rule about launch files (TARL3) is enabled."
         in run(capsys, "--launch", "all", "--select", "TARL1")[1]
@@ -294,7 +294,7 @@ LONG = (
 )
 
 
-def test_a_program_that_exhausts_its_budget_is_named_in_every_format(arm, capsys, monkeypatch):
+def test_exhausted_program_is_named_in_every_format(arm, capsys, monkeypatch):
     monkeypatch.setattr(fixpoint, "MAX_STATEMENTS", 100)
     source = RELAY.replace("rospy.Subscriber", "# ").replace("rospy.spin", f"{LONG}rospy.spin")
     write(arm, {"arm/scripts/relay.py": source})

@@ -48,7 +48,7 @@ def messages(root: Path, launch: str, where: str = "launch/r.launch", **programs
         ("", []),
     ],
 )
-def test_the_cfg_files_of_the_workspace_name_parameters_of_a_program(tmp_path, cfg, found):
+def test_cfg_files_name_program_parameters(tmp_path, cfg, found):
     names = ("offset", "ofset", "gain", "speed")
     settings = "".join(f'<param name="{name}" value="1"/>' for name in names)
     launch = f'<launch><node pkg="robot" type="edge.py" name="edge">{settings}</node></launch>'
@@ -119,7 +119,7 @@ rospy.spin()
 
 
 @pytest.mark.parametrize(("name", "found"), [("lift", []), ("elevator", ["TARL301", "TARL304"])])
-def test_private_names_change_if_the_launch_file_renames_their_node(tmp_path, name, found):
+def test_private_names_follow_a_renamed_node(tmp_path, name, found):
     launch = f"""<launch><node pkg="robot" type="lift.py" name="{name}"/>
     <node pkg="robot" type="guest.py" name="guest"/><node pkg="other" type="driver" name="driver"/></launch>"""
     assert sorted(one[:7] for one in messages(tmp_path, launch, lift=LIFT, guest=GUEST)) == found

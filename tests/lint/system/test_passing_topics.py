@@ -60,7 +60,7 @@ def test_republish_may_be_a_nodelet(workspace, capsys, arguments, subscribed):
     assert ends(capsys, launched(workspace, node))[0] == subscribed
 
 
-def test_republish_of_ros2_takes_transports_before_the_arguments_of_ros(workspace, capsys):
+def test_ros2_republish_takes_transports_first(workspace, capsys):
     node = """<node pkg="image_transport" exec="republish" name="r" args="compressed raw">
     <remap from="in/compressed" to="/cam/compressed"/><remap from="out" to="/plain"/></node>"""
     assert ends(capsys, launched(workspace, node, "a.launch.xml")) == (["/cam/compressed"], ["/plain"])
@@ -115,7 +115,7 @@ def test_programs_of_topic_tools_name_their_topics_in_arguments(
         ("delay", {"input_topic": "$(env TOPIC)"}, [], []),
     ],
 )
-def test_programs_of_topic_tools_name_their_topics_in_parameters_in_ros2(
+def test_topic_tools_name_their_topics_in_ros2_parameters(
     workspace, capsys, program, parameters, subscribed, published
 ):
     inside = "".join(f'<param name="{name}" value="{value}"/>' for name, value in parameters.items())
@@ -165,7 +165,7 @@ rospy.spin()
         ("/drive/select", '<remap from="mux" to="drive"/>'),
     ],
 )
-def test_a_request_to_a_multiplexer_chooses_the_topic_that_it_forwards(workspace, capsys, service, inside):
+def test_multiplexer_request_chooses_the_topic(workspace, capsys, service, inside):
     write(workspace, {"arm/scripts/chooser.py": SELECTING.format(service=service)})
     file = launched(
         workspace,
@@ -255,12 +255,12 @@ def test_a_cpp_program_publishes_images_in_several_transports(workspace, capsys)
     )  # fmt: skip
 
 
-def test_a_cpp_program_receives_images_in_the_transport_of_its_parameter(workspace, capsys):
+def test_cpp_program_uses_the_image_transport_of_its_parameter(workspace, capsys):
     parameter = '<param name="image_transport" value="compressed"/>'
     assert ends(capsys, camera(workspace, parameter))[0] == ["/mask/compressed"]
 
 
-def test_in_ros2_functions_that_take_the_node_create_endpoints_of_image_transport(workspace, capsys):
+def test_ros2_functions_with_a_node_create_image_endpoints(workspace, capsys):
     file = camera(workspace, "")
     source = workspace / "eye/src/camera.cpp"
     source.write_text('auto pub = image_transport::create_publisher(this, "image");\n'

@@ -19,7 +19,7 @@ from tarl_lint.system.sensor_drivers import driver_types, driver_words, offered,
         ("acme_camera_imu", "node", "MagneticField", "Twist"),
     ],
 )
-def test_a_sensor_driver_uses_the_message_types_of_its_sensor(package, program, kind, other):
+def test_sensor_driver_uses_types_of_its_sensor(package, program, kind, other):
     types = driver_types(package, program) or ()
     assert kind in types
     assert other not in types
@@ -43,7 +43,7 @@ def test_program_beyond_a_sensor_driver_may_use_any_topic(package, program):
     assert driver_words(package, program) is None
 
 
-def test_a_sensor_driver_publishes_no_commands_even_if_its_topics_are_unknown():
+def test_sensor_driver_publishes_no_commands():
     assert "Twist" in unused_types("acme_rfid", "node")
     assert "Twist" in unused_types("lidar_obstacle_detector", "detector")
     assert unused_types("lidar_servo", "node") == frozenset()
@@ -57,7 +57,7 @@ def test_a_sensor_driver_publishes_no_commands_even_if_its_topics_are_unknown():
         ("/scan_matched", False),
     ],
 )  # fmt: skip
-def test_a_sensor_driver_may_use_names_made_of_typical_words_of_drivers(name, may):
+def test_sensor_driver_may_use_typical_names(name, may):
     words = driver_words("velodyne_driver", "velodyne_node")
     assert words is not None
     assert offered(name, words) is may

@@ -147,9 +147,7 @@ def found(workspace: str, folder: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("kind", SOWN)
-def test_an_injected_misconfiguration_is_found_even_if_drivers_were_not_read(
-    kind: str, tmp_path: Path
-) -> None:
+def test_injected_misconfiguration_is_found_beside_unread_drivers(kind: str, tmp_path: Path) -> None:
     code, message, edits = SOWN[kind]
     workspace = kind.partition(":")[0]
     folder = written(workspace, tmp_path)

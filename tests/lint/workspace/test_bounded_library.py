@@ -101,7 +101,7 @@ FUNCTIONS = sorted({*BUILTINS, *LIBRARIES, "getattr", "setattr", "vars", "proper
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_no_call_of_a_library_function_makes_the_linter_fail(tmp_path, name):
+def test_bounded_library_functions_never_fail(tmp_path, name):
     start = f"{START}import {name.split('.')[0]}\n" if "." in name else START
     if "." in name:
         start += f"import {name.rpartition('.')[0]}\n"
@@ -119,7 +119,7 @@ NAMES = sorted({name for names in METHODS.values() for name in names} | {"parse"
 
 
 @pytest.mark.parametrize("value", VALUES)
-def test_no_call_of_a_library_method_makes_the_linter_fail(tmp_path, value):
+def test_bounded_library_methods_never_fail(tmp_path, value):
     start = f"{START}import collections, re, string, pathlib\nr = []\n"
     calls = [f"r.append({value}.{name}({one}))" for name in NAMES for one in ARGUMENTS]
     found = interpreted(tmp_path, start + "\n".join(calls) + "\n")

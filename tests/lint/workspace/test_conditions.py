@@ -70,7 +70,7 @@ ATOMS = [
 
 
 @given(*[st.lists(st.sampled_from(ATOMS), min_size=1, max_size=3)] * 2)
-def test_conjunctions_exclude_each_other_exactly_if_no_values_satisfy_both(one, other):  # type: ignore[no-untyped-def]
+def test_unsatisfiable_conjunctions_exclude_each_other(one, other):  # type: ignore[no-untyped-def]
     texts = [" and ".join(text for text, _, _ in atoms) for atoms in (one, other)]
     values = [{"a": a, "b": b} for a in (False, True) for b in (False, True)]
     holds = [
@@ -147,7 +147,7 @@ def test_opposite_conditions_of_ros2_differ(package):
     assert exclusive(*found.nodes[2:])
 
 
-def test_programs_in_test_elements_do_not_count_as_nodes_of_the_robot(package):
+def test_programs_of_test_elements_are_no_robot_nodes(package):
     found = launched(
         package,
         """<launch><node pkg="arm" type="drive" name="drive"/>
@@ -164,7 +164,7 @@ def test_programs_in_test_elements_do_not_count_as_nodes_of_the_robot(package):
     assert not reasons(found)
 
 
-def test_the_default_of_an_environment_variable_that_is_always_set_is_ignored(package):
+def test_default_of_an_always_set_variable_is_ignored(package):
     found = launched(
         package,
         """<launch><node pkg="arm" type="d" name="a"><param name="x" value="$(optenv HOME /root)/log"/>

@@ -312,7 +312,7 @@ def generate_launch_description():
         ('<launch><arg name="a"/></launch>', False),
     ],
 )
-def test_the_elements_of_an_xml_launch_file_show_its_ros_version(package, text, ros2):
+def test_xml_launch_elements_show_the_ros_version(package, text, ros2):
     assert launched(package, text, "a.launch.xml").ros2 is ros2
 
 

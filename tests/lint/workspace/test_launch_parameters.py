@@ -65,7 +65,7 @@ def test_nested_values_have_names_with_slashes():
         ("g.te", "/gate", False),
     ],
 )
-def test_a_section_is_for_the_nodes_that_its_pattern_matches(pattern, node, found):
+def test_section_is_for_matching_nodes(pattern, node, found):
     assert matches(pattern, node) is found
 
 

@@ -44,7 +44,7 @@ def test_a_roslaunch_parent_starts_launch_files_with_arguments(package):
     assert not found.ros2
 
 
-def test_nodes_that_a_script_starts_through_the_core_api_are_found(package):
+def test_script_nodes_started_through_the_core_api_are_found(package):
     found = script(
         package,
         """
@@ -113,7 +113,7 @@ def test_a_script_that_starts_nothing_is_reported_as_such(package):
 @pytest.mark.parametrize(
     "included", ["describe()", "LaunchDescription([node])", "[LaunchDescription([node])][0]"]
 )
-def test_the_descriptions_of_a_launch_service_are_the_launch_file(package, included):
+def test_launch_service_descriptions_are_the_launch_file(package, included):
     found = script(
         package,
         f"""
@@ -141,7 +141,7 @@ def test_the_descriptions_of_a_launch_service_are_the_launch_file(package, inclu
     assert not reasons(found)
 
 
-def test_a_launch_file_that_can_also_be_run_starts_its_nodes_once(package):
+def test_runnable_launch_file_starts_its_nodes_once(package):
     found = script(
         package,
         """

@@ -75,7 +75,7 @@ PARAMETERS = [
 
 
 @pytest.mark.parametrize(("inside", "found", "problems"), PARAMETERS)
-def test_a_parameter_inside_a_node_gets_its_value_from_the_launch_file(package, inside, found, problems):
+def test_parameter_inside_a_node_gets_its_launch_value(package, inside, found, problems):
     launch = launched(package, f'<launch><arg name="n" value="3"/>{NODE.format(inside)}</launch>')
     assert settings(launch.nodes[0]) == found
     assert reasons(launch) == problems
@@ -98,7 +98,7 @@ def test_remappings_and_parameters_apply_to_the_nodes_after_them(package):
     assert [(one.name, one.value) for one in found.settings] == [("/r", 3)]
 
 
-def test_a_parameter_beside_a_node_may_be_known_only_on_the_robot(package):
+def test_parameter_beside_a_node_may_be_unknown(package):
     found = launched(
         package,
         f"""<launch><arg name="none"/><param name="drive/a" value="$(arg none)"/><param name="~b" value="$(env NONE)"/>
@@ -110,7 +110,7 @@ def test_a_parameter_beside_a_node_may_be_known_only_on_the_robot(package):
     assert len(found.problems) == 4
 
 
-def test_an_element_of_a_launch_file_counts_only_if_its_condition_holds(package):
+def test_launch_element_counts_only_if_its_condition_holds(package):
     found = launched(
         package,
         """<launch><arg name="on" default="true"/><arg name="open"/>
@@ -133,7 +133,7 @@ def test_an_element_of_a_launch_file_counts_only_if_its_condition_holds(package)
     assert found.arguments == ("on", "open")
 
 
-def test_an_included_file_gets_the_arguments_that_the_include_gives(package):
+def test_included_file_gets_the_given_arguments(package):
     found = launched(
         package,
         """<launch><arg name="rate" value="8"/><include file="$(find arm)/part.launch"/>
@@ -155,7 +155,7 @@ def test_an_included_file_gets_the_arguments_that_the_include_gives(package):
     assert {one.file.name for one in found.nodes} == {"part.launch"}
 
 
-def test_a_default_may_use_earlier_arguments_and_an_unknown_argument_is_reported(package):
+def test_default_may_use_earlier_arguments(package):
     found = launched(
         package,
         """<launch><arg name="a" default="x"/><arg name="b" default="$(arg a)y"/><arg name="c" default="$(arg d)"/>

@@ -65,7 +65,7 @@ def test_the_kind_of_a_package_is_its_build_system(tmp_path, inside, files, kind
         ("<!ENTITY a 'b'>", "folder", "it declares entities"),
     ],
 )
-def test_a_package_without_a_readable_name_has_the_name_of_its_folder(tmp_path, text, name, problem):
+def test_package_without_a_name_is_named_after_its_folder(tmp_path, text, name, problem):
     (tmp_path / "folder").mkdir()
     (tmp_path / "folder/package.xml").write_bytes(text.encode("latin-1"))
     found, problems = manifest(tmp_path / "folder")
@@ -73,7 +73,7 @@ def test_a_package_without_a_readable_name_has_the_name_of_its_folder(tmp_path, 
     assert [one.reason.startswith(problem) for one in problems] == ([True] if problem else [])
 
 
-def test_the_dependencies_of_a_package_are_sorted_and_named_once(tmp_path):
+def test_package_dependencies_are_sorted_and_unique(tmp_path):
     (tmp_path / "package.xml").write_text(
         "<package><name>a</name><depend>b</depend><exec_depend>c</exec_depend><run_depend> b </run_depend>"
         "<author>d</author><test_depend/></package>"
@@ -132,7 +132,7 @@ def test_package_of_unknown_kind_has_a_module_of_its_name(tmp_path):
     assert contents(tmp_path, Manifest("leg", "unknown"), [])[1] == ()
 
 
-def test_the_programs_of_a_package_are_console_scripts_scripts_and_installed_files(tmp_path):
+def test_package_programs_include_scripts_and_installed_files(tmp_path):
     written(
         tmp_path,
         {
@@ -251,7 +251,7 @@ def test_the_programs_that_cmake_installs_are_found(tmp_path, name):
     assert dict(cmake(tmp_path, "arm").programs) == programs
 
 
-def test_quoted_words_of_cmake_stay_together_and_comments_are_dropped(tmp_path):
+def test_quoted_cmake_words_stay_together(tmp_path):
     text = 'set(A "x y") #[==[ set(A z) ]==] # set(A w)\nf(${A} "${A} b" c"d" (e (f)) )\n)g(h)'
     assert [(one.name, one.words) for one in commands(text, tmp_path, "arm")] == [
         ("set", ("A", "x y")),
@@ -287,13 +287,13 @@ gen.generate('p', 'n', 'Arm')
         ("gen.const(names(), int_t, 1, 'd')", "a constant's name or value is not constant"),
     ],
 )
-def test_a_parameter_that_is_not_constant_is_reported_with_its_line(tmp_path, line, problem):
+def test_non_constant_parameter_is_reported_with_its_line(tmp_path, line, problem):
     (tmp_path / "Arm.cfg").write_text(CFG.format(line))
     (_, (found,)) = configurations(tmp_path / "Arm.cfg")
     assert (found.line, found.reason) == (3, problem)
 
 
-def test_nested_groups_of_a_cfg_file_name_their_enclosing_groups(tmp_path):
+def test_nested_cfg_groups_name_their_enclosing_groups(tmp_path):
     lines = "a = gen.add_group('A b', state=False)\nb = a.add_group('C')\nb.add('x', bool_t, 0, names())"
     (tmp_path / "Arm.cfg").write_text(CFG.format(lines))
     ((found,), _) = configurations(tmp_path / "Arm.cfg")
@@ -312,7 +312,7 @@ def test_nested_groups_of_a_cfg_file_name_their_enclosing_groups(tmp_path):
     ]
 
 
-def test_folders_of_tools_are_skipped_and_folders_marked_as_ignored_are_noted(tmp_path):
+def test_tool_folders_are_skipped_and_ignored_ones_noted(tmp_path):
     for name in (
         "a",
         "build",
@@ -388,7 +388,7 @@ def test_launch_folder_may_contain_files_with_other_endings(tmp_path):
     assert names == [["a.xml", "c.py", "f.launch.yaml"], [], ["h.yml"], ["M.msg"]]
 
 
-def test_interfaces_outside_of_packages_belong_to_a_package_of_their_folder(tmp_path):
+def test_interfaces_outside_packages_belong_to_their_folder(tmp_path):
     written(tmp_path, {"loose/srv/S.srv": "", "loose/msg/readme": ""})
     (package,) = read(tmp_path).packages
     assert (package.name, package.kind, [one.name for one in package.interfaces]) == (
@@ -398,7 +398,7 @@ def test_interfaces_outside_of_packages_belong_to_a_package_of_their_folder(tmp_
     )
 
 
-def test_the_program_of_a_node_is_found_or_the_reason_is_given(tmp_path):
+def test_node_program_is_found_or_explained(tmp_path):
     written(
         tmp_path,
         {
@@ -529,7 +529,7 @@ def test_reading_endless_and_unfinished_blocks_of_cmake_ends(tmp_path, text, num
     assert len(found) < 10_000 if number is None else len(found) == number
 
 
-def test_a_message_package_takes_precedence_over_a_copy_of_its_definitions(tmp_path: Path) -> None:
+def test_message_package_wins_over_a_copy(tmp_path: Path) -> None:
     folders = {
         "a_first/arm_msgs/msg/Old.msg": "float64 value",
         "a_first/arm_msgs/msg/Grip.msg": "float64 old",

@@ -140,7 +140,7 @@ def test_computed_values_in_setup_py_are_reported(tmp_path, given, problem):
     assert [found.reason for found in setup(tmp_path).problems] == [problem]
 
 
-def test_a_module_is_found_in_the_folder_of_its_package(tmp_path):
+def test_module_is_found_in_its_package_folder(tmp_path):
     for name in ("arm/node.py", "src/leg/walk/__init__.py", "own/place/node.py"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("")
@@ -187,7 +187,7 @@ def test_python_program_is_recognised_by_name_or_first_line(tmp_path: Path, name
         (" word ", "auto", " word "),
     ],
 )
-def test_a_value_has_the_type_that_its_param_element_declares(text, kind, value):
+def test_value_has_the_type_of_its_param_element(text, kind, value):
     found = scalar(text, kind)
     assert (found, type(found)) == (value, type(value))
 
@@ -205,14 +205,14 @@ def test_a_value_of_another_type_is_refused(text, kind):
         ({"arm": {"ros__parameters": {"a": 1}}, "leg": {"ros__parameters": {"b": 2}}}, {}),
     ],
 )
-def test_a_node_without_a_name_has_the_parameters_of_the_only_section(sections, found):
+def test_unnamed_node_gets_parameters_of_the_only_section(sections, found):
     assert of_node(sections, "/robot/") == found
 
 
 @pytest.mark.parametrize(
     ("kind", "found"), [("GLOB", ["b.py"]), ("GLOB_RECURSE", ["a.py", "b.py"]), ("STRINGS", ["${FOUND}"])]
 )
-def test_a_cmake_variable_lists_the_files_that_match_its_pattern(kind, found, tmp_path):
+def test_cmake_variable_lists_matching_files(kind, found, tmp_path):
     (tmp_path / "deep").mkdir()
     for name in ("b.py", "deep/a.py"):
         (tmp_path / name).touch()

@@ -178,7 +178,7 @@ PROBLEMS = {
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_code_that_is_not_constant_is_reported_with_its_line(tmp_path, name):
+def test_non_constant_code_is_reported_with_its_line(tmp_path, name):
     text, line, reason = PROBLEMS[name]
     path = tmp_path / "read.py"
     path.write_text(text)
@@ -195,7 +195,7 @@ def test_unknown_condition_takes_a_branch_that_does_not_raise(tmp_path):
     assert (kept["x"], kept["y"]) == (1, 3)
 
 
-def test_functions_of_the_file_can_be_called_and_report_their_problems(tmp_path):
+def test_functions_of_the_file_can_be_called(tmp_path):
     path = tmp_path / "read.py"
     path.write_text(
         "def f(a, b=2):\n    return a + b\ndef g():\n    raise E\ndef h():\n    return h()\nx = 1\n"
@@ -210,7 +210,7 @@ def test_functions_of_the_file_can_be_called_and_report_their_problems(tmp_path)
     assert isinstance(file.called("h"), Unknown)
 
 
-def test_an_imported_module_is_interpreted_once_and_provides_its_names(tmp_path):
+def test_imported_module_is_interpreted_once(tmp_path):
     (tmp_path / "one.py").write_text("import two\nX = two.Y + 1\n_z = 5\nN.append(1)\n")
     (tmp_path / "two.py").write_text("Y = __name__\nN = []\nif absent:\n    Y = 1\n")
     path = tmp_path / "read.py"

@@ -148,7 +148,7 @@ TEXTS = {
 
 
 @pytest.mark.parametrize("name", TEXTS)
-def test_the_report_of_a_system_lists_values_that_only_the_robot_knows(name, package):
+def test_report_lists_values_only_the_robot_knows(name, package):
     launched(package, TEXTS[name], name)
     root: Path = package.parent
     found = systems(Request(str(package / name), (), (root,)), resolve(Options((root,))))

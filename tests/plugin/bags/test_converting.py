@@ -90,7 +90,7 @@ def ranges(kind: Kind) -> Any:
     return converted(scan, one("sensor_msgs/LaserScan", kind)).ranges
 
 
-def test_sequences_of_numbers_are_converted_to_the_form_of_each_ros_version() -> None:
+def test_number_sequences_are_converted_for_each_ros_version() -> None:
     assert ranges("ros1") == [1.5, 2.5]
     assert type(ranges("ros1")) is list
     assert ranges("ros2") == array("f", [1.5, 2.5])
@@ -112,7 +112,7 @@ def test_fixed_arrays_have_the_form_of_the_field(kind: Kind) -> None:
         assert made.covariance.dtype == template.dtype
 
 
-def test_bytes_are_converted_to_the_form_of_each_ros_version() -> None:
+def test_bytes_are_converted_for_each_ros_version() -> None:
     image = {"header": told("h", stamp=stamp(0, 0), frame_id=""), "format": "png"}
     data = np.array([1, 2, 255], np.uint8)
     first, second = (
@@ -142,7 +142,7 @@ def test_sequences_of_messages_and_texts_are_converted(kind: Kind) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", ["Time", "Duration"])
-def test_sequences_of_times_become_the_times_of_each_ros_version(kind: Kind, name: str) -> None:
+def test_sequences_of_times_are_converted_for_each_ros_version(kind: Kind, name: str) -> None:
     recorded = [told(f"builtin_interfaces/msg/{name}", sec=sec, nanosec=5) for sec in (1, 2)]
     found = _value(recorded, [], kind)
     if kind == "ros1":

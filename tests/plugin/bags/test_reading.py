@@ -24,7 +24,7 @@ STEPS = [
 
 
 @pytest.mark.parametrize("ending", [".bag", ".mcap", ".db3", ""])
-def test_a_bag_has_its_channels_and_messages_in_order_of_time(tmp_path: Path, ending: str) -> None:
+def test_bag_messages_are_ordered_by_time(tmp_path: Path, ending: str) -> None:
     bag = opened(write_bag(tmp_path / f"a{ending}", iter(STEPS)))
     assert (bag.start, bag.notes) == (START, [])
     assert bag.kind == ("ros1" if ending == ".bag" else "ros2")
@@ -115,7 +115,7 @@ def test_note_on_a_truncated_bag_states_duration_and_messages(tmp_path: Path) ->
     assert [one.time - START for one in bag.messages()] == [0, 5 * 10**8, 2 * 10**9]
 
 
-def test_channels_without_messages_are_dropped_and_messages_are_sorted_by_time(
+def test_empty_channels_are_dropped_and_messages_sorted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     contents = {
@@ -132,7 +132,7 @@ def test_channels_without_messages_are_dropped_and_messages_are_sorted_by_time(
     assert bag.start == 1
 
 
-def test_a_bag_without_a_whole_message_is_refused_with_the_reason(tmp_path: Path) -> None:
+def test_bag_without_a_whole_message_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.bag"
     path.write_bytes(b"#ROSBAG V2.0\n")
     with pytest.raises(

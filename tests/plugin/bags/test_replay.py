@@ -98,7 +98,7 @@ def test_message_at_a_step_end_belongs_to_the_next_step() -> None:
     assert seen == [1.0, 3.0]
 
 
-def test_only_the_last_step_of_a_bag_ends_the_mission() -> None:
+def test_only_the_last_bag_step_ends_the_mission() -> None:
     over: list[bool] = []
     bag = Mission([(0.0, "/level", 1.0), (1.2, "/level", 2.0)])
     Played(bag, monitor=lambda moment: over.append(moment.over) or 0.0)
@@ -162,7 +162,7 @@ def test_topics_of_the_node_are_not_delivered() -> None:
 
 
 @pytest.mark.parametrize("kind", [Float64, None])
-def test_messages_are_delivered_as_the_class_that_the_node_subscribed_with(kind: Any) -> None:
+def test_messages_have_the_class_of_the_subscription(kind: Any) -> None:
     end = End(kind)
     bag = Mission([(0.0, "/odom", 1.0), (0.1, "/odom", 2.0)])
     played = Played(bag, prepare=subscribed("odom", end))
@@ -200,7 +200,7 @@ def test_an_undefined_type_is_refused() -> None:
     assert played.replay.notes[0] == "mission.bag: /level was not replayed: my/msg/Part is not defined."
 
 
-def test_subscribed_topics_without_a_message_are_noted_unless_no_message_is_needed() -> None:
+def test_silent_subscribed_topics_are_noted() -> None:
     def listens(ros: Ros) -> None:
         for topic in ("/mode", "/level", "/own", *ALWAYS_THERE):
             ros.bus.attach(End(), ros.bus.topic(topic))  # type: ignore[arg-type]
@@ -216,7 +216,7 @@ def test_subscribed_topics_without_a_message_are_noted_unless_no_message_is_need
 # monitors
 
 
-def test_the_newest_message_is_found_with_and_without_a_leading_slash() -> None:
+def test_newest_message_is_found_with_or_without_a_slash() -> None:
     bag = Mission([(0.0, "level", 1.0)])
     moment = Moment(bag)
     assert moment.latest("/level") is None
@@ -258,7 +258,7 @@ def test_a_monitor_gives_no_reward_if_formulas_give_it(monitor: bool, calls: int
     assert len(seen) == calls
 
 
-def test_without_a_monitor_the_judge_compares_the_sensors_of_consecutive_steps() -> None:
+def test_judge_compares_sensors_of_consecutive_steps() -> None:
     seen: list[tuple[Any, Any]] = []
 
     def judge(before: Mapping[str, Any], after: Mapping[str, Any]) -> float:
@@ -276,6 +276,6 @@ def test_without_a_monitor_the_judge_compares_the_sensors_of_consecutive_steps()
     ]
 
 
-def test_without_a_monitor_and_a_judge_there_are_no_rewards() -> None:
+def test_bag_without_monitor_and_judge_has_no_rewards() -> None:
     with pytest.raises(SettingsError, match="A bag holds no rewards: give the marker monitor="):
         Played(Mission([(0.0, "/level", 1.0)]), monitor=None)

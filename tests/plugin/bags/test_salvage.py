@@ -97,13 +97,13 @@ def test_the_whole_records_of_a_truncated_chunk_are_read(tmp_path: Path) -> None
     assert [one.data for one in walk(path) if isinstance(one, Recorded)] == [b"one"]
 
 
-def test_reading_continues_after_a_chunk_that_ends_inside_a_record(tmp_path: Path) -> None:
+def test_reading_continues_after_a_truncated_chunk(tmp_path: Path) -> None:
     inside = connection(3, "/a") + message(3, 1, 0, b"one")[:-1]
     found = list(walk(bag(tmp_path, chunk(inside), message(3, 2, 0, b"two"))))
     assert found == [BOOL, Recorded(2 * 10**9, "/a", b"two")]
 
 
-def test_compressed_chunks_are_read_and_reading_ends_at_an_unknown_compression(tmp_path: Path) -> None:
+def test_reading_ends_at_an_unknown_compression(tmp_path: Path) -> None:
     inside = connection(3, "/a") + message(3, 1, 0, b"one")
     found = list(walk(bag(tmp_path, chunk(inside, "bz2"))))
     assert found == [BOOL, Recorded(10**9, "/a", b"one")]
@@ -168,7 +168,7 @@ def mcap_file(tmp_path: Path, *records: bytes) -> Path:
 HEAD = (schema(1, "std_msgs/msg/Bool", "ros2msg", "bool data"), channel(5, 1, "/a"))
 
 
-def test_an_mcap_has_channels_with_the_definition_of_their_schema(tmp_path: Path) -> None:
+def test_mcap_channels_have_their_definitions(tmp_path: Path) -> None:
     path = mcap_file(
         tmp_path,
         record(1, b"header"),
@@ -189,7 +189,7 @@ def test_an_mcap_has_channels_with_the_definition_of_their_schema(tmp_path: Path
     ]
 
 
-def test_all_whole_records_of_a_truncated_mcap_file_are_read(tmp_path: Path) -> None:
+def test_whole_records_of_a_truncated_mcap_are_read(tmp_path: Path) -> None:
     records = [*HEAD, recorded(5, 1, b"one"), recorded(5, 2, b"two")]
     whole = mcap_file(tmp_path, *records).read_bytes()
     expected = [BOOL, Recorded(1, "/a", b"one"), Recorded(2, "/a", b"two")]

@@ -59,7 +59,7 @@ def guarded(text: str) -> str:
     return text.replace("    return GAIN * x\n", "    return 2.4 * GAIN * x\n")
 
 
-def test_applying_prints_how_to_test_again_and_how_to_undo(robot: Path, capsys: Printed) -> None:
+def test_apply_prints_how_to_test_and_undo(robot: Path, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     assert main(["apply", str(patch)]) == 0
     assert (robot / "node.py").read_text() == guarded(NODE)
@@ -83,9 +83,7 @@ def test_applying_twice_and_reverting_an_unapplied_patch_are_refused(robot: Path
     assert (robot / "node.py").read_text() == guarded(NODE)
 
 
-def test_a_changed_file_requires_the_option_force_because_its_result_is_untested(
-    robot: Path, capsys: Printed
-) -> None:
+def test_changed_file_requires_force(robot: Path, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     edited = "# of a robot\n" + NODE
     (robot / "node.py").write_text(edited)
@@ -99,16 +97,14 @@ def test_a_changed_file_requires_the_option_force_because_its_result_is_untested
     assert (robot / "node.py").read_text() == edited
 
 
-def test_the_option_force_does_not_apply_a_patch_whose_own_lines_changed(
-    robot: Path, capsys: Printed
-) -> None:
+def test_force_does_not_apply_a_patch_to_changed_lines(robot: Path, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     (robot / "node.py").write_text(NODE.replace("GAIN * x", "GAIN * (x + 1)"))
     assert main(["apply", "--force", str(patch)]) == 1
     assert "does not apply" in capsys.readouterr().err
 
 
-def test_a_patch_is_not_reverted_if_its_lines_were_edited(robot: Path, capsys: Printed) -> None:
+def test_patch_with_edited_lines_is_not_reverted(robot: Path, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     main(["apply", str(patch)])
     edited = guarded(NODE).replace("2.4", "2.6")
@@ -133,7 +129,7 @@ def test_uncommitted_changes_in_other_files_are_allowed(robot: Path) -> None:
     assert main(["apply", str(repair(robot, {"node.py": guarded(NODE)}))]) == 0
 
 
-def test_without_a_repository_a_note_says_what_was_not_checked(
+def test_note_without_a_repository_names_the_missing_check(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -166,7 +162,7 @@ def test_a_patch_accepted_against_an_older_recording_is_refused(robot: Path, cap
 
 
 @pytest.mark.parametrize("command", ["apply", "revert", "suggest"])
-def test_a_file_that_is_not_a_patch_of_tarl_is_refused(robot: Path, capsys: Printed, command: str) -> None:
+def test_foreign_patch_is_refused(robot: Path, capsys: Printed, command: str) -> None:
     (robot / "other.patch").write_text("diff --git a/node.py b/node.py\n--- a/node.py\n+++ b/node.py\n")
     assert main([command, "other.patch"]) == 2
     assert "other.patch is not a patch of TARL" in capsys.readouterr().err
@@ -183,9 +179,7 @@ def test_a_truncated_patch_is_refused(robot: Path, capsys: Printed) -> None:
     assert (robot / "node.py").read_text() == NODE
 
 
-def test_a_moved_patch_finds_its_files_from_the_current_folder(
-    robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed
-) -> None:
+def test_moved_patch_finds_its_files(robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     carried = patch.rename(robot.parent / "carried.patch")
     (robot / "sub").mkdir()
@@ -283,7 +277,7 @@ def test_conflicting_repairs_are_refused_with_the_line_number(robot: Path, capsy
     assert (robot / "node.py").read_text() == NODE
 
 
-def test_git_merges_a_repair_into_a_file_that_changed_since(robot: Path) -> None:
+def test_git_merges_a_repair_into_a_changed_file(robot: Path) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     (robot / "node.py").write_text("# of a robot\n" * 20 + NODE.replace("high = 2", "high = 3"))
     git("commit", "-qam", "moved on", cwd=robot)
@@ -302,7 +296,7 @@ def test_repair_of_a_permanent_drift_is_recorded_and_committed(robot: Path, caps
     ]
 
 
-def test_commands_for_another_folder_begin_with_a_change_to_it(
+def test_commands_for_another_folder_change_to_it(
     robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed
 ) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)}, facts=("record: pytest --tarl-record",))
@@ -338,7 +332,7 @@ def test_a_patch_whose_result_does_not_compile_is_refused(robot: Path, capsys: P
 
 
 @pytest.mark.parametrize("name", ["gains.yaml", "gains.yml", "robot.launch", "robot.xml"])
-def test_a_patch_of_a_settings_file_need_not_compile_as_python(robot: Path, name: str) -> None:
+def test_patched_settings_file_need_not_be_python(robot: Path, name: str) -> None:
     (robot / name).write_text("gain: 5 m\n")
     git("add", name, cwd=robot)
     git("commit", "-qm", name, cwd=robot)
@@ -378,9 +372,7 @@ def schema() -> dict[str, Any]:
     return loaded
 
 
-def test_the_sarif_fix_is_valid_and_produces_the_same_text(
-    robot: Path, capsys: Printed, schema: dict[str, Any]
-) -> None:
+def test_sarif_fix_gives_the_same_text(robot: Path, capsys: Printed, schema: dict[str, Any]) -> None:
     wanted = guarded(NODE).replace("import rospy", "import rospy\nimport math  # ½")
     assert main(["suggest", "--format=sarif", str(repair(robot, {"node.py": wanted}))]) == 0
     log = json.loads(capsys.readouterr().out)

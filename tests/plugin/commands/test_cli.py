@@ -31,9 +31,7 @@ def test_show_prints_test_reward_sensors_and_sites(
     assert "/in0 → /out:" in told
 
 
-def test_show_prints_the_size_of_each_list_in_the_file(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_show_prints_the_size_of_each_list(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = saved(example(), tmp_path / "a.npz")
     assert main(["show", path]) == 0
     told = capsys.readouterr().out
@@ -52,7 +50,7 @@ def test_a_recording_does_not_differ_from_itself(tmp_path: Path, capsys: pytest.
     assert not any(line.startswith(("  gone", "  new", "  moved")) for line in told.splitlines())
 
 
-def test_the_flag_fail_if_worse_fails_the_command_on_a_significant_loss(
+def test_fail_if_worse_fails_on_a_significant_loss(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     good = example()

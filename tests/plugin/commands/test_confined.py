@@ -189,7 +189,7 @@ CLOSED = [
 
 
 @pytest.mark.parametrize("name", CLOSED)
-def test_files_inside_the_folders_of_git_and_tarl_are_refused(name: str, capsys: Printed) -> None:
+def test_files_inside_git_and_tarl_folders_are_refused(name: str, capsys: Printed) -> None:
     with robot() as (root, place):
         for folder in (".git/hooks", "lib/.git", "lib/.GIT", "lib/.tarl/cache"):
             (root / folder).mkdir(parents=True, exist_ok=True)
@@ -203,7 +203,7 @@ def test_files_inside_the_folders_of_git_and_tarl_are_refused(name: str, capsys:
 
 
 @pytest.mark.parametrize("folder", [".git/hooks", ".tarl/cache"])
-def test_links_into_the_folders_of_git_and_tarl_are_refused(folder: str, capsys: Printed) -> None:
+def test_links_into_git_and_tarl_folders_are_refused(folder: str, capsys: Printed) -> None:
     with robot() as (root, place):
         (root / folder).mkdir(parents=True)
         (root / "node.py").rename(root / folder / "step.py")

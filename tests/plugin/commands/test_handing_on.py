@@ -74,9 +74,7 @@ def test_the_command_watch_forwards_its_arguments(calls: Calls) -> None:
     )
 
 
-def test_the_command_observe_forwards_its_default_values_and_prints_a_summary(
-    calls: Calls, capsys: Printed
-) -> None:
+def test_observe_forwards_its_defaults_and_prints_a_summary(calls: Calls, capsys: Printed) -> None:
     calls.replace(observing, "observe", "2 missions\x1b")
     assert cli.main(["observe", "node.py"]) == 0
     assert calls.made == [("observe", observing.Order(Path("node.py")))]
@@ -140,7 +138,7 @@ def test_the_command_apply_forwards_the_named_patches(
     assert capsys.readouterr().out == "applied\ntest it\n"
 
 
-def test_the_command_revert_forwards_the_named_patches_and_the_folder(calls: Calls, capsys: Printed) -> None:
+def test_revert_forwards_the_named_patches(calls: Calls, capsys: Printed) -> None:
     calls.replace(applying, "revert", ["reverted"])
     assert cli.main(["revert", "a.patch", "--directory", "d"]) == 0
     assert calls.made == [("revert", [Path("a.patch")], Path("d"))]
@@ -193,7 +191,7 @@ class Found:
         (["--fail-if-changed"], None, 1),
     ],
 )
-def test_the_command_diff_fails_on_a_difference_only_if_requested(
+def test_diff_fails_only_if_requested(
     calls: Calls, capsys: Printed, flags: list[str], asked: Any, status: int
 ) -> None:
     found = Found()
@@ -295,7 +293,7 @@ def test_the_command_summary_forwards_the_folder(
 
 
 @pytest.mark.parametrize(("flags", "fixture"), [([], None), (["--fixture", "f.npz"], Path("f.npz"))])
-def test_the_command_merge_checks_the_path_and_saves_the_recording(
+def test_merge_checks_the_path_and_saves(
     calls: Calls, capsys: Printed, flags: list[str], fixture: Any
 ) -> None:
     calls.replace(fixtures, "prepare")
@@ -335,9 +333,7 @@ def test_the_command_ingest_forwards_its_arguments_and_default_values(calls: Cal
     )
 
 
-def test_the_command_ingest_prints_the_missions_of_each_log_and_their_sum(
-    calls: Calls, capsys: Printed
-) -> None:
+def test_ingest_prints_missions_per_log_and_in_sum(calls: Calls, capsys: Printed) -> None:
     ingested(
         calls,
         added("a.log", missions=3),
@@ -355,9 +351,7 @@ def test_the_command_ingest_prints_the_missions_of_each_log_and_their_sum(
     assert told.err == ""
 
 
-def test_a_refused_log_fails_the_command_after_the_other_logs_were_ingested(
-    calls: Calls, capsys: Printed
-) -> None:
+def test_refused_log_fails_ingest_at_its_end(calls: Calls, capsys: Printed) -> None:
     ingested(calls, added("a.log", missions=9, problem="a.log: torn"), added("b.log", missions=1))
     assert cli.main(["ingest", "a.log", "b.log", *REQUIRED]) == 2
     assert capsys.readouterr() == (
@@ -451,7 +445,7 @@ def test_the_command_fleet_forwards_its_arguments(calls: Calls, answered: Answer
     )
 
 
-def test_the_command_fleet_writes_its_result_to_the_named_files(
+def test_fleet_writes_its_result_to_the_named_files(
     calls: Calls, answered: Answer, capsys: Printed, tmp_path: Path
 ) -> None:
     cli.main(["fleet", "data", "--json", "-"])
@@ -478,7 +472,7 @@ def test_fleet_command_fails_if_fail_if_holds(
     assert cli.main(["fleet", "data", *flags]) == status
 
 
-def test_a_day_is_given_in_the_form_of_iso_8601() -> None:
+def test_day_is_given_in_iso_form() -> None:
     assert fleet_commands._day(None) is None
     with pytest.raises(SettingsError, match="--since must be a day such as 2026-10-01, got yesterday"):
         fleet_commands._day("yesterday")
@@ -555,5 +549,5 @@ def test_all_arguments_after_two_dashes_go_to_the_node(given: list[str], argv: l
     assert (found.node, found.log, found.argv) == (Path("node.py"), Path("m.log"), argv)
 
 
-def test_file_names_that_begin_with_a_dash_are_accepted_after_two_dashes() -> None:
+def test_file_names_with_a_dash_follow_two_dashes() -> None:
     assert cli.parser().parse_args(["show", "--", "-f.npz"]).fixture == Path("-f.npz")

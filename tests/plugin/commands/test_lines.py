@@ -51,7 +51,7 @@ def test_recording_is_worse_if_its_loss_exceeds_the_tolerance(
         ((0.75, 0.9), 0.0, False),
     ],
 )
-def test_a_recording_is_worse_if_missions_succeed_significantly_less_often(
+def test_recording_with_fewer_successes_is_worse(
     success: tuple[float, float], p: float, expected: bool
 ) -> None:
     found = difference(loss=-1.0, p_loss=0.9, success=success, p_failures=p)
@@ -83,7 +83,7 @@ def test_two_recordings_are_compared_by_reward_cells_and_sites() -> None:
     assert (same.moved, same.loss, same.same_sensors) == ((), 0.0, True)
 
 
-def test_diff_prints_episodes_reward_cells_and_changed_sites_of_two_recordings() -> None:
+def test_diff_prints_the_changes_of_two_recordings() -> None:
     one, two = recording("t", 4, 3.0), recording("u", 2, 1.0)
     found = difference(gone=(SITE,), new=(AWAY,), moved=(Moved(SITE, MOVED), Moved(SITE, AWAY)))
     assert [*diff.lines(one, two, found)] == [
@@ -117,7 +117,7 @@ def test_diff_prints_episodes_reward_cells_and_changed_sites_of_two_recordings()
         (Sensor("w", low=0, high=1, bins=2, expr="w"), (), "w: observed, node variable w, 0 to 1 in 2 bins, 0 seen"),
     ],
 )  # fmt: skip
-def test_a_sensor_is_described_with_its_origin_and_its_bins(
+def test_sensor_is_described_with_origin_and_bins(
     sensor: Sensor, bins: tuple[int, ...], expected: str
 ) -> None:
     assert show.described(sensor, bins) == expected
@@ -220,7 +220,7 @@ def shown(**changes: Any) -> Any:
     return SimpleNamespace(**{**every, "sample": sample, "lists": [taint_list], **changes})
 
 
-def test_a_recording_is_summarised_by_episodes_size_reward_and_cells() -> None:
+def test_recording_is_summarised_in_one_line() -> None:
     assert [*show.lines(shown(), 12_345, [1500])][:9] == [
         "t.py::test, seed 7",
         "  episodes   2, 7 steps, success 50 %",

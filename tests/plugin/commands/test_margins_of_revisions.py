@@ -50,9 +50,7 @@ def test_one_file_of_margins_can_be_named(project: Path, place: str) -> None:
     assert margins_in(place) == [FOUND]
 
 
-def test_paths_at_a_revision_are_relative_to_the_working_directory(
-    project: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_paths_at_a_revision_are_relative(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(project / ".tarl")
     assert margins_in("HEAD:margins") == [OTHER, FOUND]
 
@@ -64,7 +62,7 @@ def test_a_revision_has_the_margins_of_its_time(project: Path) -> None:
     assert margins_in("HEAD:.tarl/margins") == [OTHER, FOUND]
 
 
-def test_a_folder_that_is_not_in_a_revision_has_no_margins(project: Path) -> None:
+def test_folder_missing_in_a_revision_has_no_margins(project: Path) -> None:
     assert margins_in("HEAD:elsewhere") == []
 
 

@@ -34,7 +34,7 @@ from pytest_tarl.commands.cli import main
         ),
     ],
 )
-def test_an_invalid_command_line_shows_the_usage_of_its_command(
+def test_invalid_command_line_shows_the_usage(
     words: list[str], usage: str, sentence: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as ended:

@@ -41,7 +41,7 @@ def test_all_files_get_their_content_and_keep_their_mode(files: list[Path], tmp_
     assert names(tmp_path) == {"a.py", "in/b.py"}
 
 
-def test_the_whole_content_is_on_disk_before_a_file_is_replaced(
+def test_content_is_on_disk_before_a_file_is_replaced(
     files: list[Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     synced: list[tuple[int, bytes]] = []
@@ -146,9 +146,7 @@ def folder_linked(path: Path) -> None:
 
 
 @pytest.mark.parametrize("moving", [gone, linked, piped, folder_gone, folder_linked])
-def test_a_directory_or_link_in_place_of_a_file_is_not_replaced(
-    files: list[Path], moving: Callable[[Path], None]
-) -> None:
+def test_directory_or_link_is_not_replaced(files: list[Path], moving: Callable[[Path], None]) -> None:
     moving(files[1])
     with pytest.raises(MovedError) as raised:
         replace_all([change(files[0]), change(files[1])])

@@ -76,7 +76,7 @@ def test_a_full_disk_is_reported_in_one_sentence(
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_a_reader_that_has_closed_the_pipe_ends_the_command_silently(
+def test_closed_pipe_ends_the_command_silently(
     command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     reader, writer = os.pipe()

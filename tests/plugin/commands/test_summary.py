@@ -66,7 +66,7 @@ def test_special_characters_do_not_break_cells_or_charts(
 @pytest.mark.parametrize(
     "damaged", [{}, [], {"verdict": 3}, RESULT | {"sites": [{"path": 1}]}, RESULT | {"culprits": 7}]
 )
-def test_a_file_that_is_not_a_result_is_reported_in_one_sentence(
+def test_foreign_result_file_is_reported_in_one_sentence(
     tmp_path: Path, damaged: object, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["summary", str(written(tmp_path, damaged))]) == 2

@@ -119,7 +119,7 @@ def test_arguments_that_do_not_contradict_each_other_are_accepted(changed: Any) 
     watch._check(replace(ORDER, **changed))
 
 
-def test_the_state_file_of_a_watch_is_named_after_the_recording() -> None:
+def test_watch_state_is_named_after_the_recording() -> None:
     assert default_state(Path("x/y/f.npz")) == Path(".tarl/watch/f.npz")
 
 
@@ -267,7 +267,7 @@ def test_once_option_reports_an_unreadable_log_and_fails(begun: Any, capsys: Pri
     assert capsys.readouterr().out == "report\n1\n"
 
 
-def test_with_the_option_once_an_interruption_ends_the_watch_between_two_missions(begun: Any) -> None:
+def test_interruption_ends_the_watch_between_missions(begun: Any) -> None:
     watched = Watch()
 
     def poll() -> Iterator[int]:
@@ -291,7 +291,7 @@ def test_a_second_interruption_ends_the_watch_at_once() -> None:
             signal.raise_signal(signal.SIGINT)
 
 
-def test_a_watch_in_another_thread_does_not_change_signal_handlers() -> None:
+def test_watch_in_a_thread_keeps_signal_handlers() -> None:
     before, found = signal.getsignal(signal.SIGINT), []
 
     def other() -> None:
@@ -304,7 +304,7 @@ def test_a_watch_in_another_thread_does_not_change_signal_handlers() -> None:
     assert found == [(False, before)]
 
 
-def test_a_watch_with_the_option_until_alarm_ends_at_the_first_alarm(begun: Any, capsys: Printed) -> None:
+def test_until_alarm_ends_at_the_first_alarm(begun: Any, capsys: Printed) -> None:
     watched = Watch([], [status(1)], [status(2, below=True)], [status(3, below=True)])
     begun(watched)
     assert run(replace(ORDER, until_alarm=True, interval=1e-6)) == 1

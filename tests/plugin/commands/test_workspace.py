@@ -69,9 +69,7 @@ def test_user_mistakes_are_reported_in_one_sentence(
     assert said in capsys.readouterr().err
 
 
-def test_hidden_packages_are_named_with_the_file_that_hides_them(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_hidden_packages_are_named_with_the_cause(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     old = folder / "old"
     old.mkdir()
     (old / "package.xml").write_text("<package><name>arm_old</name></package>")

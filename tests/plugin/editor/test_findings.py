@@ -31,14 +31,14 @@ def one(found: Any, places: Places) -> types.Diagnostic:
     return diagnostic
 
 
-def test_each_linted_file_has_an_entry_and_other_files_only_with_findings(places: Places) -> None:
+def test_only_linted_files_and_findings_have_entries(places: Places) -> None:
     elsewhere = finding("TARL201", span=span(1, path="elsewhere.py"))
     result = Result(findings=(finding(of=flow()), elsewhere), texts={"pilot.py": TEXT, "other.py": "a\nb\n"})
     counts = {path: len(shown) for path, shown in findings.diagnostics(result, places).items()}
     assert counts == {"pilot.py": 1, "other.py": 0, "elsewhere.py": 1}
 
 
-def test_a_diagnostic_has_the_range_message_code_and_data_of_its_finding(places: Places) -> None:
+def test_diagnostic_has_the_range_and_code_of_its_finding(places: Places) -> None:
     shown = one(finding(of=flow()), places)
     assert (shown.range, shown.message, shown.code) == (PUBLISH, "message of TARL101", "TARL101")
     assert shown.source == "tarl-lint"
@@ -103,7 +103,7 @@ def test_code_links_to_the_page_of_its_rule(
         (1, (0, 0), (0, 12)),
     ],
 )
-def test_an_unreadable_file_has_an_error_on_the_whole_line(
+def test_unreadable_file_has_an_error_on_its_line(
     places: Places, line: int, start: tuple[int, int], end: tuple[int, int]
 ) -> None:
     error: Any = SimpleNamespace(path="pilot.py", line=line, message="invalid syntax")
@@ -144,7 +144,7 @@ def test_code_lenses_follow_the_order_of_the_file(places: Places) -> None:
         ([], ""),
     ],
 )
-def test_the_title_of_a_code_lens_names_each_topic_once_by_kind(flows: Any, title: str) -> None:
+def test_code_lens_names_each_topic_once(flows: Any, title: str) -> None:
     assert findings.title(flows) == title
 
 

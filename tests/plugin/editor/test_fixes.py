@@ -74,11 +74,11 @@ def test_ignore_comment_is_added_or_extended(text: str, expected: tuple[int, int
     assert edit(text, diagnostic(NEW)) == expected
 
 
-def test_the_comment_of_a_longer_statement_is_on_its_last_line() -> None:
+def test_comment_of_a_long_statement_is_on_its_last_line() -> None:
     assert edit("f(\n    a,\n)\n", diagnostic(NEW, 0, 2)) == (2, 1, "  # tarl: ignore[TARL101]")
 
 
-def test_repairs_of_the_file_can_be_applied_even_without_a_finding() -> None:
+def test_repairs_of_a_file_apply_without_a_finding() -> None:
     first, second = Path("/p/one.patch"), Path("/p/two.patch")
     shown = made("a\n", patches=(first, second))
     assert [one.title for one in shown] == ["Apply the repair one.patch", "Apply the repair two.patch"]

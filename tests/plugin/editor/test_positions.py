@@ -39,9 +39,7 @@ def places(tmp_path: Path) -> Places:
         ("unknown.py", 1, ""),
     ],
 )
-def test_lines_are_numbered_from_one_and_have_no_line_ending(
-    places: Places, path: str, number: int, text: str
-) -> None:
+def test_lines_start_at_one_without_line_endings(places: Places, path: str, number: int, text: str) -> None:
     assert places.line(path, number) == text
 
 
@@ -53,7 +51,7 @@ def test_a_span_becomes_a_range_of_code_units(places: Places, tmp_path: Path) ->
     assert places.range(Span("a.py", 1, 1, 3, 5)) == types.Range(types.Position(0, 0), types.Position(2, 4))
 
 
-def test_the_end_of_a_line_is_after_its_last_unit(places: Places) -> None:
+def test_line_end_is_after_its_last_unit(places: Places) -> None:
     assert places.end_of_line("a.py", 1) == types.Position(0, 5)
     assert places.end_of_line("a.py", 2) == types.Position(1, 6)
     assert places.end_of_line("a.py", 9) == types.Position(8, 0)

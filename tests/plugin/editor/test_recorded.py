@@ -59,7 +59,7 @@ def test_site_figures_come_from_all_comparisons(root: Path) -> None:
     assert [one.difference for one in (*found[SPEED], *found[TURN])] == [-6.5, -6.5, 3.0, 3.0]
 
 
-def test_an_accepted_repair_belongs_to_each_file_that_it_edits_once(root: Path) -> None:
+def test_accepted_repair_belongs_to_each_edited_file_once(root: Path) -> None:
     written(root, "a")
     written(root, "b")
     patch = root / ".tarl" / "patches" / "a.patch"
@@ -77,7 +77,7 @@ def test_an_accepted_repair_belongs_to_each_file_that_it_edits_once(root: Path) 
         {**REPAIR, "patch": ".tarl/patches"},
     ],
 )
-def test_a_repair_that_was_rejected_or_has_no_patch_is_not_offered(root: Path, repair: Any) -> None:
+def test_rejected_repair_is_not_offered(root: Path, repair: Any) -> None:
     written(root, repair=repair)
     found = read(root)
     assert found.patches == {}
@@ -97,18 +97,18 @@ def test_a_repair_that_was_rejected_or_has_no_patch_is_not_offered(root: Path, r
         "\xff",
     ],
 )
-def test_a_damaged_result_is_skipped_and_the_others_are_read(root: Path, text: str) -> None:
+def test_damaged_result_is_skipped(root: Path, text: str) -> None:
     (root / ".tarl" / "results" / "0.json").write_bytes(text.encode("latin-1"))
     written(root)
     assert set(read(root).by_site) == {SPEED, TURN}
 
 
-def test_a_folder_without_results_yields_no_sites_and_no_patches(tmp_path: Path) -> None:
+def test_folder_without_results_has_no_sites(tmp_path: Path) -> None:
     found = read(tmp_path)
     assert (found.by_site, found.patches) == ({}, {})
 
 
-def test_the_statements_of_a_file_come_from_reported_and_silenced_flows() -> None:
+def test_statements_come_from_reported_and_silenced_flows() -> None:
     first, second = step(2, "speed = 2"), step(3, "turn = 3")
     result = Result(
         findings=(finding(of=flow(steps=(first, step(1, "b", path="other.py")))), finding("TARL201")),

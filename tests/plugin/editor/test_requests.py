@@ -158,7 +158,7 @@ def test_a_further_change_makes_the_current_run_obsolete(session: Session) -> No
 
 
 @pytest.mark.parametrize(("changes", "names"), [(0, ["pilot.py", "map.py"]), (1, ["map.py", "pilot.py"])])
-def test_final_files_are_published_early_unless_the_text_has_changed(
+def test_final_files_are_published_early_unless_edited(
     session: Session, changes: int, names: list[str]
 ) -> None:
     hazard = finding("TARL201", span=span(1, path="map.py"))
@@ -175,7 +175,7 @@ def test_final_files_are_published_early_unless_the_text_has_changed(
     assert [name for name, _ in session.published] == names
 
 
-def test_early_results_clear_old_diagnostics_of_files_whose_findings_are_final(session: Session) -> None:
+def test_early_results_clear_old_diagnostics(session: Session) -> None:
     session.lint(FOUND)
     session.server._publish_some(NOTHING, frozenset({"map.py"}))
     assert session.published == [("pilot.py", ["TARL101"])]
@@ -212,7 +212,7 @@ def opened(session: Session, uri: str, text: str = "x") -> None:
     session.server.workspace.put_text_document(types.TextDocumentItem(uri, "python", 1, text))
 
 
-def test_the_open_python_files_below_the_root_are_linted_as_typed(session: Session, tmp_path: Path) -> None:
+def test_open_python_files_are_linted_as_typed(session: Session, tmp_path: Path) -> None:
     opened(session, session.uri("a.py"), "a = 1\n")
     opened(session, session.uri("notes.md"))
     opened(session, (tmp_path.parent / "other.py").as_uri())
@@ -289,7 +289,7 @@ def test_root_is_the_first_workspace_folder_or_a_fallback(session: Session, tmp_
     assert root([], None) == Path.cwd()
 
 
-def test_the_server_changes_to_the_root_and_lints_it_when_initialized(
+def test_server_lints_its_root_when_initialized(
     session: Session, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     (tmp_path / "inner").mkdir()
@@ -316,7 +316,7 @@ def answering(session: Session) -> Session:
     return session
 
 
-def test_a_request_for_code_lenses_returns_the_lenses_of_its_file(answering: Session) -> None:
+def test_code_lens_request_returns_the_lenses_of_its_file(answering: Session) -> None:
     def titles(name: str) -> list[str]:
         asked = types.CodeLensParams(types.TextDocumentIdentifier(answering.uri(name)))
         return [one.command.title for one in answering.asked("textDocument/codeLens", asked)]
@@ -335,7 +335,7 @@ def hover(session: Session, line: int, name: str = "pilot.py") -> types.Hover | 
     return found
 
 
-def test_a_statement_with_figures_has_a_hover_on_each_of_its_lines(answering: Session) -> None:
+def test_statement_with_figures_has_a_hover(answering: Session) -> None:
     long = step(2, "speed = 2 * goal")
     longer = type(long)(long.site, span(2, 1, 3, end_line=3), long.code, long.role, long.dependence)
     answering.server.result = Result(findings=(finding(of=flow(steps=(longer,))),), texts=TEXTS)
@@ -405,7 +405,7 @@ def titles(session: Session, first: int, last: int, name: str = "pilot.py") -> l
     ("first", "last", "touches"),
     [(3, 3, True), (0, 3, True), (3, 9, True), (0, 9, True), (0, 2, False), (4, 9, False)],
 )
-def test_code_actions_belong_to_the_diagnostics_on_the_chosen_lines(
+def test_code_actions_belong_to_the_chosen_lines(
     answering: Session, first: int, last: int, touches: bool
 ) -> None:
     quick = ["Ignore TARL101 on this line", "Accept this TARL101 into the baseline"] if touches else []
@@ -447,7 +447,7 @@ def test_accepting_a_finding_names_the_file_and_lints_again(session: Session) ->
     assert session.server.result is NOTHING
 
 
-def test_a_finding_that_cannot_be_accepted_is_reported_without_a_run(session: Session) -> None:
+def test_unacceptable_finding_is_reported_without_a_run(session: Session) -> None:
     session.lint(FOUND)
     linted: Any = Linted()
     session.server.linted = linted

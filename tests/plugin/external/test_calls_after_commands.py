@@ -119,7 +119,7 @@ def test_command_between_two_checks_is_handled_before_the_step(
     assert [name for name in simulator.handled if not name.endswith("get_parameters")] == ["/cmd", "/step"]
 
 
-def test_all_commands_of_a_topic_are_handled_before_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_topic_commands_are_handled_before_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
     simulator = Simulator(["/cart/get_parameters"])
     link = linked(monkeypatch, simulator, [("/", "cart")])
 
@@ -135,7 +135,7 @@ def test_all_commands_of_a_topic_are_handled_before_the_step(monkeypatch: pytest
     assert simulator.handled == [asked, "/cmd", asked, "/cmd", asked, "/cmd", "/step"]
 
 
-def test_without_a_command_since_the_last_step_no_parameter_service_is_called(
+def test_no_parameter_service_is_called_without_a_command(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     simulator = Simulator(["/cart/get_parameters"])
@@ -163,7 +163,7 @@ def test_parameter_services_of_command_receivers_are_called_first(
     assert simulator.handled == ["/cmd", "/left/get_parameters", "/right/get_parameters", "/step"]
 
 
-def test_a_node_without_services_for_parameters_is_stepped_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_node_without_parameter_services_is_stepped_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     simulator = Simulator([])
     link = linked(monkeypatch, simulator, [("/", "cart")])
     command(link)
@@ -172,7 +172,7 @@ def test_a_node_without_services_for_parameters_is_stepped_at_once(monkeypatch: 
     assert simulator.handled == ["/cmd", "/step"]
 
 
-def test_a_step_waits_until_the_services_for_parameters_can_be_called(
+def test_step_waits_for_parameter_services(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     simulator = Simulator(["/cart/get_parameters"])

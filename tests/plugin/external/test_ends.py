@@ -88,7 +88,7 @@ TEST = """
     ("simulator", "limit", "status"),
     [("waits", 60.0, -2), ("ignores", 0.1, -9), ("leaves", 60.0, -2), ("orphans", 60.0, -2)],
 )
-def test_a_process_group_counts_as_ended_only_with_all_its_descendants(
+def test_process_group_ends_with_its_descendants(
     tmp_path: Path, simulator: str, limit: float, status: int
 ) -> None:
     done = subprocess.run(

@@ -112,7 +112,7 @@ def start(**changes: Any) -> dict[str, Any]:
             "clock": "/clock", "topics": ["/odom"], **changes}  # fmt: skip
 
 
-def test_a_simulator_of_ros_2_runs_in_a_domain_of_its_own(made: Made) -> None:
+def test_ros2_simulator_runs_in_its_own_domain(made: Made) -> None:
     made.handle(start())
     own = {
         "ROS_DOMAIN_ID": "7",
@@ -132,7 +132,7 @@ def test_a_simulator_of_ros_2_runs_in_a_domain_of_its_own(made: Made) -> None:
     assert made.told() == [{"kind": "stopped"}, {"kind": "stopped"}]
 
 
-def test_a_simulator_of_ros_1_runs_with_a_master_and_simulated_time(made: Made) -> None:
+def test_ros1_simulator_has_a_master_and_simulated_time(made: Made) -> None:
     made.handle(start(ros="ros1"))
     assert made.log == [
         ("master",),
@@ -171,7 +171,7 @@ def test_a_ros_master_that_cannot_be_started_is_reported(made: Made, monkeypatch
     assert made.names() == []
 
 
-def test_commands_go_to_the_link_and_are_ignored_without_a_simulator(made: Made) -> None:
+def test_commands_are_ignored_without_a_simulator(made: Made) -> None:
     commands: list[dict[str, Any]] = [
         {"do": "subscribe", "topics": ["/scan"]},
         {"do": "send", "topic": "/cmd", "data": {"data": 1.0}},
@@ -226,7 +226,7 @@ def test_ros_graph_is_checked_often_at_first(made: Made) -> None:
     assert ("link.spin", LOOK) in made.log
 
 
-def test_the_guardian_does_not_wait_for_messages_while_a_command_waits(made: Made) -> None:
+def test_waiting_commands_come_before_messages(made: Made) -> None:
     made.guardian._do_start(**{name: value for name, value in start().items() if name != "do"})
     made.guardian._put({"do": "stop"})
     made.guardian._wait()
@@ -234,7 +234,7 @@ def test_the_guardian_does_not_wait_for_messages_while_a_command_waits(made: Mad
     assert made.names().count("link.wake") == 1
 
 
-def test_the_end_of_the_simulator_is_reported_once_for_each_simulator(made: Made) -> None:
+def test_end_of_each_simulator_is_reported_once(made: Made) -> None:
     arguments = {name: value for name, value in start().items() if name != "do"}
     for status in (3, -9):
         made.guardian._do_start(**arguments)
@@ -269,7 +269,7 @@ def changed(link: Any, during: Callable[[], None]) -> Any:
     return link
 
 
-def test_without_a_simulator_the_loop_sleeps_until_a_command_arrives(made: Made) -> None:
+def test_loop_without_a_simulator_waits_for_commands(made: Made) -> None:
     waits: list[bool] = []
     wait = made.guardian._arrival.wait
 
@@ -321,7 +321,7 @@ def test_end_of_the_test_is_noticed_through_the_kernel(
     assert [*made.guardian._commands] == ([None] if known else [])
 
 
-def test_the_guardian_exits_even_if_its_link_cannot_be_woken(made: Made) -> None:
+def test_guardian_exits_even_with_a_blocked_link(made: Made) -> None:
     class Broken:
         def wake(self) -> None:
             raise RuntimeError

@@ -182,7 +182,7 @@ def answers(link: LinkROS1, said: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [one for one in said if one["kind"] == "answer"]
 
 
-def test_a_call_waits_for_its_service_and_for_earlier_commands(
+def test_call_waits_for_its_service_and_earlier_commands(
     linked: Linked, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     link, said, master = linked
@@ -213,7 +213,7 @@ def test_a_broken_connection_does_not_count_as_an_answer(linked: Linked) -> None
     ("load", "cores", "expected"),
     [(0.5, 2, PAUSE), (2.0, 2, PAUSE), (12.0, 2, 6 * PAUSE), (12.0, 4, 3 * PAUSE)],
 )
-def test_a_service_call_waits_longer_after_a_command_on_a_busy_machine(
+def test_call_after_a_command_waits_longer(
     monkeypatch: pytest.MonkeyPatch, load: float, cores: int, expected: float
 ) -> None:
     monkeypatch.setattr(os, "getloadavg", lambda: (load, 0.0, 0.0), raising=False)

@@ -98,7 +98,7 @@ def test_waking_triggers_the_guard_condition(log: Noted) -> None:
     assert names(seen) == ["waker", "waker.trigger"]
 
 
-def test_a_topic_is_received_with_the_quality_that_its_publisher_offers(log: Noted) -> None:
+def test_topic_is_received_with_the_offered_quality(log: Noted) -> None:
     made = Link(7, "/clock", print)
     made.subscribe(["/odom"])
     log.clear()
@@ -115,7 +115,7 @@ def test_a_topic_is_received_with_the_quality_that_its_publisher_offers(log: Not
     assert made._wanted["/odom"] is not None
 
 
-def test_commands_are_reliable_and_as_durable_as_the_subscriber_wants(log: Noted) -> None:
+def test_commands_are_reliable_and_durable_as_wanted(log: Noted) -> None:
     made = Link(7, "/clock", print)
     log.clear()
     for _ in range(2):
@@ -126,7 +126,7 @@ def test_commands_are_reliable_and_as_durable_as_the_subscriber_wants(log: Noted
     assert [*made._publishers] == ["/cmd"]
 
 
-def test_the_client_of_a_service_is_created_once_the_service_exists(log: Noted) -> None:
+def test_service_client_is_created_once_the_service_exists(log: Noted) -> None:
     made = Link(7, "/clock", print)
     log.clear()
     made._node.services = [("/other", ["a/srv/B"])]
@@ -167,7 +167,7 @@ def test_classes_are_found_by_the_name_of_their_type() -> None:
 # ROS 1
 
 
-def test_an_event_ends_the_wait_and_the_link_can_be_woken(linked: Linked) -> None:  # noqa: F811
+def test_event_ends_the_wait_of_a_link(linked: Linked) -> None:  # noqa: F811
     link, said, _ = linked
     waits: list[tuple[float, bool]] = []
     wait = link._arrival.wait
@@ -183,7 +183,7 @@ def test_an_event_ends_the_wait_and_the_link_can_be_woken(linked: Linked) -> Non
     assert said == [{"kind": "one"}, {"kind": "two"}]
 
 
-def test_a_publisher_is_made_once_without_a_warning_of_rospy(
+def test_publisher_is_made_once_without_a_warning(
     linked: Linked,  # noqa: F811
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -204,7 +204,7 @@ def test_a_publisher_is_made_once_without_a_warning_of_rospy(
     assert made == ["/cmd"]
 
 
-def test_a_topic_is_received_once_and_only_if_it_is_wanted(linked: Linked) -> None:  # noqa: F811
+def test_wanted_topic_is_received_once(linked: Linked) -> None:  # noqa: F811
     link, _, _ = linked
     link._listen("/odom", "std_msgs/Float64")
     assert "/odom" not in link._wanted
@@ -219,7 +219,7 @@ def test_a_topic_is_received_once_and_only_if_it_is_wanted(linked: Linked) -> No
     assert link._wanted["/odom"] is first
 
 
-def test_the_proxy_of_a_service_is_made_once_the_master_knows_it(linked: Linked) -> None:  # noqa: F811
+def test_service_proxy_is_made_once_the_master_knows_it(linked: Linked) -> None:  # noqa: F811
     link, _, master = linked
     assert link._proxy("/step") is None
     master.services["/step"] = "own_srvs/Step"
@@ -254,7 +254,7 @@ def test_topic_nodes_exclude_the_node_of_tarl() -> None:
     assert module._others(ends) == ends[1:]
 
 
-def test_the_server_of_a_service_is_asked_for_its_type(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_server_is_asked_for_its_service_type(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: Noted = []
 
     class Connection:
@@ -290,7 +290,7 @@ def test_the_server_of_a_service_is_asked_for_its_type(monkeypatch: pytest.Monke
     assert calls[4] == (("", 0), 5.0)
 
 
-def test_the_link_of_ros_1_keeps_the_order_of_wanted_topics(linked: Linked) -> None:  # noqa: F811
+def test_ros1_link_keeps_the_order_of_topics(linked: Linked) -> None:  # noqa: F811
     link: LinkROS1 = linked[0]
     link._known = {"kind": "graph"}
     link.subscribe(["/b", "/a", "/b"])
@@ -316,7 +316,7 @@ def test_the_link_of_ros_1_keeps_the_order_of_wanted_topics(linked: Linked) -> N
         ("std_msgs/{}Empty", {}),
     ],
 )
-def test_each_given_field_is_set_and_the_others_keep_their_defaults(
+def test_given_fields_are_set_and_others_default(
     kind: str, generation: Any, name: str, data: dict[str, Any]
 ) -> None:
     made: Any = message_type(name.format(kind))()

@@ -45,7 +45,7 @@ def run(*lost: str) -> EpisodeRun:
     )
 
 
-def test_episodes_that_lost_their_simulator_are_in_recording_result_page_and_summary(
+def test_lost_simulators_are_in_every_report(
     losing: pytest.Pytester,
 ) -> None:
     (losing.path / "losses").write_text("2")
@@ -82,7 +82,7 @@ def test_the_note_names_the_most_frequent_reasons_first() -> None:
     )
 
 
-def test_watched_rollouts_count_called_and_requested_episodes_and_keep_their_results() -> None:
+def test_watched_rollouts_count_their_episodes() -> None:
     class Inner:
         workers = 3
 
@@ -100,7 +100,7 @@ def test_watched_rollouts_count_called_and_requested_episodes_and_keep_their_res
     assert lost.notes()[0].startswith("2 of 2 episodes")
 
 
-def test_workers_send_the_reasons_for_lost_simulators_to_the_run() -> None:
+def test_workers_report_why_simulators_were_lost() -> None:
     message = protocol.run_message(run("it hung", DIED))
     assert protocol.answered(EpisodePlan(1), message).lost == ("it hung", DIED)
 

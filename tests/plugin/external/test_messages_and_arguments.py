@@ -32,7 +32,7 @@ def pose(kind: str) -> Any:
 
 
 @pytest.mark.parametrize(("kind", "generation"), [("", "ros1"), ("msg/", "ros2")])
-def test_a_message_converted_to_plain_data_and_back_is_unchanged(kind: str, generation: Any) -> None:
+def test_message_survives_conversion_to_plain_data(kind: str, generation: Any) -> None:
     one = pose(kind)
     data = to_plain(one)
     assert (data["header"]["frame_id"], data["poses"][1]["position"]) == (
@@ -81,7 +81,7 @@ def test_a_command_is_split_as_in_a_shell(monkeypatch: pytest.MonkeyPatch) -> No
     assert checked(monkeypatch, environment={"A": "1"}).environment == {"A": "1"}
 
 
-def test_a_service_is_given_by_its_name_or_with_a_request(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_service_is_given_by_name_or_request(monkeypatch: pytest.MonkeyPatch) -> None:
     found = checked(monkeypatch, step="/step", reset=Call("/reset", {"n": 1}))
     assert (found.step, found.reset) == (Call("/step"), Call("/reset", {"n": 1}))
     found = checked(monkeypatch, step=Call("/step", {"n": 2}), reset="/reset")
@@ -94,7 +94,7 @@ def test_an_empty_command_and_no_topic_are_refused(monkeypatch: pytest.MonkeyPat
         checked(monkeypatch, **changes)
 
 
-def test_the_installed_ros_is_used_and_ros2_if_both_are_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ros2_is_used_if_both_are_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert checked(monkeypatch, ("rospy",)).ros == "ros1"
     assert checked(monkeypatch, ("rospy", "rclpy")).ros == "ros2"
     with pytest.raises(SettingsError, match="neither is installed"):
@@ -249,7 +249,7 @@ def test_clock_time_and_message_stamp_are_passed_on(
     assert link._handled == 2
 
 
-def test_messages_that_arrive_before_an_answer_are_passed_on_before_the_answer(
+def test_earlier_messages_arrive_before_the_answer(
     linked: tuple[Link, list[dict[str, Any]], Any],
 ) -> None:
     link, said, _ = linked

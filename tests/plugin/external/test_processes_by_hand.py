@@ -37,7 +37,7 @@ def process(folder: Path, pid: str, stat: str) -> None:
     (folder / pid / "stat").write_text(stat)
 
 
-def test_the_running_children_of_this_process_are_listed_in_order(processes: Path) -> None:
+def test_running_children_are_listed_in_order(processes: Path) -> None:
     own = os.getpid()
     for pid, stat in {
         "30": f"30 (sim) S {own} 30 30 0",
@@ -102,7 +102,7 @@ def test_the_guardian_adopts_orphans(kernel: list[tuple[Any, ...]]) -> None:
 
 
 @pytest.mark.parametrize("orphan", [False, True])
-def test_a_child_dies_with_its_parent_and_gets_the_default_signals(
+def test_child_dies_with_its_parent(
     kernel: list[tuple[Any, ...]], orphan: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     prepare = descendants.die_with_parent()
@@ -117,7 +117,7 @@ def test_a_child_dies_with_its_parent_and_gets_the_default_signals(
     ]
 
 
-def test_the_wait_for_the_end_of_the_parent_needs_linux(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_waiting_for_the_parent_needs_linux(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "darwin")
     with pytest.raises(OSError, match=r"^$"):
         descendants.wait_for_end_of_parent()
@@ -251,7 +251,7 @@ def test_processes_that_left_the_group_are_killed_and_collected(
     assert ("reap", -50) in machine.log
 
 
-def test_a_process_that_cannot_be_killed_does_not_hold_the_guardian_forever(machine: Machine) -> None:
+def test_unkillable_process_does_not_hold_the_guardian(machine: Machine) -> None:
     made = Group(["sim"], ".", {})
     machine.left, machine.immortal = [61], True
     made.end()
@@ -397,7 +397,7 @@ def test_commands_are_lines_of_json(connect: Connect) -> None:
     made.do("stop")  # ignored
 
 
-def test_the_output_is_returned_once_and_its_last_lines_can_be_quoted(connect: Connect) -> None:
+def test_output_is_returned_once_and_can_be_quoted(connect: Connect) -> None:
     made, _ = connect()
     made._log.write("one\n\xfc\n  two  \n".encode("latin-1") + b"three\nfour\n")
     made._log.flush()

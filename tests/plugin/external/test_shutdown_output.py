@@ -68,7 +68,7 @@ def interrupted(program: str) -> str:
 
 
 @pytest.mark.parametrize("kind", INTERRUPTED)
-def test_the_traceback_of_an_interrupt_is_left_out_of_the_output(kind: str) -> None:
+def test_interrupt_traceback_is_left_out(kind: str) -> None:
     output = interrupted(INTERRUPTED[kind])
     assert "Traceback" in output
     assert without_interrupts(output) == ""

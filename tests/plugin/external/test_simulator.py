@@ -84,7 +84,7 @@ def test_a_simulator_that_ends_early_is_reported(
         Simulator(SETUP, ros, ()).begin()
 
 
-def test_the_error_for_a_simulator_that_ended_states_the_simulated_time(guardian: Guardian, ros: Ros) -> None:
+def test_error_for_an_ended_simulator_states_its_time(guardian: Guardian, ros: Ros) -> None:
     made = begun(SETUP, guardian, ros)
     guardian.events.put({"kind": "ended", "status": -9})
     with pytest.raises(SimulatorLostError, match="was killed by SIGKILL at 2 s of its time"):
@@ -104,7 +104,7 @@ def test_a_simulator_that_leaves_the_graph_before_its_end_still_counts_as_ready(
         made.advance(1.0)
 
 
-def test_a_running_simulator_drives_the_clock_and_topics_of_the_nodes(guardian: Guardian, ros: Ros) -> None:
+def test_running_simulator_drives_clock_and_topics(guardian: Guardian, ros: Ros) -> None:
     heard: list[tuple[float, float]] = []
     ros.bus.observe(lambda _, one: heard.append((ros.now, one.data)))
     made = begun(SETUP, guardian, ros)
@@ -140,7 +140,7 @@ def test_a_simulator_without_progress_counts_as_hung(guardian: Guardian, ros: Ro
         made.advance(1.0)
 
 
-def test_a_clock_that_goes_back_during_an_episode_is_an_error(guardian: Guardian, ros: Ros) -> None:
+def test_clock_that_goes_back_is_an_error(guardian: Guardian, ros: Ros) -> None:
     made = begun(SETUP, guardian, ros)
     guardian.events.put(clock(1.5))
     with pytest.raises(SimulatorLostError, match=r"/clock went back from 2 s to 1\.5 s"):
@@ -179,7 +179,7 @@ def test_topics_of_nodes_and_requested_topics_are_received(guardian: Guardian, r
     assert guardian.commands("subscribe") == [{"topics": ["/gps", "/scan"]}, {"topics": ["/map"]}]
 
 
-def test_a_topic_that_the_simulator_publishes_must_be_connected_in_time(guardian: Guardian, ros: Ros) -> None:
+def test_simulator_topic_must_be_connected_in_time(guardian: Guardian, ros: Ros) -> None:
     made = begun(replace(SETUP, patience=0.05), guardian, ros)
     made._graph["published"] = {"/map", "/odom"}
     with pytest.raises(SimulatorLostError, match="hung"):
@@ -237,9 +237,7 @@ def test_nodes_run_before_each_simulator_step(guardian: Guardian, ros: Ros) -> N
 
 
 @pytest.mark.parametrize("how", ["silent", "stale"])
-def test_a_step_ends_only_with_a_new_message_on_each_required_topic(
-    guardian: Guardian, ros: Ros, how: str
-) -> None:
+def test_step_needs_a_new_message_on_each_topic(guardian: Guardian, ros: Ros, how: str) -> None:
     stepping(guardian, **{how: True})
     made = Simulator(replace(STEPPED, patience=0.05), ros, ())
     made.begin()

@@ -41,7 +41,7 @@ def test_a_simulator_with_a_reset_serves_further_episodes(guardian: Guardian, ro
     assert len(guardian.commands("start")) == 2
 
 
-def test_a_simulator_that_does_not_answer_its_reset_is_started_again(guardian: Guardian, ros: Ros) -> None:
+def test_simulator_that_ignores_its_reset_is_restarted(guardian: Guardian, ros: Ros) -> None:
     quick = replace(RESET, patience=0.05)
     module.KEPT.running = quick
     made = begun(quick, guardian, ros)
@@ -82,9 +82,7 @@ def test_a_simulator_that_replaces_one_without_an_answer_can_end_before_it_is_re
     assert not isinstance(caught.value, SimulatorLostError)
 
 
-def test_messages_of_the_former_simulator_do_not_make_the_new_simulator_ready(
-    guardian: Guardian, ros: Ros
-) -> None:
+def test_old_messages_do_not_make_a_new_simulator_ready(guardian: Guardian, ros: Ros) -> None:
     quick = replace(RESET, patience=0.05, timeout=0.05)
     module.KEPT.running = quick
     events = {"call": [message("/odom", 9.0), clock(9.0)], "start": [{"kind": "stopped"}]}
@@ -93,9 +91,7 @@ def test_messages_of_the_former_simulator_do_not_make_the_new_simulator_ready(
         Simulator(quick, ros, ()).begin()
 
 
-def test_a_new_simulator_starts_only_after_the_former_simulator_has_ended(
-    guardian: Guardian, ros: Ros
-) -> None:
+def test_new_simulator_starts_after_the_old_one_ended(guardian: Guardian, ros: Ros) -> None:
     made = Simulator(SETUP, ros, ())
     assert made.clock == 0.0
     guardian.react = lambda what, **_: [clock(9.0), {"kind": "stopped"}] if what == "start" else []
@@ -104,7 +100,7 @@ def test_a_new_simulator_starts_only_after_the_former_simulator_has_ended(
 
 
 @pytest.mark.parametrize("setup", [SETUP, RESET])
-def test_a_simulator_stops_after_an_episode_without_reset_or_with_an_error(
+def test_simulator_without_reset_stops_after_an_episode(
     guardian: Guardian, ros: Ros, setup: Setup, capsys: pytest.CaptureFixture[str]
 ) -> None:
     made = begun(setup, guardian, ros)
@@ -115,7 +111,7 @@ def test_a_simulator_stops_after_an_episode_without_reset_or_with_an_error(
     assert capsys.readouterr().out == "output of sim --world 'a b':\nwarned\n"
 
 
-def test_in_ros1_each_simulator_gets_a_guardian_of_its_own(guardian: Guardian, ros: Ros) -> None:
+def test_each_ros1_simulator_gets_its_own_guardian(guardian: Guardian, ros: Ros) -> None:
     made = Simulator(replace(SETUP, ros="ros1", timeout=0.05), ros, ())
     with pytest.raises(SimulatorError, match="was not ready"):
         made.begin()

@@ -44,7 +44,7 @@ def test_bytes_count_until_the_other_end_has_read_them(ends: tuple[socket.socket
     assert unread.unread([ports(near)]) == 0
 
 
-def test_bytes_that_were_received_from_the_other_end_do_not_count(
+def test_received_bytes_do_not_count_as_unread(
     ends: tuple[socket.socket, socket.socket],
 ) -> None:
     near, far = ends
@@ -53,7 +53,7 @@ def test_bytes_that_were_received_from_the_other_end_do_not_count(
     assert unread.unread([ports(far)]) == 10
 
 
-def test_a_service_is_called_once_the_simulator_has_read_the_commands(
+def test_service_is_called_after_commands_were_read(
     linked: Linked,  # noqa: F811
     ends: tuple[socket.socket, socket.socket],
     monkeypatch: pytest.MonkeyPatch,

@@ -56,7 +56,7 @@ def test_strata_without_missions_of_both_kinds_are_left_out() -> None:
     assert found.passed.tolist() == [[1, 0], [1, 0], [0, 1]]
 
 
-def test_strata_are_weighted_by_their_number_of_pairs_of_missions() -> None:
+def test_strata_are_weighted_by_mission_pairs() -> None:
     one = Strata(
         ints(0, 0, 1, 2),
         ints(0, 1, 1, 0),
@@ -74,7 +74,7 @@ def test_strata_are_weighted_by_their_number_of_pairs_of_missions() -> None:
 
 
 @pytest.mark.parametrize("without", [3, 4])
-def test_an_interval_needs_four_robots_with_and_four_without_the_repair(without: int) -> None:
+def test_interval_needs_four_robots_on_each_side(without: int) -> None:
     number = np.arange(without + 4)
     arm, total = (number >= without).astype(np.int64), number.astype(float)
     found = effect("fix", (), strata(number, ints(*[0] * number.size), arm, total, arm), 0.975)
@@ -82,7 +82,7 @@ def test_an_interval_needs_four_robots_with_and_four_without_the_repair(without:
     assert found.reward == pytest.approx(total[without:].mean() - total[:without].mean())
 
 
-def test_the_jackknife_of_a_plain_mean_is_its_classical_interval() -> None:
+def test_jackknife_of_a_mean_is_the_classical_interval() -> None:
     """Each robot has one mission with and one without the repair; their difference is its jackknife pseudo-value."""
     number, gain = np.repeat(np.arange(6), 2), np.array([0.0, 1.0, 2.0, 3.0, 4.0, 8.0])
     arm = np.tile([0, 1], 6)
@@ -162,9 +162,7 @@ def scores(count: int) -> Scores:
 
 
 @given(st.permutations(range(7)), st.integers(0, 7), st.integers(0, 7))
-def test_scores_of_a_mission_stay_together_in_any_order_of_missions(
-    order: list[int], one: int, other: int
-) -> None:
+def test_scores_of_a_mission_stay_together(order: list[int], one: int, other: int) -> None:
     begin, end = sorted((one, other))
     found = scores(7).ordered(ints(*order)).between(begin, end)
     some = order[begin:end]
@@ -201,7 +199,7 @@ ROWS = st.lists(
 
 
 @given(ROWS, st.integers(0, 12))
-def test_rows_of_a_mission_from_several_files_are_merged_and_sorted(
+def test_mission_rows_of_several_files_are_merged(
     rows: list[tuple[int, int, int, int, float]], cut: int
 ) -> None:
     parts = [transitions(*some) for some in (rows[:cut], rows[cut:]) if some]
@@ -221,7 +219,7 @@ def test_transitions_can_be_selected_by_mission(
     assert listed(every.between(low, high)) == [row for row in sorted(rows) if low <= row[0] < high]
 
 
-def test_unrecorded_cells_of_a_chain_are_merged_into_one_cell() -> None:
+def test_unrecorded_chain_cells_become_one_cell() -> None:
     """Cells 2 and 3 are not recorded: their transitions of one mission are joined where they become equal."""
     rows = transitions(
         (0, 0, 2, 1, 1.0), (0, 0, 3, 2, 2.0), (0, 2, 3, 1, 4.0), (0, 3, END, 1, 8.0), (1, 2, 3, 1, 16.0)
@@ -242,7 +240,7 @@ def test_unrecorded_cells_of_a_chain_are_merged_into_one_cell() -> None:
     ("sizes", "most", "expected"),
     [((3, 0, 2, 4), 5, [[3, 2], [4]]), ((3, 2), 6, [[3, 2]]), ((6, 1), 5, [[6], [1]]), ((0,), 5, [])],
 )
-def test_the_files_of_a_data_set_are_divided_into_tasks(
+def test_data_set_files_are_divided_into_tasks(
     sizes: tuple[int, ...], most: int, expected: list[list[int]]
 ) -> None:
     none = np.empty(0, np.uint64)
@@ -250,7 +248,7 @@ def test_the_files_of_a_data_set_are_divided_into_tasks(
     assert [[one.numbers.size for one in some] for some in partitions.portions(wanted, most)] == expected
 
 
-def test_robots_are_divided_into_portions_by_their_number_of_missions(
+def test_robots_are_divided_by_their_missions(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(robots, "PORTION", 10)
@@ -258,7 +256,7 @@ def test_robots_are_divided_into_portions_by_their_number_of_missions(
     assert [one.tolist() for one in robots.portions(ends)] == [[4, 10], [11], [35, 40]]
 
 
-def test_the_weighted_mean_of_e_values_is_computed_from_logarithms_without_overflow() -> None:
+def test_weighted_mean_of_e_values_does_not_overflow() -> None:
     assert robots._mean(np.array([]), np.array([])) == -1.0
     assert robots._mean(np.array([3.0, 1.0]), np.array([1.0, 3.0])) == pytest.approx(log2((8 + 3 * 2) / 4))
     assert robots._mean(np.array([2000.0, 1.0]), np.array([1.0, 1.0])) == pytest.approx(
@@ -266,7 +264,7 @@ def test_the_weighted_mean_of_e_values_is_computed_from_logarithms_without_overf
     )  # without overflow
 
 
-def test_the_distance_of_two_maps_is_their_largest_difference_in_standard_errors() -> None:
+def test_map_distance_is_the_largest_difference() -> None:
     nan = np.nan
     maps = [
         ResidualMap("a", np.array([1.0, 0.0, nan]), np.array([0.5, 0.5, nan])),
@@ -296,7 +294,7 @@ def test_complete_linkage_joins_the_nearest_clusters_until_they_differ() -> None
     assert clusters._linked(apart[:1, :1], 5, 0.05) == [[0]]
 
 
-def test_a_cluster_weights_the_maps_of_its_robots_by_inverse_variance() -> None:
+def test_cluster_weights_maps_by_inverse_variance() -> None:
     maps = [
         ResidualMap("b", np.array([-3.0, np.nan, 0.0]), np.array([0.1, np.nan, 0.1])),
         ResidualMap("a", np.array([-6.0, -4.0, 0.0]), np.array([0.2, 0.1, 0.1])),
@@ -307,7 +305,7 @@ def test_a_cluster_weights_the_maps_of_its_robots_by_inverse_variance() -> None:
     assert found.residuals == pytest.approx((-4.0, -4.0))  # (-3·10 - 6·5) / 15
 
 
-def test_clusters_are_sorted_by_size_and_robots_without_a_cluster_are_named() -> None:
+def test_clusters_are_sorted_and_remaining_robots_named() -> None:
     def one(name: str, mean: float) -> ResidualMap:
         return ResidualMap(name, np.array([mean]), np.array([0.01]))
 
@@ -319,7 +317,7 @@ def test_clusters_are_sorted_by_size_and_robots_without_a_cluster_are_named() ->
     assert clusters.of(maps[3:], np.array([0.0]), ((3,),), 0.05).found == ()
 
 
-def test_for_a_singular_matrix_the_pseudo_inverse_and_the_rank_are_returned() -> None:
+def test_singular_matrix_gives_a_pseudo_inverse_and_rank() -> None:
     inverse, rank = components._inverse(np.array([[2.0, 2.0], [2.0, 2.0]]))
     assert rank == 1
     assert inverse == pytest.approx(np.full((2, 2), 0.125))
@@ -330,7 +328,7 @@ def test_for_a_singular_matrix_the_pseudo_inverse_and_the_rank_are_returned() ->
     assert (rank, nothing.tolist()) == (0, [[0.0, 0.0], [0.0, 0.0]])
 
 
-def test_a_residual_map_uses_the_missions_of_a_robot_since_its_onset(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_residual_map_uses_missions_since_the_onset(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[tuple[int, int]] = []
 
     def following(*arguments: Any) -> Iterator[str]:

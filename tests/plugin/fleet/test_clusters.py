@@ -34,7 +34,7 @@ def maps(seed: int, kinds: list[dict[int, float]], each: int) -> list[ResidualMa
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_robots_with_the_same_drift_form_a_cluster_with_its_cells(seed: int) -> None:
+def test_robots_with_the_same_drift_form_a_cluster(seed: int) -> None:
     kinds = [{3: -1.0, 4: -1.0}, {7: -1.0}, {7: 1.0}]
     found = of(maps(seed, kinds, 6), np.full(len(CELLS), 1e-4), CELLS, 0.05)
     large = [one for one in found.found if len(one.robots) >= 3]
@@ -54,7 +54,7 @@ def test_the_order_of_the_robots_does_not_matter() -> None:
     assert of(some, np.zeros(12), CELLS, 0.05) == of(some[::-1], np.zeros(12), CELLS, 0.05)
 
 
-def test_robots_without_a_clear_cell_are_unclear_and_join_no_cluster() -> None:
+def test_robots_without_a_clear_cell_join_no_cluster() -> None:
     found = of(maps(1, [{}, {2: -1.5}], 4), np.zeros(12), CELLS, 1e-4)
     assert found.unclear == ("k0r0", "k0r1", "k0r2", "k0r3")
     assert {name for one in found.found for name in one.robots} == {"k1r0", "k1r1", "k1r2", "k1r3"}

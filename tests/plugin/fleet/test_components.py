@@ -68,9 +68,7 @@ def test_the_intervals_contain_the_known_variance_components() -> None:
 @pytest.mark.skipif(not SLOW, reason="takes a minute; set TARL_SLOW=1")
 @pytest.mark.parametrize("scale", [1.0, 0.2, 0.0])
 @pytest.mark.parametrize(("robots", "each"), [(60, 30), (200, 40)])
-def test_over_many_simulated_fleets_the_intervals_contain_the_true_components_often_enough(
-    robots: int, each: int, scale: float
-) -> None:
+def test_intervals_contain_simulated_components_often_enough(robots: int, each: int, scale: float) -> None:
     held, mean, spread = coverage(200, robots, each, scale)
     assert np.all(held >= 0.85)
     assert np.all(np.abs(mean) <= 4 * spread / np.sqrt(200) + 1e-12)
@@ -155,7 +153,7 @@ def test_with_few_robots_a_component_has_no_interval(monkeypatch: pytest.MonkeyP
         (0.0, [1.0, 2.0, 4.0, 4.0, 4.0], (0.0, 4.0)),
     ],
 )
-def test_the_interval_of_a_random_component_spans_shifted_and_scaled_percentiles(
+def test_component_interval_spans_shifted_percentiles(
     value: float, replicates: list[float], interval: tuple[float, float]
 ) -> None:
     columns = np.array([[1.0] * 5, replicates, [1.0] * 5]).T
@@ -164,7 +162,7 @@ def test_the_interval_of_a_random_component_spans_shifted_and_scaled_percentiles
     assert (low[1], high[1]) == pytest.approx(interval)
 
 
-def test_the_interval_of_a_factor_loses_the_part_of_the_errors() -> None:
+def test_factor_interval_loses_the_error_part() -> None:
     columns = np.array([[0.0, 1.0, 2.0, 3.0, 4.0], [1.0] * 5, [1.0] * 5]).T
     fit = module._Fit(np.array([2.0, 1.0, 1.0]), np.array([1.5, 9.0, 9.0]), np.zeros(0))
     low, high = module._interval(fit, columns, 0.5)

@@ -18,7 +18,7 @@ class ClientError(Exception):
 
 
 @pytest.mark.parametrize("reads", [False, True])
-def test_a_failure_of_the_stores_client_names_the_file_and_the_advice(reads: bool) -> None:
+def test_store_failure_names_the_file(reads: bool) -> None:
     def fail(*_: object) -> None:
         raise ClientError("An HTTP client failed:\n  data after the end")
 
@@ -33,7 +33,7 @@ def test_a_failure_of_the_stores_client_names_the_file_and_the_advice(reads: boo
     assert "\n" not in text
 
 
-def test_an_exception_without_a_message_is_reported_by_its_class() -> None:
+def test_exception_without_a_message_is_named_by_class() -> None:
     def fail(*_: object) -> None:
         raise TimeoutError
 

@@ -80,7 +80,7 @@ def test_a_group_with_a_verdict_has_its_figures() -> None:
     assert one["formulas"] == [{"formula": "always (x > 0)", "missions": 12, "violated": 3, "least": -0.5}]
 
 
-def test_a_robot_has_the_onset_of_the_bound_with_the_most_evidence() -> None:
+def test_robot_onset_comes_from_the_strongest_bound() -> None:
     told = replace(
         status(evidence(2.0), (CELL,), evidence(1.0, 4, 50.0), None, evidence(3.0, 6, 60.0)), new=(NEW,)
     )
@@ -104,7 +104,7 @@ def test_a_robot_has_the_onset_of_the_bound_with_the_most_evidence() -> None:
     assert alone["bound_since"] is None
 
 
-def test_the_page_lists_drifted_robots_and_robots_with_less_reward_separately() -> None:
+def test_page_lists_drifted_and_worse_robots_separately() -> None:
     one, two, three = (robot(name) for name in ("a", "b", "c"))
     groups = tuple(group(name) for name in ("a", "b", "c"))
     found = written(
@@ -129,7 +129,7 @@ def test_the_question_and_the_counts_are_repeated() -> None:
     )  # fmt: skip
 
 
-def test_repairs_have_their_bounds_or_null_if_nothing_can_be_compared() -> None:
+def test_bounds_of_an_unmeasured_repair_are_null() -> None:
     one = replace(effect(), values=("north",))
     found = written(answer(repairs=(one, unknown()), accepted={"guard-1": "rain"}))["repairs"]
     assert found[0] == {
@@ -184,7 +184,7 @@ def test_clusters_have_their_cells_and_residuals() -> None:
     assert shown["unclear"] == ["r3"]
 
 
-def test_the_text_keeps_names_readable_and_refuses_numbers_that_json_lacks() -> None:
+def test_text_refuses_numbers_that_json_lacks() -> None:
     found = text(answer(groups=(group("Zoë"),), onsets=robots(robot("Zoë"))))
     assert '"Zoë"' in found
     assert found.endswith("}\n")

@@ -27,7 +27,7 @@ def linear_algebra_threads() -> set[int]:
 
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
-def test_linear_algebra_uses_one_thread_so_that_sums_keep_their_order(workers: int) -> None:
+def test_linear_algebra_uses_one_thread(workers: int) -> None:
     with threadpool_limits(2, user_api="blas"):
         before = linear_algebra_threads()
         with engine.local(workers) as some:
@@ -63,9 +63,7 @@ def test_limited_tasks_run_at_a_time_in_order(workers: int) -> None:
 
 
 @pytest.mark.parametrize(("workers", "threaded"), [(1, False), (2, True), (7, True)])
-def test_several_workers_are_threads_and_one_worker_is_the_process_itself(
-    workers: int, threaded: bool
-) -> None:
+def test_single_worker_is_the_process_itself(workers: int, threaded: bool) -> None:
     with engine.local(workers) as some:
         names = set(some.each(lambda: threading.current_thread().name, [()] * 20))
     assert some.workers == workers
@@ -104,7 +102,7 @@ def test_two_tasks_per_thread_wait_on_a_cluster(
     assert list(every) == list(range(-1, 19))
 
 
-def test_errors_of_a_cluster_are_distinguished_from_errors_of_a_task() -> None:
+def test_cluster_errors_differ_from_task_errors() -> None:
     def failing(problem: BaseException) -> Future[None]:
         future = Future[None]()
         future.set_exception(problem)

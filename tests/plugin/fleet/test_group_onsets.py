@@ -37,9 +37,7 @@ def test_small_change_is_detected_for_a_whole_site(data: str) -> None:
     assert evidence.since.time == pytest.approx(1e9 + BEGINS, abs=4)  # one mission per robot and second
 
 
-def test_a_group_of_one_robot_has_the_evidence_of_the_robot(
-    data: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_group_of_one_has_the_evidence_of_its_robot(data: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(robots, "PORTION", 7)
     found = answer(Question(data, by=("robot",), robot="south203"))
     assert found.onsets.every == found.robots.every

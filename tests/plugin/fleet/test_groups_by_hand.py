@@ -113,7 +113,7 @@ def test_each_group_gets_its_own_verdict_and_formulas(monkeypatch: pytest.Monkey
         ((1.0, 2.5), [1.0, 3.0], True),
     ],
 )
-def test_totals_may_be_equal_to_the_limits_of_the_declared_range(
+def test_totals_may_equal_the_declared_limits(
     declared: tuple[float, float] | None, totals: list[float], refused: bool
 ) -> None:
     before = replace(stated([True, True], [2.0, 2.0]), declared=declared)

@@ -109,11 +109,11 @@ def test_the_page_contains_the_figures_of_the_text_report(found: Answer) -> None
     assert "<b>" not in seen
 
 
-def test_the_page_of_many_robots_is_smaller_than_600_kilobytes(found: Answer) -> None:
+def test_page_of_many_robots_is_small(found: Answer) -> None:
     assert len(html.render(many(found))) < 600_000
 
 
-def test_the_command_writes_the_page_of_the_fleet_and_of_a_robot(
+def test_command_writes_fleet_and_robot_pages(
     data: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     page = tmp_path / "robot.html"
@@ -134,14 +134,14 @@ def seen(browser: str, found: Answer, tmp_path_factory: pytest.TempPathFactory) 
     return seen_by(browser, many(found), tmp_path_factory.mktemp("many"), wanted="b>201")
 
 
-def test_the_page_logs_nothing_to_the_console_and_sends_no_request(seen: Seen) -> None:
+def test_page_logs_nothing_and_sends_no_request(seen: Seen) -> None:
     assert seen.found["report"] == "drawn"
     assert seen.console == []
     assert seen.found["resources"] == seen.found["violations"] == []
     assert seen.found["overflow"] <= 0
 
 
-def test_the_map_shows_each_group_and_the_chosen_one_in_words(seen: Seen) -> None:
+def test_map_describes_each_group_in_words(seen: Seen) -> None:
     (north, _), (south, sign) = seen.found["tiles"]
     assert north.startswith("1 north: no difference")
     assert south.startswith("1 south: degraded")
@@ -152,7 +152,7 @@ def test_the_map_shows_each_group_and_the_chosen_one_in_words(seen: Seen) -> Non
     assert any("2 robots" in one for one in seen.found["cells"])
 
 
-def test_each_of_ten_thousand_robots_has_a_square_and_can_be_found(seen: Seen) -> None:
+def test_each_of_ten_thousand_robots_can_be_found(seen: Seen) -> None:
     assert seen.found["rows"][:2] in (["<b>200", "<b>201"], ["<b>201", "<b>200"])
     assert len(seen.found["rows"]) == 20
     assert seen.found["searched"] == ["<b>201"]

@@ -54,7 +54,7 @@ def rows(to: Path, table: str = "missions") -> list[tuple[object, ...]]:
     ).fetchall()
 
 
-def test_the_rows_of_the_data_set_are_the_missions_of_the_logs(tmp_path: Path) -> None:
+def test_data_set_rows_are_logged_missions(tmp_path: Path) -> None:
     test, logs = world(tmp_path)
     to = tmp_path / "data"
     assert sum(one.missions for one in ingest(order(test, logs, to))) == 15
@@ -74,7 +74,7 @@ def test_the_rows_of_the_data_set_are_the_missions_of_the_logs(tmp_path: Path) -
     assert dates == [("1.2", "1970-01-11"), ("1.2", "1970-01-12"), ("1.2", "1970-01-13")]
 
 
-def test_the_examples_in_the_docs_read_the_data_set_without_tarl(
+def test_documented_examples_read_the_data_set(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     guide = Path(__file__).parents[3] / "docs" / "howto" / "fleet-logs.md"
@@ -99,7 +99,7 @@ def test_pandas_reads_the_data_set_without_tarl(tmp_path: Path) -> None:
     assert found.groupby("robot", observed=True).total.count().to_dict() == {"r0": 5, "r1": 5, "r2": 5}
 
 
-def test_the_metadata_of_a_file_names_its_schema_and_its_recording(tmp_path: Path) -> None:
+def test_file_metadata_names_schema_and_recording(tmp_path: Path) -> None:
     test, logs = world(tmp_path)
     list(ingest(order(test, logs, tmp_path / "data")))
     for path in (tmp_path / "data").rglob("*.parquet"):
@@ -175,7 +175,7 @@ def test_a_log_that_has_grown_adds_its_new_missions(tmp_path: Path) -> None:
     assert len(rows(to)) == 9
 
 
-def test_a_copy_under_the_name_of_another_robot_is_refused(tmp_path: Path) -> None:
+def test_copy_for_another_robot_is_refused(tmp_path: Path) -> None:
     test, logs = world(tmp_path, robots=1)
     to = tmp_path / "data"
     list(ingest(order(test, logs, to)))
@@ -280,7 +280,7 @@ def test_a_missing_package_is_reported_in_one_sentence(
     )
 
 
-def test_other_commands_do_not_import_the_packages_that_ingest_needs() -> None:
+def test_other_commands_do_not_import_ingest_packages() -> None:
     import subprocess
 
     code = (

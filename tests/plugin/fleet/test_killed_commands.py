@@ -60,7 +60,7 @@ def missions(data: Path) -> list[tuple[object, ...]]:
     return duckdb.sql(query).fetchall()
 
 
-def test_commands_that_are_killed_or_interrupted_lose_and_duplicate_no_mission(tmp_path: Path) -> None:
+def test_killed_commands_lose_and_duplicate_no_mission(tmp_path: Path) -> None:
     test, logs = world(tmp_path, ROBOTS, EACH)
     random = Random(17)
     argv = [*map(str, logs), "--fixture", str(test), "--robot", "{folder}", "--site", "north"]

@@ -46,9 +46,7 @@ def content(found: Fixture, folder: Path) -> bytes:
     st.randoms(use_true_random=False),
 )
 @settings(max_examples=25, deadline=None)
-def test_merged_recordings_of_many_robots_equal_a_single_recording_of_all_missions(
-    owned: list[tuple[int, int]], random: Random
-) -> None:
+def test_merged_recordings_equal_a_single_one(owned: list[tuple[int, int]], random: Random) -> None:
     with TemporaryDirectory() as name:
         folder = Path(name)
         robots = [
@@ -87,7 +85,7 @@ def test_a_merged_recording_states_bounds_over_all_episodes(tmp_path: Path) -> N
     ({"lists": tuple(replace(one, source="/other") for one in example().lists)}, "statements"),
     ({"design": ("worn",)}, "permanent drifts"),
 ])  # fmt: skip
-def test_recordings_that_cannot_be_merged_are_named_with_the_reason(
+def test_unmergeable_recordings_are_named_with_the_reason(
     changes: dict[str, object], named: str, tmp_path: Path
 ) -> None:
     first, second = recording(tmp_path, "a", [1, 2]), tmp_path / "b.npz"
@@ -139,7 +137,7 @@ def test_merging_logs_by_parts_equals_merging_them_at_once(tmp_path: Path) -> No
     assert content(merged(halves)[0], tmp_path) == content(merged(robots, test)[0], tmp_path)
 
 
-def test_the_command_writes_a_recording_that_can_be_compared_and_merged(
+def test_merged_recording_can_be_compared_and_merged(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     first, second = recording(tmp_path, "a", [1, 2, 3]), recording(tmp_path, "b", [3, 4])
@@ -152,7 +150,7 @@ def test_the_command_writes_a_recording_that_can_be_compared_and_merged(
 
 
 @pytest.mark.parametrize("kind", ["absent", "text", "log alone", "unfinished"])
-def test_recordings_that_cannot_be_merged_are_reported_and_no_file_is_written(
+def test_unmergeable_recordings_write_no_file(
     kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     test, other, to = tmp_path / "test.npz", tmp_path / "other.log", tmp_path / "fleet.npz"

@@ -51,7 +51,7 @@ def test_the_title_of_the_page_names_the_requested_robot() -> None:
     assert variables(answer(question=Question("data", robot="r1")))["title"] == "data, r1"
 
 
-def test_the_page_shows_the_period_of_the_missions_if_it_is_known() -> None:
+def test_page_shows_the_known_period_of_missions() -> None:
     assert variables(answer())["period"] == "no time"
     assert variables(answer(period=(DAY, 40 * DAY)))["period"] == "1970-01-02 to 1970-02-10"
 
@@ -112,14 +112,14 @@ def test_the_page_lists_the_missions_with_the_lowest_reward() -> None:
     ]
 
 
-def test_the_page_lists_the_violations_of_each_formula_by_group() -> None:
+def test_page_lists_formula_violations_by_group() -> None:
     one = group("north", formulas=(Judged("always(x > 1)", 1000, 10, -0.5678),))
     assert variables(answer(groups=(one,)))["formulas"] == [
         {"formula": "always(x > 1)", "group": "north", "violated": "10 of 1,000", "least": "-0.568"}
     ]
 
 
-def test_notes_on_the_page_do_not_begin_with_the_word_note() -> None:
+def test_page_notes_do_not_begin_with_note() -> None:
     first, *_ = variables(answer())["notes"]
     assert first.startswith("ranges are one-sided bounds")
 
@@ -177,7 +177,7 @@ def test_page_shows_repair_intervals_or_why_they_are_absent() -> None:
     assert (harms["tag"], none["tag"], none["verdict"]) == ("harms", "no-difference", "no effect shown")
 
 
-def test_the_page_stores_robots_in_columns_and_refers_to_them_by_index() -> None:
+def test_page_stores_robots_in_columns() -> None:
     told = status(evidence(2.0, 7, 3 * DAY), PLACE)
     every = (robot("r1"), robot("r2", 9.123, 1.0, told), robot("r3", 3.0, 2.0))
     found = data(
@@ -243,7 +243,7 @@ def test_at_most_twelve_cells_are_listed() -> None:
     assert len(data(answer(cells=cells, robots=robots(one, drifted=(one,))))["cells"]) == 12
 
 
-def test_cells_are_counted_over_the_named_robots_and_the_groups_that_differ() -> None:
+def test_cells_are_counted_over_named_robots_and_groups() -> None:
     told = status(evidence(2.0), ((0, 0), (2, 0)))
     every = tuple(robot(name, 5.0, status=told) for name in ("r1", "r2"))
     groups = (
@@ -265,7 +265,7 @@ def test_cells_are_counted_over_the_named_robots_and_the_groups_that_differ() ->
     ]
 
 
-def test_the_page_data_of_a_group_has_its_figures_and_onset() -> None:
+def test_group_data_has_figures_and_onset() -> None:
     told = status(evidence(2.0, 7, 3 * DAY), PLACE)
     watched = robot("south", 5.126, 2.0, told)
     one = group("south", result="degraded", mean=bound(-inf, 2.75))

@@ -79,7 +79,7 @@ def found(folder: Path) -> Answer:
     return answer(Question(str(folder / "data")))
 
 
-def test_only_the_drifted_robot_is_found_and_its_onset_is_stated(found: Answer) -> None:
+def test_only_the_drifted_robot_is_found(found: Answer) -> None:
     assert [one.name for one in found.robots.below] == [DRIFTED]
     (one,) = found.robots.below
     assert one.status is not None
@@ -97,7 +97,7 @@ def test_only_the_drifted_robot_is_found_and_its_onset_is_stated(found: Answer) 
     }
 
 
-def test_counts_and_bounds_are_computed_from_the_missions_of_the_data_set(found: Answer) -> None:
+def test_counts_and_bounds_come_from_the_data_set(found: Answer) -> None:
     assert found.missions == ROBOTS * EACH
     for one, robot in zip(found.groups, (0, 2, 1, 3), strict=True):
         own = walks(robot)
@@ -127,7 +127,7 @@ def test_tarl_fleet_and_tarl_watch_compute_the_same_evidence(
     )
 
 
-def test_tarl_fleet_and_the_comparison_of_a_log_give_the_same_verdict(folder: Path, found: Answer) -> None:
+def test_fleet_and_comparison_give_the_same_verdict(folder: Path, found: Answer) -> None:
     fixture = load(folder / "test.npz")
     own = merge([one for _, one in logged_samples(folder / DRIFTED / "missions.log", fixture)])
     expected = compare(
@@ -171,9 +171,7 @@ def test_answer_is_independent_of_order_and_threads(
     assert document.text(replace(again, copies=0)) == document.text(found)
 
 
-def test_files_of_schema_1_and_newer_files_are_read_together(
-    folder: Path, found: Answer, tmp_path: Path
-) -> None:
+def test_old_and_new_schemas_are_read_together(folder: Path, found: Answer, tmp_path: Path) -> None:
     add(folder, [1], tmp_path / "data")
     for path in sorted((tmp_path / "data" / "missions").rglob("*.parquet"))[::2]:
         with path.open("rb") as file:
@@ -186,13 +184,13 @@ def test_files_of_schema_1_and_newer_files_are_read_together(
     assert again.groups[0].mean == found.groups[2].mean
 
 
-def test_the_answer_from_an_object_store_equals_that_from_a_folder(folder: Path, found: Answer) -> None:
+def test_object_store_and_folder_give_the_same_answer(folder: Path, found: Answer) -> None:
     add(folder, [*range(ROBOTS)], "memory://fleet/one")
     again = answer(Question("memory://fleet/one"))
     assert document.text(again) == document.text(found)
 
 
-def test_the_missions_that_represent_a_large_group_do_not_depend_on_files(
+def test_sample_of_a_large_group_does_not_depend_on_files(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(groups, "MOST", 60)
@@ -233,7 +231,7 @@ def test_missions_that_cannot_be_compared_are_counted_and_named(
     assert "6 missions of test_walk.py::test_walk with other sensors or bins cannot be compared" in out
 
 
-def test_the_command_prints_its_report_and_has_the_documented_exit_status(
+def test_report_has_the_documented_exit_status(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     data, result = str(folder / "data"), tmp_path / "fleet.json"
@@ -308,7 +306,7 @@ def test_error_names_the_path_of_a_damaged_recording(folder: Path, tmp_path: Pat
         answer(Question(str(to)))
 
 
-def test_rows_that_exceed_the_memory_limit_move_to_a_temporary_folder(
+def test_rows_beyond_the_memory_limit_move_to_disk(
     folder: Path, found: Answer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -346,7 +344,7 @@ def scheduler() -> Iterator[Any]:
 @pytest.mark.filterwarnings(
     "ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning"
 )  # of Dask
-def test_a_cluster_gives_the_same_bits_even_if_a_worker_dies(
+def test_cluster_gives_the_same_bits_after_a_worker_dies(
     folder: Path, found: Answer, scheduler: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(robots, "PORTION", 100)
@@ -384,7 +382,7 @@ def test_an_unreachable_cluster_is_reported_in_one_sentence(
 
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
-def test_the_answer_does_not_depend_on_the_number_of_workers(
+def test_answer_does_not_depend_on_workers(
     folder: Path, found: Answer, monkeypatch: pytest.MonkeyPatch, workers: int
 ) -> None:
     for module in (robots, scores, samples):
@@ -393,9 +391,7 @@ def test_the_answer_does_not_depend_on_the_number_of_workers(
     assert document.text(again) == document.text(found)
 
 
-def test_missions_that_two_runs_add_at_the_same_time_are_counted_once(
-    folder: Path, found: Answer, tmp_path: Path
-) -> None:
+def test_concurrently_added_missions_are_counted_once(folder: Path, found: Answer, tmp_path: Path) -> None:
     """Let other runs add missions after a run has read the existing ones and before it writes its first file."""
     write, to = Store.write, tmp_path / "data"
     path = tmp_path / "r0" / "missions.log"

@@ -33,7 +33,7 @@ def rolled_out(seed: int, true: float, robots: int = 24, each: int = 40) -> Effe
     return effect("fix", (), strata(robot, site * 8 + week, treated, total, passed), 0.975)
 
 
-def test_the_effect_of_a_repair_is_found_in_any_season() -> None:
+def test_repair_effect_is_found_in_any_season() -> None:
     found = [rolled_out(seed, 0.8) for seed in range(40)]
     held = [one.reward_bound.low <= 0.8 <= one.reward_bound.high for one in found]
     assert np.mean(held) >= 0.85
@@ -45,7 +45,7 @@ def test_the_effect_of_a_repair_is_found_in_any_season() -> None:
 
 @pytest.mark.skipif(not SLOW, reason="a campaign; set TARL_SLOW=1")
 @pytest.mark.parametrize("true", [0.0, 0.8, -0.8])
-def test_over_many_simulated_rollouts_the_intervals_contain_the_true_effect_often_enough(true: float) -> None:
+def test_intervals_contain_simulated_repair_effects(true: float) -> None:
     found = [rolled_out(seed, true) for seed in range(2000)]
     held = [one.reward_bound.low <= true <= one.reward_bound.high for one in found]
     assert 0.92 <= np.mean(held) <= 0.99

@@ -69,7 +69,7 @@ def said(copies: bool = False) -> str:
     return document.text(replace(found, copies=0))
 
 
-def test_an_object_store_and_a_folder_give_the_same_answer(s3: Faults, fleet: tuple[Order, str]) -> None:
+def test_object_store_equals_a_folder(s3: Faults, fleet: tuple[Order, str]) -> None:
     order, expected = fleet
     assert sum(one.missions for one in ingest(order)) == 15
     assert said() == expected
@@ -119,7 +119,7 @@ def test_failed_ingest_is_completed_by_the_next_run(s3: Faults, fleet: tuple[Ord
     assert said() == expected
 
 
-def test_a_refusal_by_the_store_is_reported_in_one_sentence(
+def test_store_refusal_is_reported_in_one_sentence(
     s3: Faults, fleet: tuple[Order, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     order, expected = fleet
@@ -151,9 +151,7 @@ def test_files_missing_from_a_stale_listing_are_counted_once(
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_after_random_failures_no_mission_is_lost_or_counted_twice(
-    s3: Faults, fleet: tuple[Order, str], seed: int
-) -> None:
+def test_random_failures_lose_no_mission(s3: Faults, fleet: tuple[Order, str], seed: int) -> None:
     order, expected = fleet
     random = Random(seed)
     s3.next = lambda method, path: random.choice(["503", "lost", "expired"]) if random.random() < 0.15 else ""

@@ -31,7 +31,7 @@ from tests.plugin.fleet.answers import (
 PLACE = ((2, 0), (2, 1))
 
 
-def test_a_fleet_without_alarms_is_reported_in_a_table_and_three_sentences() -> None:
+def test_fleet_without_alarms_is_a_table_and_three_sentences() -> None:
     assert [*words.lines(answer())] == [
         "data: 40 missions of 1 robot, compared with 10 episodes of test_walk.py::test_walk",
         "",
@@ -60,7 +60,7 @@ def test_the_first_line_counts_robots_and_names_the_day() -> None:
     assert next(words.lines(found)).startswith("data: 1,234 missions of 2 robots since 2026-03-01, compared")
 
 
-def test_without_columns_to_group_by_no_group_is_tested_for_changes() -> None:
+def test_no_group_is_tested_without_group_columns() -> None:
     found = answer(question=Question("data", by=()), groups=(group(),))
     assert not [line for line in words.lines(found) if "changed in time" in line]
 
@@ -100,7 +100,7 @@ def test_changed_group_uses_the_test_with_most_evidence() -> None:
         )
 
 
-def test_groups_with_more_evidence_come_first_and_the_rest_by_name() -> None:
+def test_groups_with_more_evidence_come_first() -> None:
     every = [robot("a", 3.0, 1.0), robot("b", 1.0, 5.0), robot("c", 3.0, 2.0), robot("d")]
     found = answer(onsets=robots(*every, drifted=(every[2], every[0]), below=(every[1],)))
     named = [
@@ -132,14 +132,14 @@ def test_named_robots_are_counted_and_at_most_twenty_listed() -> None:
         assert sum("evidence 32" in line for line in below) == 20
 
 
-def test_a_robot_below_a_bound_is_described_by_that_bound() -> None:
+def test_robot_below_a_bound_is_described_by_it() -> None:
     told = status(evidence(2.0, 7, 3 * DAY), (), evidence(1.0, 4, None))
     one = robot("r1", 5.0, 4.0, told)
     lines = [*words.lines(answer(robots=robots(one, below=(one,))))]
     assert "  r1: 9 of 10 missions passed, evidence 16, changed before mission 4 (no time)" in lines
 
 
-def test_a_cluster_is_printed_with_its_place_and_mean_residual() -> None:
+def test_cluster_is_printed_with_place_and_residual() -> None:
     names = tuple(f"r{n:02}" for n in range(22))
     found = Clusters((Cluster(names, PLACE, (-0.5, -1.0)), Cluster(("s1",), (), ())), ("u1", "u2"), 1500)
     lines = [*words.lines(answer(clusters=found))]
@@ -174,7 +174,7 @@ def test_formulas_with_more_violations_come_first() -> None:
     assert "No mission violates a formula." not in [*words.lines(answer())]
 
 
-def test_the_report_of_a_robot_lists_its_missions_with_the_lowest_reward() -> None:
+def test_robot_report_lists_its_worst_missions() -> None:
     lowest = (Mission(1.5 * DAY, False, -12.3456789, 7), Mission(0.0, True, 3.0, 1))
     lines = [*words.lines(answer(question=Question("data", by=("site",), robot="r1"), lowest=lowest))]
     start = lines.index("missions of r1 with the lowest reward")
@@ -198,7 +198,7 @@ def test_each_note_appears_only_if_its_condition_holds() -> None:
     ]
 
 
-def test_the_effect_of_a_repair_is_printed_with_intervals_and_counts() -> None:
+def test_repair_effect_is_printed_with_intervals() -> None:
     some = (
         effect(values=("wet",)),
         replace(effect("guard-2", -0.5, -0.75), reward_bound=bound(-0.75, -0.25)),
@@ -236,7 +236,7 @@ def test_a_repair_without_an_interval_says_why() -> None:
 @pytest.mark.parametrize(
     ("found", "expected"), [(bound(0.01, 0.09), "+1 to +9"), (Bound(-inf, inf, 0.95, "t", False, 0), "")]
 )
-def test_a_confidence_interval_is_printed_in_the_unit_of_its_score(found: Bound, expected: str) -> None:
+def test_confidence_interval_has_the_unit_of_its_score(found: Bound, expected: str) -> None:
     assert repair_words.interval(found, 100) == expected
 
 
@@ -278,7 +278,7 @@ def test_no_lowest_value_is_named_if_variance_may_be_zero() -> None:
     assert decomposition_words.lowest(replace(site, effects=(0.3, -0.3, 0.0, 0.0)), levels) == "b -0.3"
 
 
-def test_without_any_variance_each_component_has_a_share_of_zero() -> None:
+def test_zero_variance_gives_zero_shares() -> None:
     still = component("mission", 0.0, low=0.0, high=0.0)
     parts = Decomposition("week", (still, still), ())
     assert [*decomposition_words.lines(parts)][1] == "  within a robot    0.0 %  0 (0 to 0)"

@@ -57,7 +57,7 @@ def test_the_formula_with_the_lowest_robustness_decides() -> None:
     assert both.rewards(3 * SECOND, 10.0) == [-1.0, 0.0, -1.0]
 
 
-def test_a_mission_in_a_log_is_judged_like_an_episode() -> None:
+def test_logged_mission_is_judged_like_an_episode() -> None:
     mission = Followed()
     mission.add({"changes": CHANGES[:2], "times": [1.0]})
     mission.add({"changes": CHANGES[2:], "times": [2.0, 3.0]})
@@ -80,7 +80,7 @@ def test_without_formulas_or_signals_a_mission_has_no_results() -> None:
     assert looked_back(Followed(list(CHANGES), [1.0], None), (SAFE,), needs) == LookedBack()
 
 
-def test_only_formulas_whose_signals_are_in_each_log_are_judged() -> None:
+def test_only_formulas_with_logged_signals_are_judged() -> None:
     only_x, both = (Followed([(0.0, name, 1.0) for name in names], [1.0], 1.0) for names in ("x", "xy"))
     plain = Requirements(formulas=(SAFE, QUICK), names=NAMES)
     rewarding = Requirements(formulas=(SAFE, QUICK), names=NAMES, rewarding=True)

@@ -101,9 +101,7 @@ def test_logs_are_judged_at_every_recorded_change(tank: pytest.Pytester, observe
     )
 
 
-def test_a_formula_over_signals_missing_in_logs_is_skipped_with_a_note(
-    tank: pytest.Pytester, observed: Path
-) -> None:
+def test_formula_over_missing_signals_is_skipped(tank: pytest.Pytester, observed: Path) -> None:
     changed(tank, "test_tank", "always (flow > -1)", "always (unheard > 0)")
     told = tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")
     text = " ".join(told.stdout.str().split())
@@ -111,9 +109,7 @@ def test_a_formula_over_signals_missing_in_logs_is_skipped_with_a_note(
     assert rows(tank)["always (unheard > 0)"]["online"] is None
 
 
-def test_with_the_reward_robustness_missions_of_a_log_earn_their_robustness(
-    tank: pytest.Pytester, observed: Path
-) -> None:
+def test_logged_missions_earn_their_robustness(tank: pytest.Pytester, observed: Path) -> None:
     changed(tank, "test_tank", f"{UPPER} or eventually (level > 0)", UPPER)
     changed(tank, "test_tank", '"unheard"],', '"unheard"], reward="robustness",')
     tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")
@@ -123,9 +119,7 @@ def test_with_the_reward_robustness_missions_of_a_log_earn_their_robustness(
     )
 
 
-def test_a_log_that_lacks_signals_of_the_reward_formula_is_refused(
-    tank: pytest.Pytester, observed: Path
-) -> None:
+def test_log_without_reward_signals_is_refused(tank: pytest.Pytester, observed: Path) -> None:
     changed(tank, "test_tank", "always (flow > -1)", "always (unheard > 0)")
     changed(tank, "test_tank", '"unheard"],', '"unheard"], reward="robustness",')
     told = tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")

@@ -56,9 +56,7 @@ def late(seconds: float) -> str:
         ("(x > 0) since (y > 0)", 9, PAST),
     ],
 )
-def test_every_part_of_a_formula_must_be_evaluated_within_the_episode(
-    text: str, ends: float, expected: str
-) -> None:
+def test_formula_parts_must_end_within_the_episode(text: str, ends: float, expected: str) -> None:
     assert unjudged(tree(text), ends * NANOSECONDS) == expected
 
 

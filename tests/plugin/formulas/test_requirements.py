@@ -75,13 +75,13 @@ def test_a_violation_names_formula_time_and_signals(pytester: pytest.Pytester) -
     result.stdout.no_fnmatch_line("*episode.py*")
 
 
-def test_a_deadline_is_violated_when_it_passes_and_not_earlier(pytester: pytest.Pytester) -> None:
+def test_deadline_is_violated_when_it_passes(pytester: pytest.Pytester) -> None:
     result = run(pytester, 'requires=["eventually[0:1.5] (wet > 0)"]', "tarl.reward(1.0)")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["requirement violated at 1.5 s: eventually[[]0:1.5] (wet > 0) *"])
 
 
-def test_a_failing_test_body_is_reported_with_its_own_reason(pytester: pytest.Pytester) -> None:
+def test_failing_test_body_has_its_own_reason(pytester: pytest.Pytester) -> None:
     result = run(
         pytester, 'requires=["always (gap > 0.9)"], signals=["gap"]', f"{OBSERVE}; assert gap > 0.8, 'own'"
     )
@@ -259,7 +259,7 @@ def test_an_episode_without_virtual_time_is_an_error(pytester: pytest.Pytester) 
     assert "No virtual time passed" in told(pytester.runpytest("-q", "-p", "no:asyncio"))
 
 
-def test_the_error_for_a_missing_rtamt_names_the_install_command(
+def test_missing_rtamt_error_names_the_install_command(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from pytest_tarl.formulas import parsing

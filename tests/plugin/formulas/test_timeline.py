@@ -30,7 +30,7 @@ def test_each_instant_has_the_latest_earlier_value(given: list[tuple[int, float]
     assert timeline.samples(["x"])["x"][0] == [0, first[-1]]
 
 
-def test_the_instants_are_the_beginning_the_end_and_each_change() -> None:
+def test_instants_are_begin_end_and_changes() -> None:
     line = Timeline(("a", "b"))
     for name, value, time in (("a", 1.0, 5), ("a", 1.0, 6), ("a", 2.0, 9), ("b", 0.0, 7), ("b", True, 12)):
         line.give(name, value, time)

@@ -58,7 +58,7 @@ def test_the_first_code_of_a_block_skips_declarations(text: str, first: str) -> 
         ("async def f():\n    nonlocal_ = 1\n", 2),
     ],
 )
-def test_the_entry_of_a_function_is_after_its_docstring_and_declarations(text: str, line: int) -> None:
+def test_function_entry_follows_docstring_and_declarations(text: str, line: int) -> None:
     assert entry_of(function(text))["lineno"] == line
 
 
@@ -74,7 +74,7 @@ def test_the_entry_of_a_function_is_after_its_docstring_and_declarations(text: s
         ("class A:\n    x: int\n    y = 1", "class A:\n    x: int\n    new()\n    y = 1"),
     ],
 )
-def test_a_statement_is_inserted_at_the_entry_of_a_function(text: str, expected: str) -> None:
+def test_statement_is_inserted_at_function_entry(text: str, expected: str) -> None:
     node = function(text)
     enter(node, body("new()")[0])
     assert ast.unparse(ast.parse(ast.unparse(node))) == ast.unparse(ast.parse(expected))

@@ -26,7 +26,7 @@ def test_a_missing_entry_returns_none(tmp_path):
     assert CodeCache(tmp_path).load(NAME) is None
 
 
-def test_cache_keys_contain_the_path_and_everything_that_the_code_depends_on():
+def test_cache_keys_contain_path_and_dependencies():
     names = {
         entry_name(Path(path), parts) for path in ("a/node.py", "b/node.py") for parts in (("t", 1), ("t", 2))
     }
@@ -56,7 +56,7 @@ def test_an_unwritable_cache_only_causes_a_recompilation(tmp_path):
     assert cache.load(NAME) is CODE
 
 
-def test_nothing_is_written_if_python_is_set_to_write_no_bytecode(tmp_path, monkeypatch):
+def test_nothing_is_written_without_bytecode(tmp_path, monkeypatch):
     monkeypatch.setattr("sys.dont_write_bytecode", True)
     CodeCache(tmp_path / "cache").store(NAME, CODE)
     assert not (tmp_path / "cache").exists()

@@ -108,7 +108,7 @@ def test_old_copy_of_an_edited_helper_is_reported(tmp_path: Path) -> None:
     assert (out, older) == (1, (leaf,))
 
 
-def test_an_edited_file_that_the_test_imported_earlier_is_reported(tmp_path: Path) -> None:
+def test_file_edited_after_its_import_is_reported(tmp_path: Path) -> None:
     node, leaf = laid_out(tmp_path, ["workspace"], [])
     importlib.import_module(leaf.stem)
     with pytest.warns(UserWarning, match="was imported"):

@@ -99,7 +99,7 @@ NOT_FUSED = {
 
 
 @pytest.mark.parametrize("kind", NOT_FUSED)
-def test_statements_that_may_fail_or_run_other_code_are_not_recorded_together(kind):
+def test_failing_statements_are_not_recorded_together(kind):
     assert "extend" not in written(NOT_FUSED[kind], "f(1.0)")[0]
 
 

@@ -67,7 +67,7 @@ def recorded(recorder: Recorder) -> list[tuple[int, float]]:
     return list(zip(trace.site.tolist(), trace.flow.tolist(), strict=True))
 
 
-def test_a_script_and_the_modules_that_it_imports_are_recorded(project):
+def test_script_and_its_imports_are_recorded(project):
     recorder = Recorder()
     with imports(project, recorder) as node:
         module = node.run_script(project / "node.py")
@@ -102,7 +102,7 @@ def test_every_episode_has_new_modules_and_restores_the_interpreter(project):
     assert set(sys.modules) - known <= {"pickle"}
 
 
-def test_helpers_without_sites_are_reloaded_unless_they_belong_to_the_test(project, monkeypatch):
+def test_helpers_without_sites_are_reloaded(project, monkeypatch):
     (project / "world.py").write_text("tide = []\n")
     monkeypatch.syspath_prepend(project)
     with imports(project, Recorder(), plan={}) as node:
@@ -247,7 +247,7 @@ def test_modules_in_packages_are_instrumented_and_removed(project, monkeypatch):
     assert recorded(recorder) == [(0, 2.0)]
 
 
-def test_an_overlay_replaces_the_text_and_sites_keep_their_lines(project):
+def test_overlay_replaces_text_and_keeps_lines(project):
     edited = NODE.replace("import pickle\n", "import pickle\nimport math\n").replace(
         "* 2.0", "* (5.0 if data else 2.0)"
     )
@@ -271,7 +271,7 @@ def test_the_node_imports_the_overlay_of_a_module(project):
         assert "7.0" in sys.modules["gains"].__loader__.get_source("gains")
 
 
-def test_errors_point_at_the_lines_of_the_text_that_runs(project):
+def test_errors_point_at_the_running_text(project):
     edited = NODE.replace("vel = gain(data) * 2.0", "vel = gain(data) / (data - 1.5)")
     with imports(project, Recorder(), overlay={project / "node.py": edited}) as node:
         with pytest.raises(ZeroDivisionError) as caught:
@@ -280,7 +280,7 @@ def test_errors_point_at_the_lines_of_the_text_that_runs(project):
     assert (last.lineno, last.line) == (12, "vel = gain(data) / (data - 1.5)")
 
 
-def test_a_syntax_error_is_raised_just_as_an_import_raises_it(project):
+def test_syntax_error_is_raised_as_by_import(project):
     (project / "node.py").write_text("x = (\n")
     with imports(project, Recorder()) as node, pytest.raises(SyntaxError) as caught:
         node.run_script(project / "node.py")
@@ -293,7 +293,7 @@ def test_compiler_warnings_are_suppressed(project):
         assert node.run_script(project / "node.py").x
 
 
-def test_a_warning_names_a_file_that_the_test_imported_before_the_episode(project, monkeypatch):
+def test_early_import_by_the_test_is_named_in_a_warning(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     gains = __import__("gains")
     try:
@@ -309,7 +309,7 @@ def test_a_warning_names_a_file_that_the_test_imported_before_the_episode(projec
         del sys.modules["gains"]
 
 
-def test_a_script_that_the_test_imported_and_then_runs_gives_no_warning(project, monkeypatch):
+def test_imported_script_that_runs_gives_no_warning(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     node_module = __import__("node")
     plan = {project / "node.py": SITES}
@@ -340,7 +340,7 @@ def test_site_positions_without_a_statement_are_reported(project):
             assert node.unrecorded == {project / "node.py": ((99, 1),)}
 
 
-def test_code_comes_from_the_cache_until_text_or_sites_change(project):
+def test_code_is_cached_until_text_or_sites_change(project):
     cache = project / ".tarl" / "cache"
 
     def run(plan):
@@ -427,7 +427,7 @@ def test_a_module_may_have_the_name_of_its_package(project: Path) -> None:
             assert node.run_script(package / "__main__.py").found == 3
 
 
-def test_an_entry_point_runs_in_its_module_under_its_own_name(project, package):
+def test_entry_point_runs_under_its_own_name(project, package):
     plan = {package.parent.parent / "limits.py": LIMIT, package: {(7, 5): 1}}
     for _ in range(2):
         recorder = Recorder()
@@ -438,7 +438,7 @@ def test_an_entry_point_runs_in_its_module_under_its_own_name(project, package):
     assert not [name for name in sys.modules if name.startswith("robot")]
 
 
-def test_the_result_of_an_entry_point_is_the_exit_status(project):
+def test_entry_point_result_is_the_exit_status(project):
     (project / "fails.py").write_text(
         "class App:\n    @staticmethod\n    def run():\n        return 'no motor'\n"
     )

@@ -71,7 +71,7 @@ def test_each_statement_records_the_expected_events(kind, inline):
 
 
 @pytest.mark.parametrize("inline", MODES)
-def test_the_yielded_and_the_sent_values_of_a_generator_are_recorded(inline):
+def test_yielded_and_sent_generator_values_are_recorded(inline):
     source = """
     def gen():
         x = yield 1.0
@@ -162,7 +162,7 @@ pub, v = Pub(), 2.0
 
 @pytest.mark.parametrize("inline", MODES)
 @pytest.mark.parametrize("call", PUBLISHES)
-def test_a_publish_call_records_0_after_its_arguments_and_before_the_call(call, inline):
+def test_publish_call_records_zero_before_the_call(call, inline):
     line = PUBLISHER.count("\n") + 1
     column = call.index("pub.publish") if "lambda" in call else 0
     tree = instrument(ast.parse(PUBLISHER + call), {(line, column): 7}, inline=inline)

@@ -77,7 +77,7 @@ def assert_lawful(*modules: str) -> None:
 
 @slow
 @needs_tests
-def test_the_standard_library_passes_its_tests_with_every_statement_recorded():
+def test_fully_recorded_standard_library_passes_its_tests():
     assert_lawful(*MODULES)
 
 

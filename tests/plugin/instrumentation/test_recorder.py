@@ -46,7 +46,7 @@ def test_events_are_in_order_with_their_flow_values(threads):
     assert trace.thread is None
 
 
-def test_numbers_keep_their_signs_if_the_plan_of_the_episode_requests_signs():
+def test_signs_are_kept_if_requested():
     recorder = Recorder()
     program(recorder)["work"]([-0.5, -2, math.nan])
     recorder.reward(1.0)
@@ -54,7 +54,7 @@ def test_numbers_keep_their_signs_if_the_plan_of_the_episode_requests_signs():
     assert recorder.finish(signed=True).flow.tolist() == [-0.5, -1.0, 0.0, -2.0, -4.0, 0.0, 0.0, 0.0, 0.0]
 
 
-def test_events_after_a_reward_belong_to_the_step_that_the_reward_ended():
+def test_events_after_a_reward_belong_to_its_step():
     recorder = Recorder()
     for step in range(3):
         recorder.hook(0, float(step))
@@ -123,7 +123,7 @@ VALUES = [
 
 @pytest.mark.parametrize("value", VALUES, ids=lambda value: type(value).__name__)
 @pytest.mark.parametrize("threads", [False, True])
-def test_all_hooks_record_the_same_flow_value_and_return_the_value(value, threads):
+def test_all_hooks_record_and_return_the_value(value, threads):
     recorder = Recorder(threads=threads)
     space: dict[str, Any] = {"value": value}
     source = "x = value\ny = [value][0]\nz = (lambda: value)()"
@@ -162,7 +162,7 @@ def test_events_of_two_threads_are_separate():
     assert np.all(np.diff(trace.thread) >= 0)
 
 
-def test_events_of_threads_belong_to_the_step_in_which_they_occur():
+def test_thread_events_belong_to_their_step():
     recorder = Recorder()
     space = program(recorder)
     for step in range(2):
@@ -219,7 +219,7 @@ def test_threading_is_restored_after_an_episode():
     assert [getattr(threading, name) for name in names] == before
 
 
-def test_events_of_a_thread_started_by_the_module_thread_are_separate():
+def test_events_of_module_threads_are_separate():
     before = _thread.start_new_thread
     recorder, done = Recorder(), threading.Event()
     space = program(recorder)
@@ -336,7 +336,7 @@ def test_threads_of_test_tools_are_ignored(module, direct):
         thread.join()
 
 
-def test_events_of_a_thread_that_existed_before_the_episode_are_separate():
+def test_events_of_older_threads_are_separate():
     begin = threading.Event()
     spaces: list[dict[str, Any]] = []
 

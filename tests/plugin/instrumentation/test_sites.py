@@ -53,7 +53,7 @@ def test_taint_list_keeps_the_order_of_its_flow():
     ]
 
 
-def test_flows_of_the_same_topics_share_one_list_without_duplicates():
+def test_flows_of_the_same_topics_share_one_list():
     left = flow(step(10, "a"), step(20, "left"), step(40, "d"))
     right = flow(step(10, "a"), step(15, "right"), step(30, "c"), step(40, "d"))
     result = planned(left, right)
@@ -66,7 +66,7 @@ def test_flows_that_order_steps_differently_contribute_each_step_once():
     assert codes(result) == ["a", "b"]
 
 
-def test_each_pair_of_source_and_sink_topic_has_one_taint_list():
+def test_each_topic_pair_has_one_taint_list():
     result = planned(
         flow(step(10, "a"), step(20, "b")),
         flow(step(10, "a"), step(30, "c"), sink=("/lights",)),
@@ -95,7 +95,7 @@ def test_sites_are_found_by_file_and_position():
     assert result.positions == {"helper.py": {(10, 5): 0}, "node.py": {(10, 5): 1, (12, 5): 2}}
 
 
-def test_a_site_that_carries_data_in_one_flow_is_a_data_site():
+def test_site_that_carries_data_is_a_data_site():
     result = planned(flow(step(10, "a", "control")), flow(step(10, "a", "data")))
     assert [place.dependence for place in result.places] == ["data"]
 
@@ -105,7 +105,7 @@ def test_publishing_sites_are_marked():
     assert result.publishes == {1}
 
 
-def test_a_source_without_a_known_topic_is_named_by_its_position():
+def test_source_without_a_topic_is_named_by_position():
     assert planned(flow(step(10, "a"), source=())).lists[0].source == "(rospy.Subscriber at node.py:1)"
 
 

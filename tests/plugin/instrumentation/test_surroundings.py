@@ -93,7 +93,7 @@ def test_other_files_and_ways_of_opening_are_unchanged(file: Path) -> None:
             assert opened.read() == "old\nmore\n"
 
 
-def test_replaced_texts_are_decoded_with_the_encoding_that_the_program_requests(file: Path) -> None:
+def test_replaced_texts_use_the_requested_encoding(file: Path) -> None:
     with reading({file: "é\r\nx"}):
         with file.open(encoding="latin-1") as opened:
             assert opened.read() == "Ã©\nx"
@@ -101,7 +101,7 @@ def test_replaced_texts_are_decoded_with_the_encoding_that_the_program_requests(
             assert opened.read() == "��\r\nx"
 
 
-def test_the_function_open_is_unchanged_if_there_are_no_replacements() -> None:
+def test_open_is_unchanged_without_replacements() -> None:
     usual = open
     with reading({}):
         assert open is usual
@@ -114,7 +114,7 @@ def test_the_function_open_is_unchanged_if_there_are_no_replacements() -> None:
 # threads
 
 
-def test_the_recorder_is_notified_of_each_new_thread_before_the_thread_runs() -> None:
+def test_recorder_knows_each_new_thread_first() -> None:
     order: list[str] = []
     watch = ThreadWatch(lambda: order.append("heard"))
     watch.begin()
@@ -133,7 +133,7 @@ def test_the_recorder_is_notified_of_each_new_thread_before_the_thread_runs() ->
     assert order[-2:] == ["second", "after"]
 
 
-def test_a_thread_starter_that_other_code_replaced_is_left_in_place(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_replaced_thread_starter_stays_in_place(monkeypatch: pytest.MonkeyPatch) -> None:
     import _thread
 
     usual: Any = _thread.start_new_thread
@@ -162,7 +162,7 @@ def _same_path(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("_same_path")
-def test_each_program_has_modules_and_a_search_path_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_program_has_its_own_modules_and_path(monkeypatch: pytest.MonkeyPatch) -> None:
     name, usual = "module_of_two_programs", list(sys.path)
     separate = SeparateModules(lambda: [one for one in sys.modules if one == name])
     made = {program: ModuleType(name) for program in ("a", "b")}
@@ -206,9 +206,7 @@ def test_the_module_name_of_a_file_has_its_packages(tmp_path: Path) -> None:
         (["a/b/src/p/.git", "a/b/build/"], "a/b/src/p"),
     ],
 )
-def test_the_project_of_a_node_is_its_repository_workspace_or_package(
-    tmp_path: Path, made: list[str], root: str
-) -> None:
+def test_node_project_is_its_repository_or_workspace(tmp_path: Path, made: list[str], root: str) -> None:
     folder = tmp_path / "a" / "b" / "src" / "p" / "inner"
     folder.mkdir(parents=True)
     for name in made:
@@ -221,7 +219,7 @@ def test_the_project_of_a_node_is_its_repository_workspace_or_package(
 
 
 @pytest.mark.usefixtures("_same_path")
-def test_folders_are_added_once_to_the_front_of_the_search_path() -> None:
+def test_folders_are_added_once_to_the_search_path() -> None:
     before = list(sys.path)
     on_search_path(Path("/a"), Path("/b"))
     on_search_path(Path("/b"), Path("/c"))
@@ -252,7 +250,7 @@ def test_tracebacks_show_the_text_that_runs(file: Path, known: bool) -> None:
 # events
 
 
-def test_events_are_equal_only_to_themselves_and_record_nothing_in_another_process() -> None:
+def test_events_record_nothing_in_another_process() -> None:
     first, second = Entries(list), Entries(list)
     first.append(1)
     assert first == first
@@ -265,7 +263,7 @@ def test_events_are_equal_only_to_themselves_and_record_nothing_in_another_proce
     assert isinstance(copied, Unheard)
 
 
-def test_shared_events_are_appended_to_the_events_of_the_running_thread() -> None:
+def test_shared_events_go_to_the_running_thread() -> None:
     own: list[Any] = []
     shared = SharedEntries(lambda: own)
     shared.append(1)
@@ -305,7 +303,7 @@ def test_flow_values_are_finite_and_limited() -> None:
 # code of a node
 
 
-def test_columns_in_characters_from_one_become_byte_offsets_from_zero() -> None:
+def test_character_columns_become_byte_offsets() -> None:
     text = "x = 1\né = y = 2\n"
     positions: Any = {(1, 1): 0, (2, 1): 1, (2, 5): 2, (9, 4): 3}
     assert _offsets(text, positions) == {(1, 1): (1, 0), (2, 1): (2, 0), (2, 5): (2, 5), (9, 4): (9, 0)}
@@ -331,7 +329,7 @@ def node_code(cache: Cache, plan: Any, overlay: Any = None, **more: Any) -> Node
     return NodeCode(plan, overlay or {}, **given)
 
 
-def test_code_is_compiled_once_for_each_text_plan_and_form(tmp_path: Path) -> None:
+def test_code_is_compiled_once_per_text_and_plan(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text("x = 1\ny = 2\n")
     cache, plan = Cache(), {path: {(1, 1): 0}}
@@ -358,7 +356,7 @@ def test_only_files_with_sites_or_replacements_are_handled(tmp_path: Path) -> No
     assert node.edited(first.resolve()) is None
 
 
-def test_sites_without_a_place_in_the_code_are_named_and_not_cached(tmp_path: Path) -> None:
+def test_sites_without_a_place_are_named(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text("x = 1\n")
     cache = Cache()

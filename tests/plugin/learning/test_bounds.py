@@ -79,9 +79,7 @@ def test_evidence_mixes_likelihood_ratios_of_higher_rates(n: int, passed: int, l
 
 @given(st.integers(0, 2**20), st.floats(0.2, 0.98), st.floats(0.2, 0.98))
 @settings(deadline=None)
-def test_the_expected_evidence_does_not_grow_if_the_rate_is_not_higher(
-    seed: int, least: float, part: float
-) -> None:
+def test_expected_evidence_does_not_grow_at_lower_rates(seed: int, least: float, part: float) -> None:
     p, n = least * part, int(np.random.default_rng(seed).integers(0, 12))
     for passed in range(n + 1):
         now = math.exp(evidence_above(passed, n, least)) if n else 1.0
@@ -93,9 +91,7 @@ def test_the_expected_evidence_does_not_grow_if_the_rate_is_not_higher(
 
 @given(st.integers(1, 300), st.integers(0, 300), CONFIDENCES)
 @settings(deadline=None)
-def test_anytime_bounds_are_wider_than_bounds_at_a_fixed_size(
-    episodes: int, passed: int, confidence: float
-) -> None:
+def test_anytime_bounds_are_wider_than_fixed_bounds(episodes: int, passed: int, confidence: float) -> None:
     passed = min(passed, episodes)
     always, once = rate_sequence(passed, episodes, confidence), rate(passed, episodes, confidence)
     assert 0.0 <= always.low <= once.low + 1e-9
@@ -137,9 +133,7 @@ def test_more_episodes_give_tighter_bounds() -> None:
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=200), st.floats(0.01, 0.5), CONFIDENCES)
 @settings(deadline=None)
-def test_a_quantile_has_a_bound_once_there_are_enough_episodes(
-    totals: list[float], share: float, confidence: float
-) -> None:
+def test_quantile_needs_enough_episodes(totals: list[float], share: float, confidence: float) -> None:
     low = quantile_low(totals, share, confidence)
     assert (low is None) == (len(totals) < episodes_for_quantile(share, confidence))
     if low is not None:
@@ -148,7 +142,7 @@ def test_a_quantile_has_a_bound_once_there_are_enough_episodes(
 
 
 @pytest.mark.parametrize("draw", ["normal", "exponential", "lognormal"])
-def test_bounds_of_a_shift_have_the_stated_coverage_for_skewed_totals(
+def test_shift_bounds_cover_skewed_totals(
     draw: str,
 ) -> None:
     held = np.zeros(2)
@@ -167,7 +161,7 @@ def test_loss_bound_in_a_declared_range_adds_both_bounds() -> None:
     assert 0.6 < found.low < 0.8 <= found.high
 
 
-def test_two_episodes_give_no_bound_and_constant_totals_give_an_exact_bound() -> None:
+def test_two_episodes_give_no_bound() -> None:
     assert loss_between([1.0, 2.0], [1.0, 2.0], 0.95).low == -math.inf
     never = loss_between([3.0] * 20, [3.0] * 8, 0.95)
     assert never.low == never.high == 0.0
@@ -175,7 +169,7 @@ def test_two_episodes_give_no_bound_and_constant_totals_give_an_exact_bound() ->
 
 @given(st.integers(0, 2**20), st.sampled_from([1e-200, 1e-3, 1e3, 1e100]))
 @settings(deadline=None, max_examples=15)
-def test_bounds_of_a_loss_scale_with_the_unit_of_the_reward(seed: int, unit: float) -> None:
+def test_loss_bounds_scale_with_the_reward_unit(seed: int, unit: float) -> None:
     draws = np.random.default_rng(seed)
     before, after = draws.normal(size=30), draws.normal(size=10)
     one = loss_between(before.tolist(), after.tolist(), 0.9)

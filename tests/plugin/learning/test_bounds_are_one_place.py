@@ -80,7 +80,7 @@ def computed(source: str) -> Iterator[str]:
         "error = sqrt(variance(values) / len(values))",
     ],
 )
-def test_the_check_detects_an_interval_that_is_computed_outside_the_module_bounds(source: str) -> None:
+def test_interval_outside_the_bounds_module_is_detected(source: str) -> None:
     assert [*computed(source)]
 
 

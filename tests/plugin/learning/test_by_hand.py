@@ -79,9 +79,7 @@ def episodes(*visited: list[Cell], reward: float = 1.0, cells: tuple[Cell, ...] 
         ({"p_failures": 0.04, "success": (0.5, 0.9), "p_drift": 0.04}, "drifted"),
     ],
 )
-def test_a_verdict_follows_from_its_p_values_losses_and_tolerances(
-    change: dict[str, float], expected: str
-) -> None:
+def test_verdict_follows_from_p_values_and_tolerances(change: dict[str, float], expected: str) -> None:
     assert judged(replace(VERDICT, **change), 0.05).result == expected  # type: ignore[arg-type]
 
 
@@ -93,7 +91,7 @@ def test_a_verdict_states_whether_reward_or_successes_decreased() -> None:
     assert [one.failures_only for one in found] == [False, True, False, False]
 
 
-def test_loss_and_failures_of_a_comparison_are_corrected_by_the_same_factor() -> None:
+def test_loss_and_failures_share_their_correction() -> None:
     one = replace(VERDICT, p_loss=0.03, p_failures=0.01, success=(1.0, 0.5), loss=0.2)
     two = replace(VERDICT, p_loss=0.02, p_failures=0.9, loss=0.2)
     first, second = corrected([one, two], 0.05)
@@ -175,7 +173,7 @@ def test_stake_of_a_bet_grows_with_the_gap() -> None:
     assert betting._bounded(5.0, 1.0, -1.0, 0.5) == 5.0
 
 
-def test_a_betting_test_stops_once_further_episodes_cannot_decide_it() -> None:
+def test_hopeless_betting_test_stops() -> None:
     one = Bet(1.0, -2.0, (0.5,))
     even = [0.5, -0.5] * 10
     best = 1.0  # the bound of the mean at 0.5 % lies well below it
@@ -217,14 +215,14 @@ def test_binomial_coefficients_probabilities_and_tails_equal_known_values() -> N
 
 
 @given(st.floats(0.01, 0.99))
-def test_bisection_finds_the_largest_value_for_which_the_condition_holds(edge: float) -> None:
+def test_bisection_finds_the_largest_valid_value(edge: float) -> None:
     assert root(lambda value: value <= edge, 0.0, 1.0) == pytest.approx(edge, abs=1e-12)
     assert root(lambda _: False, 0.0, 1.0) == 0.0
     coarse = root(lambda value: value <= edge, 0.0, 1.0, 3)
     assert coarse == int(edge * 8) / 8
 
 
-def test_the_risk_spent_grows_with_the_square_of_the_share_of_episodes() -> None:
+def test_spent_risk_grows_quadratically() -> None:
     assert planned(40, 3) == (Look(10, 1 / 16), Look(20, 3 / 16), Look(40, 3 / 4))
     assert planned(39, 3) == (Look(19, (19 / 39) ** 2), Look(39, 1 - (19 / 39) ** 2))
     assert planned(5, 3) == (Look(5, 1.0),)
@@ -265,7 +263,7 @@ def test_check_ends_a_comparison_only_with_loss_and_region(
     assert certain(Difference(replace(VERDICT, result=result), region, {})) is expected
 
 
-def test_episodes_count_as_varying_if_one_episode_differs_in_any_column() -> None:
+def test_one_different_column_makes_episodes_vary() -> None:
     same = episodes([(0,), (1,)], [(0,), (1,)])
     assert not varies(same)
     assert not varies(episodes([(0,), (1,)]))
@@ -292,7 +290,7 @@ def test_a_recording_states_bounds_on_success_mean_and_quantile() -> None:
 GOOD, BAD, UNKNOWN = Judged("g", 0.5), Judged("g", -0.25, 3.5), Judged("g", nan)
 
 
-def test_a_formula_counts_only_episodes_in_which_it_was_judged() -> None:
+def test_formula_counts_only_judged_episodes() -> None:
     several = stacked([[GOOD], [BAD], [UNKNOWN], [], [Judged("g", -0.75, 2.5), Judged("a", 1.0)]])
     assert several is not None
     assert several.formulas == ("a", "g")
@@ -313,7 +311,7 @@ def test_a_formula_counts_only_episodes_in_which_it_was_judged() -> None:
     assert stacked([[], []]) is None
 
 
-def test_formulas_keep_the_given_order_and_additional_formulas_are_sorted_by_name() -> None:
+def test_additional_formulas_are_sorted_by_name() -> None:
     one = judgements([GOOD, Judged("b", 1.0), Judged("a", 1.0)])
     found = rows(["g", "never"], {"offline": None, "online": one})
     assert [row.formula for row in found] == ["g", "never", "a", "b"]
@@ -349,7 +347,7 @@ def test_sensors_that_have_only_new_values_are_excluded() -> None:
     assert not apart(episodes(KNOWN), episodes([*NEW, (0, 1)]))
 
 
-def test_cells_that_differ_only_in_a_left_out_sensor_are_joined() -> None:
+def test_cells_that_differ_in_a_left_out_sensor_are_joined() -> None:
     found, row = groups([(0, 1), (0, 2), (3, 1)], [1])
     assert (found, row.tolist()) == (((0,), (3,)), [0, 0, 1])
     short = projected(episodes([(0, 1), (0, 2), (3, 1)]), [1])
@@ -358,7 +356,7 @@ def test_cells_that_differ_only_in_a_left_out_sensor_are_joined() -> None:
     assert short.chain.next_cell.tolist() == [END] * 3
 
 
-def test_an_unknown_utility_is_the_mean_of_similar_cells_weighted_by_visits() -> None:
+def test_unknown_utility_is_a_mean_of_similar_cells() -> None:
     table = np.array([[1.0], [4.0], [nan], [nan]])
     visits = Visits(
         np.zeros(3, np.int64), np.array([0, 1, 2]), np.array([9, 1, 2]), *(np.zeros(3) for _ in range(4))
@@ -370,12 +368,12 @@ def test_an_unknown_utility_is_the_mean_of_similar_cells_weighted_by_visits() ->
     assert found[:, 0].tolist() == pytest.approx([1.0, 4.0, 3.0, nan], nan_ok=True)
 
 
-def test_parts_of_the_reward_are_averaged_per_episode_in_both_worlds() -> None:
+def test_reward_parts_are_averaged_per_episode() -> None:
     one, two = episodes([(0,), (2,)], [(2,)]), replace(episodes([(0,)]), part_names=("a", "c"))
     assert means(one, two) == {"a": (3.0, 2.0), "b": (-1.0, 0.0), "c": (0.0, 0.0)}
 
 
-def test_cells_where_a_part_is_lost_are_named_by_part() -> None:
+def test_cells_with_a_lost_part_are_named() -> None:
     """In each cell, part b earns minus the number of that cell: the part loses 3 in cell 3 and gains in cell 2."""
     usual = [episodes([(0,), (1,)], [(0,), (1,)], cells=((2,), (3,))) for _ in range(8)]
     moved = [episodes([(0,), (3,)], [(0,), (3,)], cells=((1,), (2,))) for _ in range(8)]
@@ -404,7 +402,7 @@ def test_a_loss_is_named_only_below_the_level_and_if_it_is_material(monkeypatch:
     assert lost(usual, moved, 0.05, np.random.default_rng(0)) == {"b": ((0,), (1,))}
 
 
-def test_the_interval_of_a_shift_is_about_symmetric_for_symmetric_totals() -> None:
+def test_symmetric_totals_have_a_symmetric_interval() -> None:
     before = np.array([-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0] * 3)
     low, high = shifts(before + 1.0, before, 0.05)
     assert low < 1.0 < high
@@ -417,7 +415,7 @@ def test_the_interval_of_a_shift_is_about_symmetric_for_symmetric_totals() -> No
 A, B, C, D = (SitePlace(name, "n.py", line, name, "data", "assign") for line, name in enumerate("ABCD"))
 
 
-def test_sites_are_ranked_by_their_share_of_the_largest_difference() -> None:
+def test_sites_are_ranked_by_share_of_the_difference() -> None:
     first = [
         Slice(A, "l", 4.0, 0.0),
         Slice(B, "l", 0.0, 2.0),
@@ -460,7 +458,7 @@ def test_sites_whose_constants_changed_nothing_come_last() -> None:
     assert [one.site for one in culprits(ranked, effects, ["D"], 6.0)] == [D, B, C, A]
 
 
-def test_the_footprint_of_episodes_is_estimated_from_the_first_three(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_episode_footprint_comes_from_the_first_three(monkeypatch: pytest.MonkeyPatch) -> None:
     one = episodes([(0,)] * 10)
     size = footprint.nbytes(one)
     assert size == sum(column.nbytes for column in vars(one.chain).values()) + 1 + 8 + 8

@@ -89,7 +89,7 @@ def survived(content: bytes) -> bytes | None:
 @given(st.integers(0, len(WHOLE) * 8 - 1))
 @example(WHOLE.index(b"PK\x01\x02") * 8 + 8 * 8)  # damaged flags of a zip member raise NotImplementedError
 @example(WHOLE.index(b"PK\x01\x02") * 8 + 10 * 8 + 1)  # damaged compression method of a zip member
-def test_a_recording_with_a_flipped_bit_is_refused_or_means_the_same(bit: int) -> None:
+def test_recording_with_a_flipped_bit_is_refused_or_unchanged(bit: int) -> None:
     content = bytearray(WHOLE)
     content[bit // 8] ^= 1 << bit % 8
     assert survived(bytes(content)) in (None, WHOLE)
@@ -107,9 +107,7 @@ def test_numbers_changed_within_their_range_are_refused() -> None:
 
 @FUZZ
 @given(st.integers(0, len(WHOLE)), st.binary(max_size=30), st.integers(0, 30))
-def test_a_truncated_or_spliced_recording_is_refused_or_means_the_same(
-    at: int, put: bytes, skipped: int
-) -> None:
+def test_truncated_recording_is_refused_or_unchanged(at: int, put: bytes, skipped: int) -> None:
     assert survived(WHOLE[:at] + put + WHOLE[at + skipped :]) in (None, WHOLE)
 
 
@@ -185,7 +183,7 @@ VALUES = st.sampled_from([-(2**62), -2, -1, 0, 1, 7, 10**6, 2**62])
 
 @FUZZ
 @given(st.data())
-def test_a_recording_with_inconsistent_columns_is_refused_or_remains_usable(data: st.DataObject) -> None:
+def test_inconsistent_recording_is_refused_or_usable(data: st.DataObject) -> None:
     header, columns = parts()
     name = data.draw(st.sampled_from(sorted(columns)))
     column = columns[name]
@@ -245,9 +243,7 @@ def test_headers_with_other_values_are_refused_or_usable(data: st.DataObject) ->
 
 
 @pytest.mark.parametrize("old", ["bits", "folder"])
-def test_a_damaged_recording_is_reported_before_any_episode_and_can_be_replaced(
-    tank: pytest.Pytester, old: str
-) -> None:
+def test_damaged_recording_is_reported_before_any_episode(tank: pytest.Pytester, old: str) -> None:
     tank.runpytest("--tarl-record", "--tarl-episodes=4").assert_outcomes(passed=1)
     (path,) = (tank.path / ".tarl" / "utility").glob("*.npz")
     good = path.read_bytes()

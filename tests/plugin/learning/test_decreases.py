@@ -43,9 +43,7 @@ def test_success_test_does_not_change_the_p_value_of_the_loss() -> None:
 
 
 @pytest.mark.parametrize(("recorded", "deployed", "failed"), [(12, 6, 4), (10, 5, 5), (20, 3, 2)])
-def test_failures_with_a_constant_reward_have_the_exact_p_value_of_fisher(
-    recorded: int, deployed: int, failed: int
-) -> None:
+def test_failures_with_constant_reward_use_fishers_test(recorded: int, deployed: int, failed: int) -> None:
     one = np.ones((recorded, 2))
     other = np.ones((deployed, 2))
     other[:failed, 1] = 0.0
@@ -57,7 +55,7 @@ def test_failures_with_a_constant_reward_have_the_exact_p_value_of_fisher(
     assert p_loss == 1.0
 
 
-def test_an_increase_of_failures_is_found_even_if_the_reward_increases() -> None:
+def test_more_failures_are_found_despite_more_reward() -> None:
     rng = generator(2, "early")
     one = np.stack([rng.normal(-10.0, 1.0, 40), np.ones(40)], axis=1)
     other = np.stack([rng.normal(-6.0, 1.0, 20), (rng.random(20) < 0.6).astype(float)], axis=1)

@@ -59,7 +59,7 @@ def test_a_comparison_of_equal_worlds_rarely_reports_a_difference() -> None:
     assert sum(verdict.result == "degraded" for verdict in found) <= 4
 
 
-def test_a_cell_in_which_the_robot_is_slower_is_degraded_and_named() -> None:
+def test_slower_cell_is_degraded_and_named() -> None:
     found = judged(world(0, 60), world(1000, 30, slow_at=4))
     assert found.verdict.result == "degraded"
     assert found.verdict.p_drift < 0.01
@@ -92,7 +92,7 @@ def test_the_permutation_test_of_the_loss_is_one_sided() -> None:
     assert permuted_loss(low, high, generator(0, "a")) > 0.9
 
 
-def test_the_interval_covers_the_true_loss_even_with_unequal_variances() -> None:
+def test_interval_covers_the_loss_with_unequal_variances() -> None:
     draws = np.random.default_rng(5)
     held = 0
     for _ in range(300):
@@ -109,14 +109,14 @@ def test_constant_columns_are_never_significant() -> None:
     assert p_values[[0, 2]].tolist() == [1.0, 1.0]
 
 
-def test_the_region_of_the_paper_has_cells_with_half_the_largest_difference() -> None:
+def test_paper_region_covers_half_of_the_largest_difference() -> None:
     offline = np.array([[0.0, 0.0], [1.0, 1.0], [5.0, np.nan], [1.0, 0.0]])
     online = np.array([[-4.0, 0.0], [0.0, 0.0], [np.nan, 2.0], [1.0, 0.0]])
     assert paper_region(offline, online).tolist() == [0, 1]
     assert paper_region(offline, offline).tolist() == []
 
 
-def test_a_large_uncertain_difference_does_not_hide_a_certain_difference() -> None:
+def test_uncertain_difference_does_not_hide_a_certain_one() -> None:
     difference = np.array([9.0, -0.5, 0.04, 0.2])
     found = outstanding(difference, np.array([False, True, True, True]))
     assert found.tolist() == [False, True, False, True]

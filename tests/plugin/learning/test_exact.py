@@ -26,7 +26,7 @@ GROUPS = [
 
 @pytest.mark.parametrize("risk", [0.05, 0.001])
 @pytest.mark.parametrize("number", range(len(GROUPS)))
-def test_the_interval_of_a_difference_uses_welchs_degrees_of_freedom(number: int, risk: float) -> None:
+def test_difference_interval_uses_welchs_degrees_of_freedom(number: int, risk: float) -> None:
     first, second = GROUPS[number]
     low, high = difference_bounds(first, second, risk)
     wanted = stats.ttest_ind(first, second, equal_var=False).confidence_interval(1 - 2 * risk)
@@ -34,7 +34,7 @@ def test_the_interval_of_a_difference_uses_welchs_degrees_of_freedom(number: int
 
 
 @pytest.mark.parametrize("count", [2, 3, 10, 21, 60])
-def test_the_interval_of_a_mean_is_the_student_t_interval(count: int) -> None:
+def test_mean_interval_is_student_t(count: int) -> None:
     values = [float(n * n % 17) for n in range(count)]
     wanted = stats.t.interval(0.95, count - 1, np.mean(values), stats.sem(values))
     assert mean_bounds(values, 0.95) == pytest.approx(wanted, rel=1e-4)
@@ -66,7 +66,7 @@ def test_bounds_by_betting_increase_with_the_accepted_risk() -> None:
     assert bet_low(np.ones(1), 0.05) < 0.2
 
 
-def test_a_loss_is_detectable_only_if_a_permutation_can_be_significant() -> None:
+def test_detectable_loss_needs_a_significant_permutation() -> None:
     few, many = np.array([1.0, 2.0, 3.0]), np.arange(30.0)
     assert detectable_loss(few, few[:2], 1.01 / comb(5, 2)) < np.inf
     assert detectable_loss(few, few[:2], 0.99 / comb(5, 2)) == np.inf
@@ -85,7 +85,7 @@ def world(cells_of_episodes: list[list[int]], cells: int) -> SimpleNamespace:
 
 
 @pytest.mark.parametrize("others", [0, 1, 4])
-def test_an_avoided_cell_is_significant_after_a_correction_for_the_missing_cells(others: int) -> None:
+def test_avoided_cell_is_significant_after_correction(others: int) -> None:
     everyone, online = 12, 4
     off = [
         [0, 1, *range(2, 2 + others)] for _ in range(everyone - online)
@@ -99,13 +99,13 @@ def test_an_avoided_cell_is_significant_after_a_correction_for_the_missing_cells
         assert found.tolist() == [False, *[answer] * (1 + others)]
 
 
-def test_a_region_has_the_significant_cells_with_a_large_difference() -> None:
+def test_region_has_significant_cells_with_large_differences() -> None:
     difference = np.array([-10.0, 10.0 * MATERIAL, 9.99 * MATERIAL, 50.0, 0.0])
     significant = np.array([True, True, True, False, True])
     assert outstanding(difference, significant).tolist() == [True, True, False, False, False]
 
 
-def test_slices_sum_the_cells_of_the_region_that_both_worlds_visited() -> None:
+def test_slices_sum_cells_that_both_worlds_visited() -> None:
     nan = np.nan
     offline = np.array([[1.0, nan], [2.0, 4.0], [nan, nan], [100.0, 100.0]])
     online = np.array([[0.5, 7.0], [nan, 1.0], [3.0, 3.0], [0.0, 0.0]])
@@ -137,7 +137,7 @@ def test_ridge_shrinks_tile_weights_by_the_expected_amount(
     assert ridge > 0
 
 
-def test_cells_that_were_never_visited_do_not_change_the_ridge() -> None:
+def test_unvisited_cells_do_not_change_the_ridge() -> None:
     count, reward = np.array([30, 10]), np.array([60.0, -5.0])
     chain = Chain(
         episode=np.zeros(2, np.int64),

@@ -54,7 +54,7 @@ def close(first: Sample, second: Sample) -> bool:
     )
 
 
-def test_a_recording_is_equal_after_it_is_saved_and_loaded(tmp_path: Path) -> None:
+def test_recording_is_equal_after_loading(tmp_path: Path) -> None:
     fixture, path = example(), tmp_path / "deep" / "a.npz"
     save(fixture, path)
     loaded = load(path)
@@ -99,7 +99,7 @@ def test_numbers_are_restored_within_five_in_a_million(values: list[float]) -> N
     assert np.allclose(found, table, rtol=6e-6, atol=0, equal_nan=True)
 
 
-def test_an_older_format_is_refused_with_the_command_that_records_again(
+def test_older_format_names_the_command_to_record_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.npz"
@@ -112,9 +112,7 @@ def test_an_older_format_is_refused_with_the_command_that_records_again(
         load(path)
 
 
-def test_a_newer_format_is_refused_with_the_version_to_use(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_newer_format_names_the_required_version(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.npz"
     monkeypatch.setattr(fixtures, "FORMAT_VERSION", 3)
     save(example(), path)
@@ -123,7 +121,7 @@ def test_a_newer_format_is_refused_with_the_version_to_use(
         load(path)
 
 
-def test_a_header_with_missing_parts_is_refused_despite_its_valid_digest(tmp_path: Path) -> None:
+def test_incomplete_header_is_refused_despite_its_digest(tmp_path: Path) -> None:
     header: dict[str, object] = {"format": fixtures.FORMAT_VERSION, "test": "t"}
     header["digest"] = fixtures._digest(header, {})
     path = tmp_path / "a.npz"
@@ -132,7 +130,7 @@ def test_a_header_with_missing_parts_is_refused_despite_its_valid_digest(tmp_pat
         load(path)
 
 
-def test_equal_episodes_give_equal_bytes_and_no_temporary_file_remains(tmp_path: Path) -> None:
+def test_equal_episodes_give_equal_bytes(tmp_path: Path) -> None:
     first, second = tmp_path / "a.npz", tmp_path / "b.npz"
     save(example(), first)
     save(example(), second)
@@ -170,9 +168,7 @@ def test_archives_of_other_programs_and_pickled_files_are_refused(tmp_path: Path
         load(path)
 
 
-def test_the_error_about_a_file_of_another_format_names_the_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_foreign_format_error_names_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.npz"
     monkeypatch.setattr("pytest_tarl.learning.fixture.FORMAT_VERSION", 99)
     save(example(), path)
@@ -181,7 +177,7 @@ def test_the_error_about_a_file_of_another_format_names_the_file(
         load(path)
 
 
-def test_the_error_for_a_missing_recording_names_the_command_to_run(tmp_path: Path) -> None:
+def test_missing_recording_error_names_the_command(tmp_path: Path) -> None:
     with pytest.raises(FixtureError, match=r"no such recording.*--tarl-record"):
         load(tmp_path / "a.npz")
 

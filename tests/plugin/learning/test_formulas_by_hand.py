@@ -33,9 +33,7 @@ def wealth(values: list[float], m: float, risk: float, anytime: bool) -> float:
     "values",
     [[1.0] * 5, [0.9] * 12, [1.0, 0.0, 1.0, 1.0, 0.5] * 4, [0.2, 0.4, 0.3] * 10, [0.75, 0.8, 0.7, 0.9] * 25],
 )
-def test_the_bound_is_the_largest_mean_that_the_bets_refute(
-    values: list[float], risk: float, anytime: bool
-) -> None:
+def test_bound_is_the_largest_refuted_mean(values: list[float], risk: float, anytime: bool) -> None:
     low = bet_low(np.array(values), risk, anytime=anytime)
     assert 0.0 < low < sum(values) / len(values)
     assert wealth(values, low * 0.999, risk, anytime) > log(1 / risk)
@@ -72,7 +70,7 @@ def test_visits_are_the_sums_of_their_outgoing_edges() -> None:
     assert found == [[0, 0, 1, 1], [0, 2, 0, 2], [1, 7, 1, 2]]
 
 
-def test_values_are_predicted_by_the_previous_row_unless_it_is_zero() -> None:
+def test_prediction_is_the_previous_nonzero_row() -> None:
     signs = np.array([1, -1, 1, 0, 1, 1], np.int8)
     away = np.array([3, 2, -1, 0, 4, 5]) * UNIT
     before = np.array([-1, 0, 1, 2, 3, -1])

@@ -81,7 +81,7 @@ def visited(world: Sample) -> set[Cell]:
     return {world.cells[i] for i in np.unique(world.chain.cell).tolist()}
 
 
-def test_a_region_contains_only_cells_that_a_deployed_episode_visited() -> None:
+def test_region_contains_only_visited_cells() -> None:
     named = wrong = left = 0
     for seed in range(TIMES):
         offline, online = worlds(seed)
@@ -95,7 +95,7 @@ def test_a_region_contains_only_cells_that_a_deployed_episode_visited() -> None:
     assert left > 0.05 * TIMES
 
 
-def test_a_sensor_that_is_new_everywhere_is_left_out_of_the_comparison() -> None:
+def test_sensor_with_only_new_values_is_left_out() -> None:
     before = merge([mission(seed, -0.1, seed % 2, -1) for seed in range(30)])
     after = merge([mission(seed + 500, 5.0, 2, -1) for seed in range(10)])
     offline, online = aligned(before, after)
@@ -107,7 +107,7 @@ def test_a_sensor_that_is_new_everywhere_is_left_out_of_the_comparison() -> None
     assert max(found.changes, key=lambda cell: found.changes[cell]) == (2, 2)
 
 
-def test_no_sensor_is_left_out_if_the_worlds_share_cells() -> None:
+def test_no_sensor_is_left_out_with_common_cells() -> None:
     before = merge([mission(seed, -0.1, seed % 2, -1) for seed in range(30)])
     offline, online = aligned(before, merge([mission(seed + 500, 5.0, 1, -1) for seed in range(10)]))
     assert left_out(offline, online) == ()
@@ -122,7 +122,7 @@ def test_leaving_out_a_sensor_keeps_all_steps_and_rewards() -> None:
     assert short.chain.reward.sum() == world.chain.reward.sum()
 
 
-def test_cells_without_a_recording_take_the_utility_of_similar_cells() -> None:
+def test_unrecorded_cells_take_the_utility_of_similar_ones() -> None:
     before = merge([mission(seed, -0.1, 0, -1) for seed in range(20)])
     offline, _ = aligned(before, merge([mission(seed + 500, 5.0, 2, -1) for seed in range(10)]))
     table = batch(offline.lists[0], len(offline.cells), 1.0)
@@ -177,7 +177,7 @@ def reported(culprits: tuple[Culprit, ...], sites: list[list[Slice]]) -> None:
 
 @given(LISTS, st.frozensets(SITES))
 @settings(max_examples=TIMES, deadline=None)
-def test_sites_that_can_be_changed_come_first_and_ranks_follow_scores(
+def test_changeable_sites_come_first(
     lists: list[dict[int, tuple[float, float]]], changeable: frozenset[int]
 ) -> None:
     per_list = [

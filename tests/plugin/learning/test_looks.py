@@ -28,7 +28,7 @@ def test_checks_together_spend_all_of_alpha(episodes: int, looks: int) -> None:
     assert len(plan) <= looks
 
 
-def test_a_comparison_of_forty_episodes_is_checked_after_ten_and_after_twenty() -> None:
+def test_forty_episodes_are_checked_after_ten_and_twenty() -> None:
     assert [look.episodes for look in planned(40, 3)] == [10, 20, 40]
 
 
@@ -50,7 +50,7 @@ def test_p_values_are_corrected_for_the_number_of_checks() -> None:
     )
 
 
-def test_several_checks_do_not_raise_the_rate_of_false_alarms() -> None:
+def test_several_checks_keep_the_false_alarm_rate() -> None:
     """Without a difference, p-values are uniform; here they are correlated like those of growing samples."""
     draws = generator(0, "looks")
     plan = planned(40, 3)

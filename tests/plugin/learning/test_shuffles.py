@@ -30,7 +30,7 @@ class Tied:
 
 
 @pytest.mark.parametrize("kind", ["distinct", "tied"])
-def test_each_shuffle_sums_as_many_rows_as_the_group_has(kind: str) -> None:
+def test_each_shuffle_sums_the_rows_of_the_group(kind: str) -> None:
     for seed, (rows, first) in enumerate([(12, 5), (400, 399), (400, 1), (40, 3)]):
         draws = Tied(seed) if kind == "tied" else generator(seed, "draws")
         values = np.stack([np.ones(rows), np.arange(rows, dtype=float)], axis=1)
@@ -88,7 +88,7 @@ def test_undecisive_shuffles_do_not_change_small_p_values(
 
 
 @pytest.mark.parametrize(("offline", "online"), [(1, 1), (4, 2), (6, 2), (3, 3), (5, 5), (9, 1)])
-def test_small_samples_are_compared_in_every_group_that_they_can_form(offline: int, online: int) -> None:
+def test_small_samples_are_compared_in_every_grouping(offline: int, online: int) -> None:
     for seed in range(3):
         rng = generator(seed, "small")
         one, other = rng.normal(0.0, 1.0, offline), rng.normal(-0.7, 1.0, online).round(1)

@@ -124,6 +124,6 @@ def test_unexpected_number_of_episodes_or_cells_is_refused(
     assert not sound(replace(SAMPLE, **wrong))
 
 
-def test_tables_need_a_row_per_cell_and_a_column_per_site() -> None:
+def test_tables_need_a_row_per_cell() -> None:
     with pytest.raises(DamagedError):
         check(SAMPLE, len(FIXTURE.sensors), [TABLES[0][:-1], *TABLES[1:]])

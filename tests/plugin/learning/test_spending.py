@@ -39,7 +39,7 @@ def test_most_nearly_decided_comparison_continues() -> None:
     assert next_look(standings[3], LOOKS) is None
 
 
-def test_each_comparison_errs_at_most_with_probability_alpha_however_episodes_are_shared() -> None:
+def test_shared_episodes_keep_the_error_probability() -> None:
     """Four comparisons without a drift: each is found drifted in at most α of the runs."""
     alpha, runs, total = 0.05, 1500, 160
     looks = schedule(total, 4, 3)

@@ -54,7 +54,7 @@ def same(first: Sample, second: Sample) -> bool:
 
 
 @given(st.integers(0, 10**6))
-def test_rewards_of_events_add_up_to_the_total_of_the_episode(seed: int) -> None:
+def test_event_rewards_add_up_to_the_total(seed: int) -> None:
     trace = random_trace(seed)
     for members in MEMBERS:
         (sequence,) = event_sequences(trace, members)
@@ -82,7 +82,7 @@ def only(trace: Trace, thread: int) -> Trace:
 
 
 @given(st.integers(0, 10**6), st.integers(2, 4))
-def test_every_thread_has_its_own_sequence_and_rewards_still_add_up(seed: int, threads: int) -> None:
+def test_threads_have_their_own_sequences(seed: int, threads: int) -> None:
     trace = threaded(seed, threads)
     for members in MEMBERS:
         found = event_sequences(trace, members)
@@ -142,9 +142,7 @@ def test_threads_active_in_one_step_share_its_reward() -> None:
 
 @given(st.lists(st.integers(0, 50), min_size=1, max_size=8), st.randoms(use_true_random=False))
 @settings(max_examples=50)
-def test_merging_is_a_union_by_seed_independent_of_order_and_grouping(
-    seeds: list[int], random: object
-) -> None:
+def test_merging_is_independent_of_order(seeds: list[int], random: object) -> None:
     singles = [random_sample(seed) for seed in seeds]
     whole = merge(singles)
     assert whole.seeds == tuple(sorted(set(seeds)))
@@ -156,7 +154,7 @@ def test_merging_is_a_union_by_seed_independent_of_order_and_grouping(
     assert same(merge(groups), whole)
 
 
-def test_aligned_samples_have_the_same_cells_and_keep_their_sums() -> None:
+def test_aligned_samples_keep_cells_and_sums() -> None:
     first, second = merge([random_sample(1), random_sample(2)]), random_sample(3)
     a, b = aligned(first, second)
     assert a.cells == b.cells == tuple(sorted({*first.cells, *second.cells}))
@@ -167,7 +165,7 @@ def test_aligned_samples_have_the_same_cells_and_keep_their_sums() -> None:
         assert sorted(places) == sorted(moved)
 
 
-def test_a_step_without_events_gives_its_reward_to_the_latest_earlier_event() -> None:
+def test_silent_step_gives_its_reward_to_the_last_event() -> None:
     trace = Trace(
         cells=((0,),),
         site=np.array([0, 1, 0], np.int32),
@@ -202,9 +200,7 @@ def test_the_chain_counts_every_step_with_a_known_cell() -> None:
 
 @given(lengths=st.lists(st.integers(0, 300), max_size=12), seed=st.integers(0, 2**16))
 @settings(max_examples=40)
-def test_totals_of_many_episodes_equal_the_totals_of_single_episodes_bitwise(
-    lengths: list[int], seed: int
-) -> None:
+def test_joint_totals_equal_single_episodes(lengths: list[int], seed: int) -> None:
     draws = np.random.default_rng(seed)
     reward = draws.normal(size=sum(lengths)) * 10.0 ** draws.integers(-8, 8, sum(lengths))
     ends = np.concatenate(([0], np.cumsum(np.array(lengths, np.int64))))

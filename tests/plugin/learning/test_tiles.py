@@ -44,14 +44,14 @@ def test_tiles_of_an_angle_wrap_around_its_range() -> None:
     assert {*tiles.of[0]} & {*tiles.of[7]}
 
 
-def test_tiles_and_table_learn_equal_values_of_a_linear_random_walk() -> None:
+def test_tiles_learn_the_values_of_a_table() -> None:
     tiles = tiled([(i,) for i in range(WALK)], [PLACE])
     learned = tiled_chain(walks(), WALK, tiles, gamma=1.0)
     assert learned == pytest.approx(np.arange(1, 6) / 6, abs=0.08)
     assert learned == pytest.approx(chain_utility(walks(), WALK, gamma=1.0), abs=0.03)
 
 
-def test_an_unvisited_cell_takes_its_value_from_tiles_of_its_neighbours() -> None:
+def test_unvisited_cell_takes_values_of_neighbouring_tiles() -> None:
     chain = walks()
     cells = [(i,) for i in range(WALK + 3)]
     tiles = tiled(cells, [replace(PLACE, bins=WALK + 3)])
@@ -64,7 +64,7 @@ def test_an_unvisited_cell_takes_its_value_from_tiles_of_its_neighbours() -> Non
     assert not np.isnan(tiled_chain(gap, WALK, tiled(cells[:WALK], [PLACE]), gamma=0.9)[2])
 
 
-def test_each_site_has_its_own_tiles_where_it_was_executed() -> None:
+def test_each_site_has_its_own_tiles() -> None:
     whole = merge([sample(walk_trace(seed), seed, True, ((0, 1),)) for seed in range(400)])
     tiles = tiled([(i,) for i in range(WALK)], [PLACE])
     table = tiled_batch(whole.lists[0], WALK, np.inf, tiles, gamma=0.9)

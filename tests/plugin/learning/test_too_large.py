@@ -58,7 +58,7 @@ def group(folder: Path, version: int, most: str, used: int, droppable: int) -> N
 
 
 @pytest.mark.parametrize(("version", "line"), [(2, "0::"), (1, "4:cpu,memory:")])
-def test_a_memory_limit_of_the_container_applies_at_any_level(
+def test_container_memory_limit_applies_at_any_level(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, version: int, line: str
 ) -> None:
     meminfo, groups, own = tmp_path / "meminfo", tmp_path / "cgroup", tmp_path / "own"

@@ -43,7 +43,7 @@ def walk_trace(seed: int) -> Trace:
     )
 
 
-def test_the_fixed_point_is_the_exact_solution_of_the_random_walk() -> None:
+def test_fixed_point_solves_the_random_walk() -> None:
     state = np.repeat(np.arange(WALK), 2)
     following = np.array([END, 1, 0, 2, 1, 3, 2, 4, 3, END])
     reward = np.array([0.0, 0.0, 0.0, 0.0, 1.0])  # one of the two exits of the last state earns 1
@@ -131,7 +131,7 @@ def test_an_infinite_scale_switches_off_the_flow_values() -> None:
     assert batch(recorded, 1, scale=2.5, gamma=0.5).tolist() == [[2.5, 1.0]]
 
 
-def test_sarsa_identifies_cells_by_value_and_not_by_index_in_a_trace() -> None:
+def test_sarsa_identifies_cells_by_value() -> None:
     learner = Sarsa(1, gamma=0.5, alpha=0.1)
     for cells, state in (([(4,)], 1), ([(9,), (4,)], 2)):
         sequence = EventSequence(np.array([START, state]), np.array([0.0, 1.0]), np.zeros(2), np.zeros(2))
@@ -141,7 +141,7 @@ def test_sarsa_identifies_cells_by_value_and_not_by_index_in_a_trace() -> None:
     assert np.isnan(table[1:, 0]).all()
 
 
-def test_solving_one_step_at_a_time_equals_solving_all_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_step_by_step_solution_equals_the_joint_one(monkeypatch: pytest.MonkeyPatch) -> None:
     draws = np.random.default_rng(3)
     state, following = np.repeat(np.arange(40), 5), draws.integers(-1, 40, 200)
     arguments = (state, following, draws.integers(1, 9, 200), draws.normal(size=40))
@@ -158,7 +158,7 @@ def test_the_iteration_continues_if_conjugate_gradients_break_down(monkeypatch: 
     assert values == pytest.approx(10 * (1 - 0.9 ** np.arange(300, 0, -1)))
 
 
-def test_solving_for_a_hundred_thousand_states_needs_no_dense_matrix() -> None:
+def test_hundred_thousand_states_need_no_dense_matrix() -> None:
     state = np.arange(100_000)
     following = np.append(state[1:], END)
     values = fixed_point(state, following, np.ones_like(state), np.ones(state.size), gamma=0.5)

@@ -32,9 +32,7 @@ def one_by_one(pool: np.ndarray, bins: np.ndarray, draws: np.ndarray) -> np.ndar
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 20), st.integers(1, 4), st.integers(0, 30))
-def test_ranks_computed_together_equal_ranks_computed_one_after_the_other(
-    seed: int, count: int, scores: int, offline: int
-) -> None:
+def test_joint_ranks_equal_sequential_ranks(seed: int, count: int, scores: int, offline: int) -> None:
     rng = np.random.default_rng(seed)
     pool = np.zeros((scores, BINS), np.int64)
     for score in range(scores):
@@ -96,7 +94,7 @@ def test_bins_are_ordered_and_rounding_changes_no_bin(values: list[float], unit:
         assert shaken[0] == shaken[1]
 
 
-def test_values_outside_the_fitted_range_have_bins_of_their_own() -> None:
+def test_outliers_have_their_own_bins() -> None:
     found = edges(np.random.default_rng(0).normal(size=100), 1.0)
     assert np.searchsorted(found, -100.0) == 0
     bins = np.searchsorted(found, [-100.0, -3.0, 0.0, 3.0, 100.0])

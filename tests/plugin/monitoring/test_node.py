@@ -37,9 +37,7 @@ def watching(root: Path, library: str, after: list[bytes]) -> list[Any]:
 
 
 @pytest.mark.parametrize("library", ["rospy", "rclpy"])
-def test_the_node_first_publishes_ok_and_later_publishes_that_the_world_changed(
-    root: Path, library: str
-) -> None:
+def test_node_publishes_ok_and_then_a_changed_world(root: Path, library: str) -> None:
     log(root / "m.log", walks(100, 2))
     heard = watching(root, library, [b"", content(walks(50, 3, drift=1.0))])
     assert len(heard) >= 4

@@ -73,7 +73,7 @@ def test_the_node_publishes_until_the_watch_ends(monkeypatch: pytest.MonkeyPatch
     assert done == ["no handlers", *(("now", one, True) for one in "abc"), "destroyed", "shut down"]
 
 
-def test_the_node_ends_if_it_is_stopped_or_rclpy_is_shut_down(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stopped_node_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     first = ["no handlers", ("now", "a", True)]
     assert run(monkeypatch, Rclpy(9), [(True, "w", "a")], stopped=True) == [*first, "destroyed", "shut down"]
     assert run(monkeypatch, Rclpy(0), [(True, "w", "a")]) == [*first, "destroyed"]
@@ -81,7 +81,7 @@ def test_the_node_ends_if_it_is_stopped_or_rclpy_is_shut_down(monkeypatch: pytes
     assert run(monkeypatch, Rclpy(9), looks) == [*first, "destroyed", "shut down"]
 
 
-def test_an_error_of_the_watch_ends_the_node_and_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_watch_error_ends_the_node(monkeypatch: pytest.MonkeyPatch) -> None:
     rclpy = Rclpy(9)
     with pytest.raises(ValueError, match="unreadable"):
         run(monkeypatch, rclpy, [ValueError("unreadable")])

@@ -211,7 +211,7 @@ def records_of(block: blocks.Block) -> Iterator[Record]:
         yield block.record()
 
 
-def test_missions_that_were_read_but_not_processed_are_read_again(tmp_path: Path) -> None:
+def test_unprocessed_missions_are_read_again(tmp_path: Path) -> None:
     some = walks(5, 3)
     reading = Reading(log(tmp_path / "m.log", some))
     for mission in reading.readers[0].missions():
@@ -231,7 +231,7 @@ def test_an_invalid_json_record_is_reported(tmp_path: Path) -> None:
     assert "is damaged at byte" in reading.problems[0]
 
 
-def test_the_cells_of_each_mission_are_read_from_a_log(tmp_path: Path) -> None:
+def test_mission_cells_are_read_from_a_log(tmp_path: Path) -> None:
     some = walks(4, 7)
     other = type(some[0])(((9, 9), (0, 0), (9, 9)), (1.0, 2.0, 3.0), True)
     path = log(tmp_path / "m.log", [*some, other])
@@ -245,7 +245,7 @@ def test_the_cells_of_each_mission_are_read_from_a_log(tmp_path: Path) -> None:
         assert mission.new == ()
 
 
-def test_a_rotated_log_is_finished_before_its_successor_is_read(tmp_path: Path) -> None:
+def test_rotated_log_is_finished_first(tmp_path: Path) -> None:
     some = walks(6, 2)
     path, old = tmp_path / "m.log", tmp_path / "m.log.1"
     log(path, some[:2])
@@ -265,7 +265,7 @@ def test_a_rotated_log_is_finished_before_its_successor_is_read(tmp_path: Path) 
     assert again.read() == 0
 
 
-def test_one_log_under_two_names_is_counted_once_and_reported(tmp_path: Path) -> None:
+def test_log_under_two_names_is_counted_once(tmp_path: Path) -> None:
     path = log(tmp_path / "m.log", walks(3, 2))
     os.link(path, tmp_path / "same.log")
     reading = Reading(path, tmp_path / "same.log")
@@ -325,7 +325,7 @@ def test_missions_of_another_recording_are_reported_and_not_counted(
     assert reading.problems == []
 
 
-def test_a_log_of_an_older_version_without_bins_is_read(tmp_path: Path) -> None:
+def test_old_log_without_bins_is_read(tmp_path: Path) -> None:
     begin = start()
     del begin["bins"]
     path = tmp_path / "m.log"

@@ -37,7 +37,7 @@ def naive(factors: np.ndarray) -> float:
     return float(value)
 
 
-def test_the_recursive_computation_equals_the_mixture_over_all_restarts_and_bets() -> None:
+def test_recursion_equals_the_mixture_over_restarts() -> None:
     factors = np.random.default_rng(0).uniform(0.3, 2.2, (40, BETS, 3))
     evidence = log_evidence(watched(factors))
     for process in range(3):
@@ -87,14 +87,14 @@ def test_evidence_beyond_the_largest_float_is_kept() -> None:
     assert processes.peak[0] == pytest.approx(log_evidence(processes)[0], rel=1e-12)
 
 
-def test_the_onset_is_the_mission_at_which_the_factors_changed() -> None:
+def test_onset_is_where_the_factors_changed() -> None:
     factors = np.concatenate([np.full((300, BETS, 1), 0.8), np.full((30, BETS, 1), 2.0)])
     processes = watched(factors)
     assert processes.onset.tolist() == [300]
     assert 300 < processes.alarm[0] < 330
 
 
-def test_the_onset_is_kept_when_the_evidence_falls_below_its_maximum_again() -> None:
+def test_onset_is_kept_when_evidence_falls() -> None:
     parts = [(300, 0.8), (30, 2.0), (200, 0.8), (4, 2.0)]
     factors = np.concatenate([np.full((count, BETS, 1), factor) for count, factor in parts])
     for portions in ([534], [320, 7, 207], [64] * 8 + [22]):
@@ -103,7 +103,7 @@ def test_the_onset_is_kept_when_the_evidence_falls_below_its_maximum_again() -> 
         assert processes.since[0, 0] == 530
 
 
-def test_the_onset_belongs_to_the_bet_with_the_largest_term() -> None:
+def test_onset_belongs_to_the_largest_term() -> None:
     factors = np.full((60, BETS, 2), 0.3)
     factors[20:40, 3, 0] = 3.0
     factors[10:50, 5, 1] = 1.8

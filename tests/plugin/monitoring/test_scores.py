@@ -67,16 +67,14 @@ def test_chain_totals_equal_recorded_totals(fitted: Scale, some: list[Walk]) -> 
 
 
 @given(some=st.lists(missions, min_size=2, max_size=8), cut=st.integers(1, 7))
-def test_scores_of_a_mission_do_not_depend_on_other_missions(
-    fitted: Scale, some: list[Walk], cut: int
-) -> None:
+def test_mission_scores_are_independent(fitted: Scale, some: list[Walk], cut: int) -> None:
     parts = [part for part in (some[:cut], some[cut:]) if part]
     whole = binned(fitted, sampled(fitted, columns(fitted, some)))
     found = [binned(fitted, sampled(fitted, columns(fitted, part))) for part in parts]
     np.testing.assert_array_equal(whole, np.concatenate(found))
 
 
-def test_logs_of_recorded_episodes_have_the_bins_of_the_recording(tmp_path: Path) -> None:
+def test_episode_logs_have_the_recorded_bins(tmp_path: Path) -> None:
     some = walks(60, 1)
     constant = [replace(one, reward=(-0.1,) * len(one.cells)) for one in some]
     for number, world in enumerate((some, constant)):
@@ -87,7 +85,7 @@ def test_logs_of_recorded_episodes_have_the_bins_of_the_recording(tmp_path: Path
         np.testing.assert_array_equal(held_out, bins[[n for seed, n in seeds if not in_fit(seed)]])
 
 
-def test_missing_steps_or_rewards_do_not_affect_the_other_scores(
+def test_missing_steps_do_not_affect_other_scores(
     fitted: Scale,
 ) -> None:
     known = walks(1, 5)[0]

@@ -49,7 +49,7 @@ def read(watched: Watch) -> bytes:
 
 @settings(max_examples=15)
 @given(ends=st.lists(st.integers(1, 30), max_size=6))
-def test_a_watch_continued_from_its_state_ends_with_the_same_bytes(world: Path, ends: list[int]) -> None:
+def test_resumed_watch_ends_with_the_same_bytes(world: Path, ends: list[int]) -> None:
     whole = read(begun(world, world / "whole.npz"))
     (world / "whole.npz").unlink()
     with pytest.MonkeyPatch.context() as patch:
@@ -141,7 +141,7 @@ def test_two_watches_cannot_share_a_state(tmp_path: Path) -> None:
         pass
 
 
-def test_a_watch_that_is_killed_and_restarted_saves_the_same_bytes(world: Path, tmp_path: Path) -> None:
+def test_killed_and_restarted_watch_saves_the_same_bytes(world: Path, tmp_path: Path) -> None:
     """After `kill -9` at any time while the log grows, the state may lack the last missions but is valid."""
     path, whole = tmp_path / "m.log", (world / "a.log").read_bytes()
     command = [

@@ -49,7 +49,7 @@ def test_steps_of_a_mission_without_new_cells_name_none() -> None:
     assert mission(log, steps(log, [[5, 1]], [0], [0.0]), steps(log, both, [1], [0.0])).new == ((9, 9),)
 
 
-def test_missions_of_logs_with_equal_and_with_different_cells_are_joined() -> None:
+def test_missions_of_different_logs_are_joined() -> None:
     first, second = assembly("a.log"), assembly("b.log")
     cells = [[0, 0], [5, 1]]
     missions = [

@@ -47,9 +47,7 @@ def test_missions_in_the_recorded_world_raise_no_alarm(
     assert (root / ".tarl/watch/f.npz").exists()
 
 
-def test_a_drift_raises_an_alarm_with_its_onset_and_cells(
-    root: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_drift_raises_an_alarm_with_onset_and_cells(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log(root / "m.log", [*walks(300, 2), *walks(60, 3, drift=1.0)])
     assert main(["watch", "m.log", "--fixture", "f.npz", "--once", "--json", "-"]) == 1
     found = json.loads(capsys.readouterr().out)
@@ -72,9 +70,7 @@ def test_new_cells_are_reported(root: Path, capsys: pytest.CaptureFixture[str]) 
     assert "new     x 3-4, wet 5: no recorded episode visited it" in capsys.readouterr().out
 
 
-def test_logs_of_other_worlds_are_reported_and_the_other_logs_are_counted(
-    root: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_logs_of_other_worlds_are_reported(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log(root / "m.log", walks(5, 2))
     log(root / "other.log", walks(5, 2), sensors=["speed"])
     assert main(["watch", "m.log", "other.log", "none.log", "--fixture", "f.npz", "--once"]) == 2
@@ -108,7 +104,7 @@ def test_invalid_arguments_are_reported_in_one_sentence(
     assert (root / "f.npz").read_bytes() == before
 
 
-def test_a_recording_in_which_every_mission_failed_has_no_bound(
+def test_failed_recording_has_no_bound(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -179,7 +175,7 @@ def test_the_watch_follows_a_growing_log_until_a_signal(root: Path, number: sign
     validate(json.loads((root / "w.json").read_text()), dashboard.schema())
 
 
-def test_with_the_option_until_alarm_the_watch_exits_at_the_first_alarm(root: Path) -> None:
+def test_until_alarm_exits_at_the_first_alarm(root: Path) -> None:
     log(root / "m.log", walks(60, 3, drift=1.0))
     process = started(root, "--until-alarm")
     out, err = process.communicate(timeout=60)

@@ -52,7 +52,7 @@ def watch() -> Any:
     return SimpleNamespace(fixture=fixture, digest="d", known=known, problems=("p",))
 
 
-def test_a_watch_without_an_alarm_prints_evidence_and_error_rate() -> None:
+def test_watch_without_an_alarm_prints_evidence() -> None:
     assert [*words.lines(watch(), status())] == [
         "t.py::test_a: 1,000 missions, 950 passed (95 %)",
         "  bound   at least 90 % of missions pass (95 % confidence): evidence 1, alarm at 20",
@@ -72,7 +72,7 @@ def test_a_watch_without_an_alarm_prints_evidence_and_error_rate() -> None:
     )
 
 
-def test_an_alarm_is_printed_with_time_onset_score_and_cells() -> None:
+def test_alarm_is_printed_with_onset_and_cells() -> None:
     found = status(
         world=LOUD,
         lead=Score("residual", (2, 1), "lower"),
@@ -145,7 +145,7 @@ def test_status_has_an_alarm_after_a_missed_bound_or_drift() -> None:
         assert (found.below, found.drifted, found.alarm) == (below, drifted, below or drifted)
 
 
-def test_the_json_of_a_watch_has_evidence_onset_alarm_and_cells() -> None:
+def test_watch_json_has_evidence_and_alarm() -> None:
     found = dashboard.document(
         watch(), status(world=LOUD, lead=Score("residual", (2, 1), "lower"), cells=((2, 1),), new=((3, 1),))
     )
@@ -184,7 +184,7 @@ def test_every_nth_time_is_kept_for_any_batching(portions: list[int], most: int)
             assert found.at(asked) == (kept[-1] if kept else None)
 
 
-def test_the_time_of_missions_before_the_first_kept_mission_is_unknown() -> None:
+def test_time_before_the_first_kept_mission_is_unknown() -> None:
     assert Moments().at(5) is None
     assert Moments(times=[3.5]).at(0) == 3.5
 
@@ -289,7 +289,7 @@ def test_the_status_names_the_score_with_the_most_evidence(monitor: Monitor) -> 
     assert module.status(one).lead == Score("total", None, "spread")
 
 
-def test_a_monitor_without_missions_has_no_leading_score_and_no_onset(monitor: Monitor) -> None:
+def test_monitor_without_missions_has_no_onset(monitor: Monitor) -> None:
     found = module.status(changed(monitor))
     assert (found.lead, found.world.since, found.world.alarm, found.cells) == (None, None, None, ())
     assert found.world.now == pytest.approx(found.world.highest)
@@ -335,7 +335,7 @@ def test_a_monitor_notes_missing_bounds_and_incomplete_missions(monitor: Monitor
     ]
 
 
-def test_bin_edges_lie_midway_between_values_and_bins_double_towards_the_tails() -> None:
+def test_bin_edges_lie_midway_between_values() -> None:
     found = conformal.edges(np.array([0.0, 1.0, 1.0, 4.0]), 1.0)
     finite = found[np.isfinite(found)]
     spread = 4.0

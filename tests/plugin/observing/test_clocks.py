@@ -25,9 +25,7 @@ class Clock:
 
 
 @pytest.mark.parametrize("jump", [-YEAR, YEAR, -1e10])
-def test_a_jump_of_the_wall_clock_changes_only_the_dates(
-    jump: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_clock_jump_changes_only_dates(jump: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     wall = Clock(1.7e9)
     monkeypatch.setattr(observing, "time", wall)
     observer = Observer([Sensor("x")], tmp_path / "log", {"sites": [], "sensors": ["x"]}, following=True)

@@ -133,7 +133,7 @@ class Watcher:
 @pytest.mark.parametrize("problem", ["", "Sensor 'place': odd"])
 @pytest.mark.parametrize("how", ["reward", "step"])
 @pytest.mark.parametrize("formulas", [False, True])
-def test_a_node_runs_under_an_observer_that_is_always_closed(
+def test_observed_node_always_closes_its_observer(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, problem: str, how: str, formulas: bool
 ) -> None:
     (tmp_path / "node.py").write_text("")
@@ -216,7 +216,7 @@ def test_existing_objects_are_not_collected_while_the_node_runs(
 
 
 @pytest.mark.parametrize("step", [None, 0.25])
-def test_steps_are_closed_at_a_fixed_interval_if_no_topic_closes_them(
+def test_steps_close_at_an_interval_without_a_topic(
     monkeypatch: pytest.MonkeyPatch, step: float | None
 ) -> None:
     waits: list[float | None] = []

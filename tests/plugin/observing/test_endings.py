@@ -99,7 +99,7 @@ def test_node_start_is_no_mission_if_a_topic_begins_missions(
     assert ended(tmp_path, monkeypatch, None, **more)[0] == []
 
 
-def test_the_words_begin_and_end_delimit_missions_and_other_words_are_ignored(tmp_path: Path) -> None:
+def test_begin_and_end_delimit_missions(tmp_path: Path) -> None:
     observer = Observer([], tmp_path / "log", ABOUT)
     for word in ("succeeded", "begin", "rest", "begin", "failed", "failed", "begin", "succeeded"):
         observer.order(word)
@@ -112,7 +112,7 @@ def test_the_words_begin_and_end_delimit_missions_and_other_words_are_ignored(tm
     ]
 
 
-def test_each_change_of_signals_and_sensors_is_written_once_with_its_time(tmp_path: Path) -> None:
+def test_each_change_is_written_once_with_its_time(tmp_path: Path) -> None:
     speed = Signal("speed", topic="/speed", field="x")
     place = Sensor("place", topic="/place", field="x", low=0, high=10, bins=2)
     observer = Observer([place], tmp_path / "log", ABOUT, signals=[speed], following=True)

@@ -40,7 +40,7 @@ def test_appended_records_are_read_in_order(tmp_path: Path) -> None:
     assert list(records(tmp_path / "log")) == RECORDS
 
 
-def test_complete_records_of_a_truncated_log_are_read_and_writing_continues(tmp_path: Path) -> None:
+def test_truncated_log_is_read_and_continued(tmp_path: Path) -> None:
     content = written(tmp_path / "log", RECORDS)
     ends = [len(MAGIC)]
     for record in RECORDS:
@@ -62,7 +62,7 @@ def test_reading_stops_at_a_damaged_record(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"PK\x03\x04 a fixture", b"tarl log 2\n"])
-def test_a_file_of_another_format_is_not_read_or_overwritten(tmp_path: Path, content: bytes) -> None:
+def test_foreign_file_is_not_overwritten(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "other"
     path.write_bytes(content)
     with pytest.raises(LogError, match="is not a log"):

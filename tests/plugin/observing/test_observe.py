@@ -91,7 +91,7 @@ def test_missions_of_renamed_logs_are_also_compared(recorded: Path) -> None:
     assert [(one.ended, one.passed) for one in found] == [(True, True), (True, False), (True, True)]
 
 
-def test_a_mission_without_an_end_is_skipped_with_a_note(recorded: Path, pytester: pytest.Pytester) -> None:
+def test_mission_without_an_end_is_skipped(recorded: Path, pytester: pytest.Pytester) -> None:
     drive(order(recorded), [0.05] * 8)
     log = recorded / ".tarl/missions.log"
     log.write_bytes(log.read_bytes()[:-20])
@@ -119,7 +119,7 @@ def test_judge_gives_the_rewards_without_a_reward_topic(recorded: Path, pytester
         ({"reward": "/monitor:nonsense_msgs/Float99"}, "nonsense_msgs"),
     ],
 )
-def test_a_node_that_cannot_be_observed_is_reported_in_one_sentence(
+def test_unobservable_node_is_reported_in_one_sentence(
     recorded: Path, changes: dict[str, object], says: str
 ) -> None:
     ros = Ros()

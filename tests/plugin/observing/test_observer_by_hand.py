@@ -98,7 +98,7 @@ def observe(monkeypatch: pytest.MonkeyPatch, clock: Clock) -> Observe:
     return made
 
 
-def test_an_observer_opens_its_log_with_the_format_and_the_rotation(observe: Observe) -> None:
+def test_observer_opens_its_log_with_format_and_rotation(observe: Observe) -> None:
     one, sent = observe(PLACE, rotation=Rotation(9, 2))
     assert sent.given == (Path("log"), {"format": 1, "node": "n"}, Rotation(9, 2))
     assert sent.messages == [("start", 1000.0 + 5e8)]
@@ -128,7 +128,7 @@ def test_step_has_all_sensor_values_and_the_current_cell(observe: Observe) -> No
     assert sent.messages[3] == ("end", {"passed": True, "failure": "", "time": 1000.0 + 5e8})
 
 
-def test_a_sensor_whose_value_becomes_unusable_makes_the_cell_unknown(observe: Observe) -> None:
+def test_unusable_sensor_value_makes_the_cell_unknown(observe: Observe) -> None:
     one, sent = observe(PLACE)
     one.begin()
     for value in (1.0, float("nan"), 3.0, float("nan")):
@@ -164,9 +164,7 @@ def test_sensor_error_is_kept_and_hidden_from_the_node(
     assert one.problem == f"{first}; no space"
 
 
-def test_a_new_mission_ends_the_previous_mission_and_forgets_its_steps(
-    observe: Observe, clock: Clock
-) -> None:
+def test_new_mission_ends_the_previous_one(observe: Observe, clock: Clock) -> None:
     one, sent = observe(PLACE)
     one.step(5.0)  # before the first mission
     one.begin()
@@ -182,9 +180,7 @@ def test_a_new_mission_ends_the_previous_mission_and_forgets_its_steps(
     assert not one.running
 
 
-def test_with_formulas_the_times_of_steps_and_changes_count_from_the_begin(
-    observe: Observe, clock: Clock
-) -> None:
+def test_formula_times_count_from_the_begin(observe: Observe, clock: Clock) -> None:
     tilt = Signal("tilt", topic="/t", field="x")
     one, sent = observe(PLACE, MODE, signals=[tilt], following=True)
     one.signalled(tilt, message(0.25))  # before the mission
@@ -308,7 +304,7 @@ def test_readings_are_sent_as_plain_values(value: Any, expected: Any) -> None:
     marshal.dumps(found)
 
 
-def test_closing_sends_the_remaining_records_and_waits_for_the_thread(observe: Observe) -> None:
+def test_closing_sends_the_remaining_records(observe: Observe) -> None:
     one, sent = observe(PLACE)
     one.begin()
     one.step(1.0)

@@ -111,7 +111,7 @@ def test_small_messages_go_into_the_shared_memory_at_once(connect: OpenOutlet) -
     assert one.unsent == 0
 
 
-def test_large_messages_are_sent_in_pieces_and_keep_their_order(connect: OpenOutlet) -> None:
+def test_large_messages_are_sent_in_ordered_pieces(connect: OpenOutlet) -> None:
     one, _, end = connect("ready")
     texts = ["a" * 10, "b" * 1000, "c" * 10]
     for text in texts:
@@ -142,7 +142,7 @@ def test_an_outlet_is_full_if_too_many_bytes_wait(
 
 
 @pytest.mark.parametrize("says", ["the disk is full", ""])
-def test_the_end_of_the_writer_is_noticed_and_nothing_more_is_kept(connect: OpenOutlet, says: str) -> None:
+def test_ended_writer_receives_nothing_more(connect: OpenOutlet, says: str) -> None:
     one, process, _ = connect("ready", *([says] if says else []))
     for _ in range(3):
         one.put("x" * 900)
@@ -189,7 +189,7 @@ def test_closing_sends_everything_and_an_end_mark(
     assert set(pauses) == {0.005}
 
 
-def test_closing_does_not_wait_for_a_writer_that_has_ended(
+def test_closing_does_not_wait_for_an_ended_writer(
     connect: OpenOutlet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     one, process, _ = connect("ready", "the disk is full")

@@ -77,7 +77,7 @@ def test_observed_fields_are_read_as_in_a_test(field: Any, messages: list[Any]) 
         assert found == wanted
 
 
-def test_properties_that_compute_their_values_are_read_again_each_time() -> None:
+def test_computed_properties_are_read_each_time() -> None:
     class Made:
         count = 0
 

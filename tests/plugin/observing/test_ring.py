@@ -44,7 +44,7 @@ def test_pieces_are_refused_only_if_the_ring_is_full(size: int, steps: list[int 
 
 
 @pytest.mark.parametrize("at", [0, 5, 9])
-def test_a_piece_whose_bytes_are_not_visible_yet_is_read_later(at: int) -> None:
+def test_incomplete_piece_is_read_later(at: int) -> None:
     writer, reader = ends(64)
     assert writer.write(b"first")
     place = 16 + at

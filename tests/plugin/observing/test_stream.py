@@ -87,7 +87,7 @@ def test_cutting_a_buffer_does_not_change_the_result() -> None:
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 
-def test_an_event_is_complete_only_when_its_flow_value_has_arrived() -> None:
+def test_event_is_complete_with_its_flow_value() -> None:
     recorder = Emptied()
     entries = recorder._entries()
     entries.append(3)

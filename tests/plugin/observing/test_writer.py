@@ -60,7 +60,7 @@ def column(steps: list[dict[str, Any]], name: str, kind: str) -> list[Any]:
     return [*chain.from_iterable(unpacked(one[name], kind).tolist() for one in steps)]
 
 
-def test_every_step_event_reading_and_cell_is_written_in_order(tmp_path: Path) -> None:
+def test_steps_events_and_cells_are_written_in_order(tmp_path: Path) -> None:
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
     observer.told(SENSOR, Message(9.0))  # the cell that was current when the mission began
     until(lambda: not observer.stream._cells or observer.stream._told)
@@ -127,7 +127,7 @@ def test_records_sent_before_the_node_is_killed_are_written(tmp_path: Path, how:
     assert len(found) > last - 200
 
 
-def test_a_killed_writer_is_reported_at_once_and_the_node_continues(
+def test_killed_writer_is_reported_and_the_node_continues(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
@@ -142,7 +142,7 @@ def test_a_killed_writer_is_reported_at_once_and_the_node_continues(
     assert capsys.readouterr().err == f"observe: {outlet.ENDED}\n"
 
 
-def test_a_writer_that_is_killed_before_the_end_is_also_reported(tmp_path: Path) -> None:
+def test_writer_killed_near_the_end_is_reported(tmp_path: Path) -> None:
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
     mission(observer, 10)
     observer._thread.join(0.05)
@@ -154,7 +154,7 @@ def test_a_writer_that_is_killed_before_the_end_is_also_reported(tmp_path: Path)
     assert writer == outlet.ENDED
 
 
-def test_records_damaged_in_memory_are_reported_and_the_rest_is_written(tmp_path: Path) -> None:
+def test_damaged_records_are_reported_and_others_written(tmp_path: Path) -> None:
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
     mission(observer, 1)
     until(lambda: not observer._outlet.unsent and not observer.stream._rewards)
@@ -222,9 +222,7 @@ print(repr(observer.problem))
 """
 
 
-def test_a_blocked_disk_loses_events_but_does_not_delay_the_node(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_blocked_disk_loses_events_without_delay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(outlet, "MOST_WAITING", 1000)
     monkeypatch.setattr(stream, "MOST_ENTRIES", 2000)
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
@@ -267,7 +265,7 @@ def long_log(path: Path, missions: int, rotation: Rotation) -> None:
     writer.close()
 
 
-def test_a_long_log_is_split_between_missions_and_each_part_is_complete(tmp_path: Path) -> None:
+def test_long_log_is_split_between_missions(tmp_path: Path) -> None:
     path = tmp_path / "missions.log"
     (tmp_path / "missions.log.gz").write_text("not ours")
     long_log(path, 40, Rotation(size=2000))

@@ -72,13 +72,13 @@ def written(*messages: tuple[Any, ...], log: Log | None = None, rotation: Rotati
     return found
 
 
-def test_the_start_of_a_log_is_on_disk_at_once() -> None:
+def test_log_start_is_on_disk_at_once() -> None:
     log = written(("start", 5.0))
     assert log.records == [{"kind": "start", "time": 5.0, "node": "n"}]
     assert log.log == ["start", "sync", "close"]
 
 
-def test_steps_are_collected_into_one_record_until_the_mission_ends() -> None:
+def test_steps_are_collected_until_the_mission_ends() -> None:
     log = written(
         ("mission", 1.0),
         ("steps", cut(1.0, 2.0, entries=[3, 0.5], cells=[(4,)]), [7.0, None, 8.0, "auto"], 0, None),
@@ -134,7 +134,7 @@ def test_cells_outside_missions_are_known_to_later_steps() -> None:
 @pytest.mark.parametrize(
     ("size", "limit", "rotated"), [(10, 0, False), (9, 10, False), (10, 10, True), (11, 10, True)]
 )
-def test_a_log_is_rotated_before_a_mission_if_it_is_large(size: int, limit: int, rotated: bool) -> None:
+def test_large_log_is_rotated_before_a_mission(size: int, limit: int, rotated: bool) -> None:
     log = written(("mission", 4.0), log=Log(size), rotation=Rotation(limit, 3))
     begun = [("aside", 3), "start", "sync"] if rotated else []
     assert log.log == [*begun, "mission", "close"]
@@ -197,9 +197,7 @@ def send(end: Ring, *messages: Any) -> None:
         assert end.write(LENGTH.pack(len(text)) + text)
 
 
-def test_the_writer_leaves_signals_to_the_node_and_has_the_lowest_priority(
-    program: Any, tmp_path: Path
-) -> None:
+def test_writer_leaves_signals_to_the_node(program: Any, tmp_path: Path) -> None:
     status, said, calls = program(lambda end: send(end, ("start", 5.0), ("mission", 6.0)))
     assert (status, said) == (0, "ready\n")
     ignored = [(one, signal.SIG_IGN) for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)]
@@ -245,9 +243,7 @@ def test_bytes_that_were_damaged_in_memory_are_reported(program: Any, tmp_path: 
     assert (status, said) == (1, f"ready\n{tmp_path / 'log'}: {lost}\n")
 
 
-def test_the_node_learns_that_the_writer_is_ready_before_it_serves(
-    program: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_writer_is_ready_before_the_node_knows(program: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     class Pipe(io.StringIO):
         def flush(self) -> None:
             told.append(self.getvalue())
@@ -339,7 +335,7 @@ def test_the_oldest_rotated_logs_are_removed(tmp_path: Path, keep: int, left: li
     assert [int(one.suffix[1:]) for one in set_aside(path)] == left
 
 
-def test_a_log_in_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
+def test_log_in_an_impossible_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(LogError, match=r"cannot be written \(.*\): name another file"):
         LogFile(tmp_path / "file" / "log")

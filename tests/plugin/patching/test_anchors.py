@@ -99,9 +99,7 @@ def main():
         ("print(); subscribe('/a'); print()", "print()", False),
     ],
 )
-def test_the_subscription_is_added_beside_another_subscription_that_runs_exactly_once(
-    code: str, statement: str, after: bool
-) -> None:
+def test_subscription_is_added_beside_one_that_runs_once(code: str, statement: str, after: bool) -> None:
     source = document("pilot.py", BESIDE.format(code))
     (call,) = (
         node
@@ -122,7 +120,7 @@ def test_the_subscription_is_added_beside_another_subscription_that_runs_exactly
         ("self.node = rclpy.create_node('pilot')", ["self.node"]),
     ],
 )
-def test_a_node_is_named_only_where_it_is_assigned_or_used(line: str, nodes: list[str]) -> None:
+def test_node_is_named_only_where_assigned_or_used(line: str, nodes: list[str]) -> None:
     text = f"import rclpy\n\n\ndef main():\n    {line}\n"
     analysis: Any = SimpleNamespace(flows=[], sources={"pilot.py": text})
     site: Any = None

@@ -68,7 +68,7 @@ else:
         *("texts", "a formatted text", "no number", "an integer", "a branch that leaves"),
     ],
 )
-def test_fields_are_found_if_several_statements_surely_set_a_number(body: str, fields: list[str]) -> None:
+def test_fields_are_found_across_statements(body: str, fields: list[str]) -> None:
     body = body if "publish" in body else body + PUBLISH
     assert [field for _, field in found(body)] == fields
 

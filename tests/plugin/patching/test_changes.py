@@ -24,7 +24,7 @@ PATCH = FilePatch(
 )
 
 
-def test_a_patch_can_be_applied_to_its_own_file_and_undone() -> None:
+def test_patch_can_be_applied_and_undone() -> None:
     assert PATCH.exact(BEFORE) == PATCH.applied(BEFORE) == AFTER
     assert PATCH.reverse.exact(AFTER) == PATCH.reverse.applied(AFTER) == BEFORE
     assert PATCH.exact(BEFORE + b"\n") is None
@@ -43,13 +43,13 @@ def test_removed_lines_move_the_next_hunk_up() -> None:
     assert moved.applied(BEFORE) == AFTER
 
 
-def test_a_hunk_that_fits_nowhere_is_named_by_its_line() -> None:
+def test_unplaced_hunk_is_named_by_its_line() -> None:
     with pytest.raises(MisfitError) as raised:
         PATCH.applied(BEFORE.replace(b"x = 1", b"x = 3"))
     assert raised.value.args == (14,)
 
 
-def test_a_hunk_is_not_placed_before_the_end_of_the_previous_hunk() -> None:
+def test_hunks_are_placed_in_order() -> None:
     both = FilePatch("node.py", "", "", (PATCH.hunks[1], PATCH.hunks[0]))
     with pytest.raises(MisfitError):
         both.applied(BEFORE)

@@ -56,7 +56,7 @@ def test_scales_are_positive_and_have_two_digits() -> None:
 
 
 @pytest.mark.parametrize("step", [0.0, -0.5])
-def test_there_is_no_factor_for_a_step_that_is_not_positive(step: float) -> None:
+def test_negative_step_has_no_factor(step: float) -> None:
     assert SHARE.factor(0.5, step) is None
     assert offset(1.0).factor(0.5, step) is None
     assert SHARE.factor(0.0, 2.0) is None

@@ -80,7 +80,7 @@ class World:
 
 
 @pytest.mark.parametrize("name", FORMS)
-def test_a_constant_is_found_and_changed_where_it_is_defined(name: str, tmp_path: Path) -> None:
+def test_constant_is_changed_where_it_is_defined(name: str, tmp_path: Path) -> None:
     world = World(name, tmp_path)
     assert world.published({}) == pytest.approx(2.0)
     operands = [one for step in world.analysis.sites for one in world.analysis.operands(step.site)]

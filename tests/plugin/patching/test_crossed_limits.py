@@ -45,9 +45,7 @@ KEPT = [
 
 
 @pytest.mark.parametrize(("text", "code", "value"), CROSSED)
-def test_two_limits_cross_if_one_limit_is_moved_beyond_the_opposite_limit(
-    text: str, code: str, value: float
-) -> None:
+def test_two_limits_cross_if_one_passes_the_other(text: str, code: str, value: float) -> None:
     assert limit(text, code, value)
 
 

@@ -129,7 +129,7 @@ def test_default_of_an_entry_is_its_definition(tmp_path: Path, definition: str, 
 
 
 @pytest.mark.parametrize("definition", ["{}", "int({})", "round(float({}))", "rospy.get_param(int({}))"])
-def test_a_parameter_without_a_default_is_known_inside_a_conversion(tmp_path: Path, definition: str) -> None:
+def test_parameter_without_default_is_known_in_a_conversion(tmp_path: Path, definition: str) -> None:
     path = tmp_path / "mast.py"
     path.write_text(ENTRIES.format(definition=definition.format('rospy.get_param("~times")')))
     analysis = analyse([path], root=tmp_path)
@@ -137,7 +137,7 @@ def test_a_parameter_without_a_default_is_known_inside_a_conversion(tmp_path: Pa
     assert parameter(analysis, operand) == ("" if "(int" in definition else "~times")
 
 
-def test_a_file_outside_the_analysis_is_read_when_it_is_changed(tmp_path: Path) -> None:
+def test_changed_file_outside_the_analysis_is_read(tmp_path: Path) -> None:
     path, file = tmp_path / "mast.py", tmp_path / "mast.yaml"
     path.write_text(NODE.format(use="self.ki"))
     file.write_text("mast:\n  ki: 0.5  # per second\n")
@@ -211,7 +211,7 @@ def test_files_without_the_parameter_and_other_parameters_stay_unchanged(path: s
         ("declare_parameters('arm', [entry])", ""),
     ],
 )
-def test_an_entry_is_named_by_its_namespace_and_its_first_element(code: str, expected: str) -> None:
+def test_entry_is_named_by_namespace_and_first_element(code: str, expected: str) -> None:
     call = ast.parse(code, mode="eval").body
     assert isinstance(call, ast.Call)
     entries = next(one for one in ast.walk(call) if isinstance(one, ast.List))
@@ -228,9 +228,7 @@ def test_an_entry_is_named_by_its_namespace_and_its_first_element(code: str, exp
         ('float(os.environ.get("KP", "-1e-3"))', 'float(os.environ.get("KP", "-0.002"))'),
     ],
 )
-def test_a_number_from_the_environment_is_changed_at_its_default(
-    tmp_path: Path, definition: str, after: str
-) -> None:
+def test_environment_number_is_changed_at_its_default(tmp_path: Path, definition: str, after: str) -> None:
     path = tmp_path / "mast.py"
     text = NODE.format(use="KP").replace("import rclpy\n", f"import os\nimport rclpy\nKP = {definition}\n", 1)
     path.write_text(text)
@@ -249,9 +247,7 @@ def test_a_number_from_the_environment_is_changed_at_its_default(
 @pytest.mark.parametrize(
     "definition", ['os.environ.get("KP")', 'float(os.environ["KP"])', 'os.getenv("KP", "fast")']
 )
-def test_an_environment_variable_without_a_number_as_default_has_no_definition(
-    tmp_path: Path, definition: str
-) -> None:
+def test_environment_variable_without_a_number_has_no_definition(tmp_path: Path, definition: str) -> None:
     path = tmp_path / "mast.py"
     path.write_text(
         NODE.format(use="KP").replace("import rclpy\n", f"import os\nKP = {definition}\nimport rclpy\n", 1)
@@ -282,7 +278,7 @@ HEAD = "base = 1.5\nodd = base if simulated else 2.0\n"
         ("LaunchConfiguration('other')", ()),
     ],
 )
-def test_numbers_from_which_a_python_launch_file_computes_a_parameter_are_changed(
+def test_computed_launch_parameter_is_changed_at_its_numbers(
     expression: str, changed: tuple[str, ...]
 ) -> None:
     argument = "DeclareLaunchArgument('gain', default_value='0.4'), DeclareLaunchArgument('other')"
@@ -314,7 +310,7 @@ def test_numbers_from_which_a_python_launch_file_computes_a_parameter_are_change
         "gain = 0.5\ndef generate_launch_description():\n    return Node(parameters=[{'ki': gain}])",
     ],
 )
-def test_a_python_launch_file_sets_a_parameter_in_several_ways(text: str) -> None:
+def test_python_launch_file_sets_parameters_in_several_ways(text: str) -> None:
     (place,) = configured("ki", {"a.launch.py": text})
     assert (place.value, text[place.start : place.end], place.share) == (0.5, "0.5", 1.0)
 
@@ -325,7 +321,7 @@ numbers = st.floats(0.1, 10).map(lambda one: round(one, 3))
 @given(
     numbers, numbers, numbers, st.sampled_from(["{a} * base + {b}", "{b} - base / {a}", "({a} + base) * {b}"])
 )
-def test_changing_each_found_number_scales_the_parameter_by_the_wanted_factor(a, b, factor, form):  # type: ignore[no-untyped-def]
+def test_changed_numbers_scale_the_parameter_as_wanted(a, b, factor, form):  # type: ignore[no-untyped-def]
     expression = form.format(a=a, b=b)
     text = f"base = 1.25\nNode(parameters=[{{'ki': {expression}}}])\n"
     whole = eval(expression, {"base": 1.25})
@@ -364,7 +360,7 @@ def place(text: str, value: Any, old: str) -> Place:
         ("ki: false", "false", False, True, "ki: true"),
     ],
 )
-def test_a_new_value_is_written_in_the_style_of_the_old_value(
+def test_new_value_has_the_style_of_the_old_one(
     text: str, old: str, value: Any, new: Any, expected: str
 ) -> None:
     assert apply_plain_edits("a.yaml", text, edits({place(text, value, old): new}, text)) == expected
@@ -376,9 +372,7 @@ def test_a_file_that_changed_since_is_not_edited(text: str, old: str, value: flo
         edits({place(text, value, old): 1.0}, text)
 
 
-def test_other_uses_of_a_constant_are_named_by_their_line_numbers(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_other_uses_are_named_by_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("mast.py").write_text(
         NODE.format(use="(REACH + 2.0 * self.ki + GAINS['hold'])").replace(

@@ -62,14 +62,12 @@ def test_new_packages_of_messages_are_named_in_order(tmp_path: Path, text: str, 
         ("<!--\n<depend>sensor_msgs</depend>\n--><depend>x</depend>", False),
     ],
 )
-def test_a_package_is_known_if_it_is_a_dependency_at_run_time(
-    tmp_path: Path, listed: str, known: bool
-) -> None:
+def test_runtime_dependency_is_a_known_package(tmp_path: Path, listed: str, known: bool) -> None:
     text = "from sensor_msgs.msg import Range\n"
     assert (told(tmp_path, SECOND.format(listed), "", text) == []) is known
 
 
-def test_a_package_that_the_file_already_imports_is_not_named(tmp_path: Path) -> None:
+def test_imported_package_is_not_named(tmp_path: Path) -> None:
     before, after = (f"from sensor_msgs.msg import {name}\n" for name in ("Range", "Range, Imu"))
     assert told(tmp_path, SECOND.format(""), before, after) == []
 

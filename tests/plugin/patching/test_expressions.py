@@ -122,7 +122,7 @@ def dump(text: str) -> str | None:
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_inserted_code_keeps_its_meaning_everywhere_and_has_no_needless_parentheses(place: str) -> None:
+def test_inserted_code_has_no_needless_parentheses(place: str) -> None:
     text = body(place.format(HOLE))
     source = document("a.py", text)
     node = hole(source)
@@ -231,7 +231,7 @@ def test_indices_lengths_and_codes_are_integers(text: str, counts: bool) -> None
         ("x = [1, 2]", False),
     ],
 )
-def test_a_literal_vector_of_integers_stays_a_vector_of_integers(text: str, counts: bool) -> None:
+def test_literal_integer_vector_stays_one(text: str, counts: bool) -> None:
     source = document("a.py", f"{text}\n")
     one = next(
         node for node in ast.walk(source.tree) if isinstance(node, ast.Constant) and node.value in (1, 255)

@@ -55,7 +55,7 @@ def test_a_constant_in_an_integer_field_stays_an_integer(code: str) -> None:
         "msg = Int32()\nmsg.data = steps[7]",
     ],
 )
-def test_a_constant_outside_an_integer_field_may_become_a_fraction(code: str) -> None:
+def test_constant_outside_an_integer_field_may_be_a_fraction(code: str) -> None:
     assert not seven(code)
 
 

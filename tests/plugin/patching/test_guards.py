@@ -65,7 +65,7 @@ def test_each_kind_of_sensor_has_its_condition(conjunct: Conjunct, expected: str
         (Conjunct(MODE, 0, 1), 'mode in ("dry", "wet")'),
     ],
 )
-def test_the_condition_checks_for_none_only_where_the_comparison_would_raise(
+def test_condition_checks_for_none_only_before_a_failing_comparison(
     conjunct: Conjunct, expected: str
 ) -> None:
     text = told(conjunct, readings=SILENT)
@@ -77,7 +77,7 @@ def test_conditions_are_combined_in_order() -> None:
     assert told(Conjunct(TERRAIN, 1, 1), Conjunct(POSITION, 4, 7)) == "terrain and 4.0 <= pos < 7.0"
 
 
-def test_a_condition_without_bounds_is_written_as_an_empty_text() -> None:
+def test_condition_without_bounds_is_empty() -> None:
     assert told() == told(Conjunct(POSITION, -INF, INF)) == ""
 
 
@@ -96,7 +96,7 @@ def test_bounds_are_rounded_to_a_hundredth_of_a_bin() -> None:
     ends=st.tuples(st.integers(-1, 30), st.integers(-1, 30)).map(sorted),
     value=st.floats(-300, 300),
 )
-def test_the_condition_holds_exactly_in_the_bins_up_to_rounding(
+def test_condition_holds_in_its_bins_up_to_rounding(
     low: float, width: float, bins: int, ends: list[int], value: float
 ) -> None:
     sensor = Sensor("x", topic="/odom", field="x", low=low, high=low + width * bins, bins=bins)
@@ -110,7 +110,7 @@ def test_the_condition_holds_exactly_in_the_bins_up_to_rounding(
 
 
 @pytest.mark.parametrize("value", [0.0, 4.0, 7.0, 10.0, 10.5, -0.5])
-def test_the_ends_of_bins_are_open_or_closed_as_in_the_sensor(value: float) -> None:
+def test_bin_ends_are_open_as_in_the_sensor(value: float) -> None:
     for first, last in ((-1, -1), (0, 3), (4, 6), (7, 9), (10, 10)):
         text = told(Conjunct(POSITION, *POSITION.interval(first, last)))
         index = POSITION.bin(value)
@@ -144,17 +144,13 @@ def test_the_first_safe_expression_is_used() -> None:
 @pytest.mark.parametrize(
     ("initial", "conjunct"), [("0.0", START), ("Pose()", START), ("False", FIRM), ("True", MUDDY)]
 )
-def test_a_variable_whose_initial_value_satisfies_the_condition_is_not_used(
-    initial: str, conjunct: Conjunct
-) -> None:
+def test_variable_that_starts_inside_the_condition_is_not_used(initial: str, conjunct: Conjunct) -> None:
     text = f"value = {initial}\ndef step(): HERE = 1\n"
     assert choose(text, ("value",), conjunct) is None
 
 
 @pytest.mark.parametrize(("initial", "conjunct"), [("0.0", STRETCH), ("Pose()", STRETCH), ("False", MUDDY)])
-def test_a_variable_whose_initial_value_violates_the_condition_is_used(
-    initial: str, conjunct: Conjunct
-) -> None:
+def test_variable_that_starts_outside_the_condition_is_used(initial: str, conjunct: Conjunct) -> None:
     text = f"value = {initial}\ndef step(): HERE = 1\n"
     assert choose(text, ("value",), conjunct) == Reading("value")
 
@@ -184,9 +180,7 @@ def test_a_variable_whose_initial_value_violates_the_condition_is_used(
         ("def step(pos):\n    HERE = 1\ndef other():\n    pos = None", "pos", ""),
     ],
 )  # fmt: skip
-def test_the_condition_checks_for_none_unless_the_surrounding_code_excludes_none(
-    text: str, expression: str, absent: str
-) -> None:
+def test_condition_checks_for_none_unless_excluded(text: str, expression: str, absent: str) -> None:
     assert choose(text, (expression,)) == Reading(expression, absent)
 
 
@@ -226,7 +220,7 @@ def test_condition_uses_a_global_only_where_the_code_reads_it(text: str, bound: 
 
 
 @pytest.mark.parametrize("expression", ["latest()", "a + b", "cache[key]", "cache['x']"])
-def test_expressions_that_may_raise_or_have_effects_are_not_used(expression: str) -> None:
+def test_expressions_with_effects_are_not_used(expression: str) -> None:
     assert choose("cache = {}\na = b = key = 1.0\ndef step(): HERE = 1", (expression,)) is None
 
 
@@ -238,7 +232,7 @@ def turned(low: float, high: float, lowest: float, highest: float) -> str:
 @pytest.mark.parametrize(
     ("low", "high", "lowest", "highest"), [(135.0, -90.0, -180.0, 180.0), (270.0, 45.0, 0.0, 360.0)]
 )
-def test_a_condition_on_an_angle_may_cross_the_end_of_its_range(
+def test_angle_condition_may_cross_the_range_end(
     low: float, high: float, lowest: float, highest: float
 ) -> None:
     code = turned(low, high, lowest, highest)

@@ -26,9 +26,7 @@ from pytest_tarl.patching.imports import Import, import_edits, imported, referen
         ("if True:\n    from std_msgs.msg import Bool", "Bool"),
     ],
 )
-def test_the_expression_for_an_imported_name_follows_the_imports_of_the_file(
-    text: str, expression: str
-) -> None:
+def test_imported_name_follows_the_imports_of_the_file(text: str, expression: str) -> None:
     assert imported(document("node.py", text + "\n"), "std_msgs.msg", "Bool") == expression
 
 
@@ -52,9 +50,7 @@ def test_the_expression_for_an_imported_name_follows_the_imports_of_the_file(
         ("", None),
     ],
 )
-def test_a_new_name_is_accessed_in_the_same_way_as_its_module(
-    text: str, found: tuple[str, Import | None] | None
-) -> None:
+def test_new_name_is_accessed_like_its_module(text: str, found: tuple[str, Import | None] | None) -> None:
     assert reference(document("node.py", text + "\n"), "pkg.gains", "wet") == found
 
 
@@ -102,18 +98,18 @@ BOOL = Import("std_msgs.msg", "Bool")
         ),
     ],
 )
-def test_an_import_is_added_where_a_maintainer_would_write_it(before: str, after: str) -> None:
+def test_import_is_added_where_a_maintainer_would(before: str, after: str) -> None:
     assert added(before, BOOL) == after
 
 
-def test_names_of_one_module_are_imported_together_and_each_once() -> None:
+def test_names_of_one_module_are_imported_together() -> None:
     wanted = [BOOL, Import("std_msgs.msg", "Int8", "I"), BOOL, Import("math"), Import("math", alias="m")]
     assert added("import sys\n", *wanted[:3]) == "import sys\nfrom std_msgs.msg import Bool, Int8 as I\n"
     assert added("import sys\n", *wanted[3:]) == "import sys\nimport math, math as m\n"
     assert added("from math import pi\n", Import("math")) == "from math import pi\nimport math\n"
 
 
-def test_a_relative_import_is_extended_only_by_the_same_module() -> None:
+def test_relative_import_is_extended_by_its_module_only() -> None:
     assert added("from .gains import kp\n", Import(".gains", "wet")) == "from .gains import kp, wet\n"
     assert added("from .gains import kp\n", Import("gains", "wet")) == (
         "from .gains import kp\nfrom gains import wet\n"
@@ -126,6 +122,6 @@ def test_an_alias_equal_to_the_name_is_not_written() -> None:
     assert Import("m.n").written == "m.n"
 
 
-def test_imports_in_functions_do_not_count_as_imports_of_the_module() -> None:
+def test_function_imports_do_not_count_for_the_module() -> None:
     text = "import a\nclass C:\n    import b\n    def f(self):\n        import c\n"
     assert [node.names[0].name for node in top_imports(document("n.py", text))] == ["a", "b"]

@@ -139,7 +139,7 @@ def test_local_or_imported_name_is_bound(source: Document, code: str, at: str, b
     assert is_bound(source, place(source, at), code) is bound
 
 
-def test_names_that_the_statement_reads_count_as_bound_in_it() -> None:
+def test_names_read_by_a_statement_are_bound_in_it() -> None:
     source = document("a.py", "def f():\n    print(a.b[0].c, key=d)\n    if e:\n        g\n")
     call, branch = source.tree.body[0].body  # type: ignore[attr-defined]
     for code in ("a", "a.b", "a.b[0]", "a.b[0].c", "d"):
@@ -170,7 +170,7 @@ def test_first_value_of_a_name_is_its_module_value(
     assert initial(source, place(source, at), code) == (values, fresh)
 
 
-def test_names_are_local_to_the_innermost_function_that_binds_them(source: Document) -> None:
+def test_names_belong_to_the_innermost_binding_function(source: Document) -> None:
     functions = {node.name: node for node in ast.walk(source.tree) if isinstance(node, ast.FunctionDef)}
     assert local_names(source, functions["__init__"]) >= {"self", "name", "rest", "flag", "more"}
     assert "ready" not in local_names(source, functions["callback"])
@@ -184,7 +184,7 @@ def test_names_are_local_to_the_innermost_function_that_binds_them(source: Docum
     assert isinstance(scope(source, read, "w"), ast.Lambda)
 
 
-def test_used_names_include_the_names_of_all_scopes_and_the_builtins(source: Document) -> None:
+def test_used_names_include_scopes_and_builtins(source: Document) -> None:
     found = names(source)
     assert {"math", "places", "argv", "xml", "Node", "outer", "inner", "w", "message", "ready", "x"} <= found
     assert set(dir(builtins)) <= found
@@ -266,7 +266,7 @@ def test_statement_after_the_assignment_is_checked(text: str, checked: bool) -> 
     assert is_checked(source, place(source), "x") is checked
 
 
-def test_a_statement_that_computes_with_the_value_counts_as_checked() -> None:
+def test_computing_statement_counts_as_checked() -> None:
     source = document("a.py", "def f():\n    y = x * 2\n    z = x\n")
     relies, reads = source.tree.body[0].body  # type: ignore[attr-defined]
     assert is_checked(source, relies, "x") is True

@@ -122,13 +122,13 @@ def test_other_parameters_are_not_changed(text: str) -> None:
     assert list(computed("gain", ast.parse(text))) == []
 
 
-def test_parameters_of_the_same_name_come_in_the_order_of_the_file() -> None:
+def test_equal_parameters_come_in_file_order() -> None:
     text = "n = [dict(gain=1), {'gain': 2}]\nm = [SetParameter('gain', 3), {'gain': f()}, {'gain': 4}]"
     assert [value for _, value, _ in found(text)] == [1, 2, 3, 4]
     assert [ast.unparse(one) for one in computed("gain", ast.parse(text))] == ["f()"]
 
 
 @pytest.mark.parametrize(("names", "reached"), [(DEEPEST, True), (DEEPEST + 1, False)])
-def test_a_number_is_found_through_a_limited_chain_of_names(names: int, reached: bool) -> None:
+def test_number_is_found_through_few_names(names: int, reached: bool) -> None:
     chain = "".join(f"n{at} = n{at + 1}\n" for at in range(names - 1))
     assert bool(found(f"{chain}n{names - 1} = 3.0\n{{'gain': n0}}")) is reached

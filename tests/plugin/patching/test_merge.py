@@ -39,9 +39,7 @@ BEFORE_C, BEFORE_C_TOO = change(2, "", "x\n"), change(2, "", "y\n")
         ([change(0, "", "top\n"), change(4, "", "end\n")], "top\na\nb\nc\nd\nend\n"),
     ],
 )
-def test_merging_patches_makes_all_changes_and_separating_them_undoes_the_changes(
-    wanted: list[Replacement], expected: str
-) -> None:
+def test_separated_patches_undo_merged_changes(wanted: list[Replacement], expected: str) -> None:
     merged = combined(TEXT, wanted)
     assert merged == expected.encode()
     assert separated(merged, wanted) == TEXT
@@ -109,7 +107,7 @@ def lines(*patches: Any) -> list[str]:
 C_AND_D, OTHER_C = change(2, "c\nd\n", "e\n"), change(2, "c\n", "f\n")
 
 
-def test_patches_conflict_on_the_first_common_line_of_two_changes() -> None:
+def test_patches_conflict_on_their_first_common_line() -> None:
     one, two = patch("one", B, C_AND_D), patch("two", D)
     assert lines(one, two) == ["n.py:4 is changed in two ways, by one and by two"]
     assert lines(two, one) == ["n.py:4 is changed in two ways, by two and by one"]
@@ -118,7 +116,7 @@ def test_patches_conflict_on_the_first_common_line_of_two_changes() -> None:
     ]
 
 
-def test_each_pair_of_patches_is_compared_and_each_line_named_once() -> None:
+def test_each_conflicting_line_is_named_once() -> None:
     three = [
         patch(name, change(1, "b\n", new)) for name, new in (("one", "x\n"), ("two", "y\n"), ("three", "z\n"))
     ]
@@ -150,7 +148,7 @@ def test_patches_without_a_common_line_do_not_conflict(one: Any, two: Any) -> No
     assert lines(one, two) == []
 
 
-def test_patches_that_change_one_constant_at_different_places_conflict_on_its_definition() -> None:
+def test_patches_of_one_constant_conflict_on_its_definition() -> None:
     one = patch("one", B, constant=["src/n.py:7 column 3", "n.py:9 column 1", "src/n.py:7 column 3"])
     two = patch("two", D, constant=["n.py:8 column 1", "src/n.py:7 column 3"])
     assert constants(one) == ["src/n.py:7 column 3", "n.py:9 column 1"]

@@ -54,9 +54,7 @@ def test_a_literal_takes_the_scaled_value_with_four_digits(value: Any, factor: f
 @pytest.mark.parametrize(
     ("value", "factor", "expected"), [(5, 2.35, 12), (1, 1.2, 2), (1, 0.9, 0), (10, 0.04, 0)]
 )
-def test_an_integer_count_stays_an_integer_and_changes_by_at_least_one(
-    value: int, factor: float, expected: int
-) -> None:
+def test_integer_count_changes_by_at_least_one(value: int, factor: float, expected: int) -> None:
     assert mutations(constant(value), factor, integral=True) == Mutation(constant(value), expected)
 
 
@@ -83,7 +81,7 @@ def test_named_constant_is_scaled_or_moved_at_its_use(value: Any, factor: float,
     assert found.value == expected
 
 
-def test_steps_for_a_zero_are_symmetric_on_a_log_scale() -> None:
+def test_zero_steps_are_symmetric_on_a_log_scale() -> None:
     up, down = mutations(constant(0.0), 4.0), mutations(constant(0.0), 0.25)
     assert up is not None
     assert down is not None
@@ -126,7 +124,7 @@ def made_at(value: Any, share: float = 1.0) -> Place:
         (Mutation(constant(0.5, literal=False), 0.5, made_at(2.0, -2.0)), 4.0),
     ],
 )  # fmt: skip
-def test_the_number_at_a_definition_follows_the_change_at_the_use(mutation: Mutation, expected: Any) -> None:
+def test_definition_follows_the_change_at_the_use(mutation: Mutation, expected: Any) -> None:
     found = redefinition(mutation)
     assert (found, type(found)) == (pytest.approx(expected), type(expected))
 
@@ -161,7 +159,7 @@ def test_step_without_a_scale_is_a_factor() -> None:
     assert stepped(constant(0.9), 1.0, SHARE, mutations) is None  # changes nothing
 
 
-def test_another_step_of_a_mutation_keeps_its_operand_and_its_scale() -> None:
+def test_another_step_keeps_operand_and_scale() -> None:
     first = stepped(constant(0.9), 5.0, SHARE, mutations)
     assert first is not None
     other = to_step(first, 10.0, mutations)

@@ -103,7 +103,7 @@ def published(text: str) -> list[float]:
 @pytest.mark.parametrize("writing", WRITINGS)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("kind", NODES)
-def test_git_and_patch_produce_the_simulated_program_and_it_runs(
+def test_git_and_patch_produce_the_simulated_program(
     tmp_path: Path, kind: str, form: str, writing: str
 ) -> None:
     written = WRITINGS[writing]

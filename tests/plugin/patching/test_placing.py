@@ -65,9 +65,7 @@ def test_patch_is_placed_between_folder_and_repository(
         located(patch("outside.py"), None)
 
 
-def test_without_a_repository_only_the_folder_itself_is_the_project(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_folder_without_a_repository_is_the_project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path.resolve() / "plain"
     folder.mkdir()
     (tmp_path / "node.py").write_text("")

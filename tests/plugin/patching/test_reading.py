@@ -89,7 +89,7 @@ def test_repair_rule_is_documented_but_not_a_lint_rule(tmp_path: Path) -> None:
     assert f"the rule `{rule}`" in (ROOT / "docs" / "ci.md").read_text()
 
 
-def test_a_result_is_located_at_the_last_change_that_removes_lines(tmp_path: Path) -> None:
+def test_result_is_located_at_the_last_removed_lines(tmp_path: Path) -> None:
     found = patch(tmp_path, NODE, "import a\nimport b\n\nx = 9\ny = 2\nz = 8\nmore = 1\n")
     (location,) = result(found)["locations"]
     assert location["physicalLocation"]["region"] == {
@@ -103,7 +103,7 @@ def test_a_result_is_located_at_the_last_change_that_removes_lines(tmp_path: Pat
     assert only["physicalLocation"]["artifactLocation"] == {"uri": "node.py", "uriBaseId": "%SRCROOT%"}
 
 
-def test_a_sarif_fix_replaces_whole_lines_and_states_the_evidence(tmp_path: Path) -> None:
+def test_sarif_fix_replaces_whole_lines(tmp_path: Path) -> None:
     one = result(patch(tmp_path, NODE, NODE.replace("y = 2", "y = 4")))
     ((change,),) = (fix["artifactChanges"] for fix in one["fixes"])
     assert change["replacements"] == [
@@ -127,7 +127,7 @@ def test_insertions_are_suggested_together_with_a_neighbouring_line(tmp_path: Pa
     assert (comment["line"], comment["body"]) == (1, "```suggestion\ntop = 1\nimport a\n```")
 
 
-def test_the_fence_of_a_suggestion_is_longer_than_any_in_the_text(tmp_path: Path) -> None:
+def test_suggestion_fence_is_longer_than_any_in_the_text(tmp_path: Path) -> None:
     found = patch(tmp_path, "a = 1\n", "a = '````'\n")
     assert "`````suggestion\na = '````'\n`````\n" in suggesting.markdown(found)
     assert "`node.py`, line 1:" in suggesting.markdown(found)
@@ -185,9 +185,7 @@ def test_a_patch_with_a_newly_computed_seal_is_read(tmp_path: Path) -> None:
         "header",
     ],
 )
-def test_an_edited_patch_counts_as_damaged_even_if_its_seal_is_right(
-    tmp_path: Path, changes: list[tuple[str, str]]
-) -> None:
+def test_edited_patch_counts_as_damaged(tmp_path: Path, changes: list[tuple[str, str]]) -> None:
     path = rewritten(tmp_path)
     changes = [(old.replace("@@ -2,4 +2,4 @@", hunk(path)), edited(new, path)) for old, new in changes]
     with pytest.raises(RepairError, match="is damaged: it was cut or edited"):
@@ -211,21 +209,21 @@ def edited(new: str, path: Path) -> str:
     return f"@@ -{one},{int(count) + (first.endswith('5'))} +{begin},{int(size) - (second.endswith('3'))} @@"
 
 
-def test_a_patch_with_two_sections_for_one_file_counts_as_damaged(tmp_path: Path) -> None:
+def test_patch_with_two_sections_per_file_is_damaged(tmp_path: Path) -> None:
     path = rewritten(tmp_path)
     body = path.read_text().partition("diff --git")[2]
     with pytest.raises(RepairError, match="is damaged"):
         reading.read(rewritten(tmp_path, (f"diff --git{body}", f"diff --git{body}diff --git{body}")))
 
 
-def test_a_missing_patch_is_reported_with_the_folder_of_patches(tmp_path: Path) -> None:
+def test_missing_patch_error_names_the_folder(tmp_path: Path) -> None:
     with pytest.raises(
         RepairError, match=r"gone\.patch cannot be read \(.*TARL writes patches to \.tarl/patches"
     ):
         reading.read(tmp_path / "gone.patch")
 
 
-def test_a_partial_repair_is_quoted_so_that_only_tarl_reads_it(tmp_path: Path) -> None:
+def test_partial_repair_is_readable_only_by_tarl(tmp_path: Path) -> None:
     (tmp_path / "node.py").write_text(NODE)
     file = tmp_path / "node.py"
     header = [f"{TITLE}0.1.0: partial, a change", "partial: regains 4 of 9"]
@@ -261,7 +259,7 @@ ODD = [
 
 
 @pytest.mark.parametrize("name", ODD)
-def test_file_names_that_may_lead_out_of_the_project_are_refused(name: str) -> None:
+def test_file_names_outside_the_project_are_refused(name: str) -> None:
     assert not reading._inside(name)
 
 

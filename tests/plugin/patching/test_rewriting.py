@@ -138,7 +138,7 @@ def test_adjacent_statements_under_one_condition_share_one_if_statement() -> Non
 
 
 @pytest.mark.parametrize("first", ["mud = 5 * delta", "log(5 * delta)", "a = yield 5"])
-def test_a_condition_is_repeated_after_a_statement_that_may_change_it(first: str) -> None:
+def test_condition_is_repeated_after_a_change(first: str) -> None:
     text = f"def step(delta, mud, pos):\n    {first}\n    b = 0.1 + mud\n"
     analysis = HandMade({"node.py": text}, held=HELD)
     uses = [analysis.operand("5", 5, "5"), analysis.operand("0.1", 0.1, "0.1 + mud")]
@@ -158,7 +158,7 @@ def test_several_constants_of_a_statement_change_together() -> None:
     assert "        return min(7.5, max(7.5, 7.5 * delta))\n    return min(5" in changed
 
 
-def test_a_condition_needed_twice_in_a_header_gets_a_name() -> None:
+def test_condition_needed_twice_gets_a_name() -> None:
     text = "def step(delta, mud, drifted):\n    if 5 < delta < 9:\n        pass\n"
     analysis = HandMade({"node.py": text}, held=HELD)
     uses = [analysis.operand("5", 5, "5 < d"), analysis.operand("9", 9, "< 9")]
@@ -199,7 +199,7 @@ def test_the_condition_of_an_elif_stays_where_it_is() -> None:
     assert "    elif (7.5 if mud else 5) < delta < (7.5 if mud else 9):\n" in changed
 
 
-def test_the_condition_of_a_loop_is_evaluated_in_each_iteration() -> None:
+def test_loop_condition_is_evaluated_each_iteration() -> None:
     text = "def step(delta, mud):\n    while 5 < delta < 9:\n        delta = move()\n"
     analysis = HandMade({"node.py": text}, held=HELD)
     uses = [analysis.operand("5", 5, "5 < d"), analysis.operand("9", 9, "< 9")]
@@ -210,9 +210,7 @@ def test_the_condition_of_a_loop_is_evaluated_in_each_iteration() -> None:
 @pytest.mark.parametrize("ending", ["\n", "\r\n"])
 @pytest.mark.parametrize("unit", ["\t", "  ", "    "])
 @pytest.mark.parametrize("final", [True, False])
-def test_line_endings_indentation_and_the_end_of_the_file_are_kept(
-    ending: str, unit: str, final: bool
-) -> None:
+def test_line_endings_and_indentation_are_kept(ending: str, unit: str, final: bool) -> None:
     lines = ["# Größe — ñ", "def step(δ, mud):", f"{unit}été = 5 * δ", f"{unit}return été*0.5  # ½"]
     text = ending.join(lines) + (ending if final else "")
     analysis = HandMade({"node.py": text}, held=HELD)
@@ -221,7 +219,7 @@ def test_line_endings_indentation_and_the_end_of_the_file_are_kept(
     assert changed == ending.join([*lines[:-1], *new]) + (ending if final else "")
 
 
-def test_the_condition_is_reported_as_it_is_written_in_the_file() -> None:
+def test_condition_is_reported_as_written() -> None:
     text = "def step(delta, mud, pos):\n    return 5 * delta\n"
     analysis = HandMade({"node.py": text}, held=HELD)
     change = [Mutation(analysis.operand("5", 5, "5 *"), 12.0)]
@@ -258,7 +256,7 @@ def test_the_condition_is_reported_as_it_is_written_in_the_file() -> None:
         ("y = = 5\n", [("5", 5, 7)], Guard(), "cannot be parsed as Python"),
     ],
 )
-def test_a_change_that_cannot_be_written_is_refused_with_a_reason(
+def test_unwritable_change_is_refused_with_a_reason(
     text: str, changes: list[Any], guard: Guard, words: str
 ) -> None:
     analysis = HandMade({"node.py": text}, held={("/terrain", "data"): ("y",)})
@@ -267,7 +265,7 @@ def test_a_change_that_cannot_be_written_is_refused_with_a_reason(
         rewrite(analysis, made, guard, TOPICS)
 
 
-def test_a_file_outside_the_analysis_is_named_in_the_error() -> None:
+def test_file_outside_the_analysis_is_named() -> None:
     analysis = HandMade({"node.py": "y = 5\n"})
     change = Mutation(analysis.operand("5", 5, "5"), 7)
     with pytest.raises(RepairError, match=r"node\.py is not among the analysed files"):
@@ -335,7 +333,7 @@ class Log(list[float]):
     a=st.integers(-3, 3),
     b=st.integers(-3, 3),
 )
-def test_a_rewritten_program_behaves_like_the_original_unless_the_condition_holds(
+def test_rewritten_program_is_unchanged_outside_the_condition(
     statement: str, expression: str, mud: bool, a: int, b: int
 ) -> None:
     text = program(statement.format(expression))
@@ -369,7 +367,7 @@ def outcome(text: str, mud: bool, a: int, b: int) -> Any:
         return type(error), list(log)
 
 
-def test_a_rewritten_node_behaves_like_the_original_until_the_condition_holds() -> None:
+def test_rewritten_node_is_unchanged_until_the_condition_holds() -> None:
     text = dedent(
         """\
         import rospy
@@ -419,7 +417,7 @@ def test_every_constant_change_of_the_examples_accepts_a_condition(node: str) ->
         assert f"if {guard_text(MUDDY_STRETCH, analysis, [change], TOPICS)}" in text
 
 
-def test_the_repair_of_the_delivery_robot_has_the_expected_text() -> None:
+def test_delivery_robot_repair_has_the_expected_text() -> None:
     analysis = analyse([EXAMPLES / "shuttle" / "traveller.py"], root=EXAMPLES)
     (gain,) = (
         operand for step in analysis.sites for operand in analysis.operands(step.site) if operand.value == 5

@@ -37,9 +37,7 @@ def names(made: Replacement) -> list[str]:
         ("", "y = 2\nz = 3\n", "x = 1\ny = 2\nz = 3\n", "x = 1\ny = 2\nz = 3\n"),
     ],
 )
-def test_two_compatible_changes_of_one_line_are_merged_in_either_order(
-    old: str, one: str, other: str, both: str
-) -> None:
+def test_compatible_changes_of_one_line_are_merged(old: str, one: str, other: str, both: str) -> None:
     assert agreed(change(old, one), change(old, other)) == change(old, both)
     turned = agreed(change(old, other), change(old, one))
     assert turned is not None

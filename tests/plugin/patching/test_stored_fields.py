@@ -33,7 +33,7 @@ from pytest_tarl.patching.stores import (
         ),
     ],
 )
-def test_an_index_of_a_field_is_checked_against_the_length(field: str, expected: str) -> None:
+def test_field_index_is_checked_against_the_length(field: str, expected: str) -> None:
     assert _field("message", field) == expected
 
 
@@ -50,7 +50,7 @@ def lines(instance: str = "", annotation: str = "", **names: str) -> list[str]:
     return Callback(Store(source), anchor, "on_scan", fields, annotation).lines(instance)
 
 
-def test_a_function_stores_in_globals_and_a_method_in_attributes() -> None:
+def test_functions_store_in_globals_and_methods_in_attributes() -> None:
     assert lines(data="near", pose__x="x") == [
         "def on_scan(message):",
         "  global near, x",
@@ -67,7 +67,7 @@ def test_the_parameter_has_another_name_than_the_variables() -> None:
     assert lines(data="message")[::2] == ["def on_scan(received):", "  message = received.data"]
 
 
-def test_a_value_is_read_from_the_instance_or_the_module() -> None:
+def test_value_is_read_from_instance_or_module() -> None:
     source = document("node.py", "class A:\n    pass\n")
     owner = source.tree.body[0]
     assert isinstance(owner, ast.ClassDef)
@@ -75,7 +75,7 @@ def test_a_value_is_read_from_the_instance_or_the_module() -> None:
     assert Store(source).variable("near") == "near"
 
 
-def test_the_first_statement_skips_the_docstring_if_another_statement_follows() -> None:
+def test_first_statement_skips_the_docstring() -> None:
     def first(body: str) -> str:
         (found,) = ast.parse(f"def f():\n{body}").body
         assert isinstance(found, ast.FunctionDef)
@@ -97,7 +97,7 @@ def test_the_first_statement_skips_the_docstring_if_another_statement_follows() 
         ("def f(): pass\n", 0, None),
     ],
 )
-def test_new_variables_are_added_after_a_module_variable_that_directly_precedes_them(
+def test_new_variables_follow_a_preceding_module_variable(
     text: str, limit: int, expected: str | None
 ) -> None:
     found = _state(document("node.py", text), limit)
@@ -124,6 +124,6 @@ def test_a_comment_stays_with_its_definition(text: str, line: int, expected: int
     ("before", "expected"),
     [("A = 1\n\n\n", ""), ("A = 1\r\n\r\n", ""), ("A = 1\n", "\n\n"), ("", ""), ("\n", "")],
 )
-def test_two_empty_lines_separate_a_definition_from_the_text_before(before: str, expected: str) -> None:
+def test_two_empty_lines_precede_a_definition(before: str, expected: str) -> None:
     source = document("node.py", f"{before}def f(): pass\n")
     assert _gap(source, len(before)) == expected

@@ -36,7 +36,7 @@ def test_a_template_writes_its_example(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_the_original_value_is_used_if_the_condition_does_not_hold(path: Path) -> None:
+def test_original_value_is_used_outside_the_condition(path: Path) -> None:
     example = contents(path)["example"]
     before = example["before"].lstrip("\n")
     partner = span(before, example["pair"]) if "pair" in example else None
@@ -62,7 +62,7 @@ def test_every_template_is_in_the_docs() -> None:
         assert contents(path)["example"]["after"].strip("\n").splitlines()[-1] in page
 
 
-def test_a_project_adds_its_own_templates_and_can_replace_built_in_ones(tmp_path: Path) -> None:
+def test_project_templates_can_replace_built_in_ones(tmp_path: Path) -> None:
     folder = tmp_path / "tarl_templates"
     folder.mkdir()
     (folder / "root.toml").write_text(
@@ -187,9 +187,7 @@ PLACES = {  # where a statement may stand, as the first one or alone
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("statement", ["turn = 2.0 * error", "send(2.0 * error)", "return 2.0 * error"])
 @pytest.mark.parametrize("path", [each for each in FILES if template(each).state], ids=lambda path: path.stem)
-def test_state_is_declared_before_the_first_statement_that_uses_it(
-    path: Path, statement: str, place: str
-) -> None:
+def test_state_is_declared_before_its_first_use(path: Path, statement: str, place: str) -> None:
     made = template(path)
     if made.on == "comparison":
         statement = f"if 2.0 * error > 1.0: {statement}"

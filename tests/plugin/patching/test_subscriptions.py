@@ -29,14 +29,14 @@ from tests.plugin.patching.subscribed_nodes import NODES, PATCHED_SCRIPT, ROSPY_
 
 
 @pytest.mark.parametrize("kind", NODES)
-def test_a_node_subscribes_to_the_sensor_in_its_own_style(kind: str) -> None:
+def test_node_subscribes_in_its_own_style(kind: str) -> None:
     text, expected, call, api = NODES[kind]
     sources = {"node.py": text}
     assert repaired(sources, subscribing(sources, "node.py", call, api))["node.py"] == expected
 
 
 @pytest.mark.parametrize("kind", NODES)
-def test_the_patched_node_runs_and_changes_its_behaviour_when_the_condition_holds(kind: str) -> None:
+def test_patched_node_changes_under_the_condition(kind: str) -> None:
     text, _, call, api = NODES[kind]
     sources = {"node.py": text}
     ros = TinyRos()
@@ -61,14 +61,14 @@ def test_windows_line_endings_are_kept() -> None:
     assert repaired(sources, flows)["node.py"] == PATCHED_SCRIPT.replace("\n", "\r\n")
 
 
-def test_without_a_known_subscription_the_start_of_the_node_is_used() -> None:
+def test_node_start_is_used_without_a_subscription() -> None:
     for name, (text, _, call, _) in NODES.items():
         ros = TinyRos()
         ros.run(repaired({"node.py": text.replace(call, "None")}), "node.py")
         assert list(ros.subscribed) == ["/terrain"], name
 
 
-def test_a_reading_loop_with_wait_for_message_subscribes_before_the_loop() -> None:
+def test_reading_loop_subscribes_before_the_loop() -> None:
     text = dedent(
         """\
         import rospy
@@ -173,9 +173,7 @@ def test_the_subscription_is_made_once_and_before_anything_blocks(body: str, exp
         ),
     ],
 )  # fmt: skip
-def test_the_import_of_the_message_type_is_added_beside_other_imports(
-    imports: str, written: str, subscriber: str, kind: str
-) -> None:
+def test_type_import_is_added_beside_others(imports: str, written: str, subscriber: str, kind: str) -> None:
     sources = {
         "node.py": f"{imports}\n\nA = Z = 1\n\n\ndef main(O, cb):\n    listen('/odom', O, cb)\n\n\ny = 5 * A\n"
     }
@@ -197,7 +195,7 @@ def test_names_that_the_file_uses_are_not_reused() -> None:
 
 
 @pytest.mark.parametrize("name", ["list", "class", "message"])
-def test_names_of_builtins_keywords_and_the_parameter_are_not_reused(name: str) -> None:
+def test_builtin_and_parameter_names_are_not_reused(name: str) -> None:
     sensor = Sensor(name, topic="/terrain", field="data")
     sources = {"node.py": SCRIPT}
     flows = subscribing(sources, "node.py", NODES["rospy script"][2], "rospy.Subscriber")
@@ -240,7 +238,7 @@ def test_two_sensors_of_a_topic_share_a_subscription() -> None:
     assert ros.published == [5.0, 12.0, 5.0]
 
 
-def test_a_sensor_whose_value_is_available_at_the_site_needs_no_subscription() -> None:
+def test_available_sensor_needs_no_subscription() -> None:
     sources = {"node.py": SCRIPT}
     held = {("/odom", "pose.pose.position.x"): ("pos",)}
     changed = repaired(sources, guard=Guard((Conjunct(POSITION, 4.0, 7.0),)), held=held)["node.py"]
@@ -263,7 +261,7 @@ class Controller:
         ("import control as c\nController = c.Controller", "c.on_terrain"),
     ],
 )
-def test_a_value_used_in_another_module_is_stored_in_that_module(importing: str, target: str) -> None:
+def test_value_used_elsewhere_is_stored_there(importing: str, target: str) -> None:
     main = SCRIPT.replace("import rospy\n", f"import rospy\n{importing}\n").replace(
         "5 * pos", "Controller().command(pos)"
     )
@@ -342,7 +340,7 @@ def test_an_attribute_is_set_before_the_constructor_reads_it(early: str) -> None
     assert ros.run(repaired(sources, flows), "node.py")["driver"].gain == 5.0
 
 
-def test_a_class_that_subscribes_outside_of_its_constructor_gets_a_class_attribute() -> None:
+def test_late_subscribing_class_gets_a_class_attribute() -> None:
     text = ROSPY_CLASS.replace(
         "self.sub = rospy.Sub", "self.connect()\n\n    def connect(self):\n        self.sub = rospy.Sub"
     )

@@ -39,7 +39,7 @@ def test_unknown_placeholders_of_a_sentence_are_kept() -> None:
     assert plainly("move {x} by {k}", {"x": "speed"}) == "move speed by {k}"
 
 
-def test_the_uses_of_a_placeholder_are_counted_in_lines_and_expression() -> None:
+def test_placeholder_uses_are_counted() -> None:
     found = Template("t", "s", "value", 1, "{x} + {x} * {k}", lines=("{k} = {x}", "y = {x}"))
     assert [found.uses(name) for name in ("x", "k", "y")] == [4, 2, 0]
 

@@ -33,7 +33,7 @@ SOME, ANOTHER = Candidate((), Guard()), Candidate((), Guard(()))
 NONE = Refused(None, "no operand helps")
 
 
-def test_a_refused_candidate_is_reported_if_no_other_candidate_is_left() -> None:
+def test_refused_candidate_is_reported_if_alone() -> None:
     refused = Refused(SOME, "gain too small")
     assert furthest(NONE, refused) is refused
     assert furthest(refused, NONE) is refused
@@ -261,7 +261,7 @@ def test_condition_is_tried_if_the_change_harms_the_designed_world(
     assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
 
 
-def test_a_parameter_that_is_changed_in_its_file_gets_no_condition(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_parameter_changed_in_its_file_gets_no_condition(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
     )
@@ -282,9 +282,7 @@ def test_a_parameter_that_is_changed_in_its_file_gets_no_condition(monkeypatch: 
 
 
 @pytest.mark.parametrize("kind", ["bad at once", "lucky on known seeds", "worse later than the original"])
-def test_no_condition_is_tried_if_the_change_gains_too_little_everywhere(
-    kind: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_change_with_little_gain_gets_no_condition(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     always, wet, _, _ = GUARDS
     assert examined({always: kind, wet: "good"}, monkeypatch) == ([always], None)
 
@@ -308,7 +306,7 @@ def test_narrower_condition_is_skipped_after_a_low_reward(
     assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
 
 
-def test_one_mission_shows_whether_a_change_is_equally_harmful_under_another_condition(
+def test_one_mission_shows_equal_harm(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     always, wet, dark, _ = GUARDS
@@ -404,9 +402,7 @@ def accepted_factor(field: Any, factors: Sequence[float]) -> float:
 
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.2, 3.5), st.floats(0.0, 1.0), st.floats(1.2, 2.0))
-def test_bisection_finds_a_repair_between_too_weak_and_harmful_values(
-    low: float, share: float, further: float
-) -> None:
+def test_bisection_finds_a_repair_between_extremes(low: float, share: float, further: float) -> None:
     """Windows of at least 30 % are approached from above; candidates beyond a harmful one do not run."""
     high = low * (1.3 + share)
     field: Any = Window(low, high)
@@ -473,7 +469,7 @@ class Edge(Window):
 
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.4, 3.5), st.floats(0.91, 0.99))
-def test_a_value_at_the_edge_of_the_working_range_is_moved_further(low: float, share: float) -> None:
+def test_edge_value_is_moved_further(low: float, share: float) -> None:
     """The value holds on the seeds of the search but fails on others, so the factor is increased, not reduced."""
     field: Any = Edge(low, 100.0)
     assert accepted_factor(field, (low * share,)) == pytest.approx((low * share) ** 1.5, rel=1e-3)
@@ -495,7 +491,7 @@ class Costly(Window):
 
 @settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.2, 1.4))
-def test_a_value_whose_missions_succeed_but_earn_too_little_is_moved_back(low: float) -> None:
+def test_poor_but_successful_value_is_moved_back(low: float) -> None:
     field: Any = Costly(low, 1.6)
     field.order.goal = replace(field.order.goal, passing=True)
     assert low <= accepted_factor(field, (2.6,)) < 1.9
@@ -548,7 +544,7 @@ def test_value_that_loses_no_mission_is_preferred(low: float, share: float) -> N
     assert low <= accepted_factor(field, (low * share,)) <= 1.25 * low
 
 
-def test_later_candidates_first_run_the_missions_that_a_refused_candidate_lost(
+def test_later_candidates_run_the_lost_missions_first(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(
@@ -605,7 +601,7 @@ def test_acceptance_tests_are_shared_among_constants(
     assert len(examiner.waiting) == 5
 
 
-def test_waiting_candidates_are_tested_when_no_other_candidate_is_left(
+def test_waiting_candidates_are_tested_last(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(
@@ -629,7 +625,7 @@ def _tested_at_once(drifted: Any, nominal: Any, designed: Any, seeds: Sequence[i
     return Acceptance(good, "" if good else "gain too small", (outcome,), (), True, 1)
 
 
-def test_a_candidate_that_acts_like_a_rejected_candidate_is_not_tested_again(
+def test_twin_of_a_rejected_candidate_is_not_tested(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(

@@ -138,7 +138,7 @@ def test_the_axis_may_be_named_before_the_quantity(tmp_path: Path, monkeypatch: 
     assert form.partner == first.source.span(first.node)
 
 
-def test_a_sensor_also_represents_the_same_field_of_the_other_axis(
+def test_sensor_represents_the_field_of_the_other_axis(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pallet = Pallet(tmp_path, monkeypatch)
@@ -149,9 +149,7 @@ def test_a_sensor_also_represents_the_same_field_of_the_other_axis(
     assert "ey = 1.0 - msg.pose.pose.position.y - 2.0 * msg.twist.twist.linear.y" in text
 
 
-def test_a_sensor_without_an_axis_is_used_for_both_axes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_sensor_without_an_axis_serves_both(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pallet = Pallet(tmp_path, monkeypatch)
     load = Sensor("load", topic="/odom", field="twist.load", low=-1.0, high=1.0, bins=4)
     pallet.order.comparison.sensors = (load,)
@@ -159,9 +157,7 @@ def test_a_sensor_without_an_axis_is_used_for_both_axes(
     assert (form.sensor, form.sibling, form.partner) == (load, None, None)
 
 
-def test_a_change_is_made_for_both_axes_only_if_both_axes_overshoot(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_both_axes_change_only_if_both_overshoot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pallet = Pallet(tmp_path, monkeypatch)
     known = [template(SHIPPED / "derivative.toml")]
     signs = Signs({str(one.site): {"overshoot": 1.0} for one in pallet.spots})

@@ -54,7 +54,7 @@ def test_value_between_two_rejected_values_is_proposed(best: float) -> None:
     assert found[0] == pytest.approx((1.144 * 1.24) ** 0.5, rel=0.002)
 
 
-def test_a_value_that_loses_the_same_missions_is_not_proposed() -> None:
+def test_value_with_the_same_losses_is_not_proposed() -> None:
     found, _ = proposed(5.0, (1.144, SHORT), (1.24, SHORT))
     assert found == []
 

@@ -57,7 +57,7 @@ if __name__ == "__main__":
 """
 
 
-def test_the_search_gets_only_the_numbers_that_control_the_node(tmp_path: Path) -> None:
+def test_search_gets_only_controlling_numbers(tmp_path: Path) -> None:
     node = tmp_path / "keeper.py"
     node.write_text(KEEPER)
     order: Any = SimpleNamespace(
@@ -111,7 +111,7 @@ def test_user_function_with_a_ros_name_is_not_bookkeeping() -> None:
     assert not judged("level = Buffer(12)", "12", "class Buffer:\n    pass\n")
 
 
-def test_the_period_of_a_timer_with_an_unknown_callback_may_be_changed() -> None:
+def test_period_of_an_unknown_timer_may_change() -> None:
     assert not judged("timer = node.create_timer(0.5, other.tick)", "0.5")
     assert judged("timer = node.create_timer(0.5, tick)", "0.5", "def tick():\n    print(1)\n")
     assert not judged("timer = node.create_timer(0.5, lambda: tick())", "0.5", "def tick():\n    print(1)\n")

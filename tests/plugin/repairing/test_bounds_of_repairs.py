@@ -81,19 +81,19 @@ def test_effective_repair_runs_on_the_designed_seeds() -> None:
     assert mutants.ran == [(seed, drift) for drift in ("mud", None) for seed in fresh]
 
 
-def test_under_a_permanent_drift_only_the_new_world_has_bounds() -> None:
+def test_permanent_drift_has_bounds_in_the_new_world_only() -> None:
     mutants: Any = Mutants(permanent=True)
     found, count = guaranteed(mutants, accepted(Outcome(1.0, passed=True)))
     assert ([*found], count) == (["repaired"], 4)
 
 
-def test_without_a_number_of_episodes_as_many_run_as_in_a_comparison() -> None:
+def test_default_number_of_episodes_is_that_of_a_comparison() -> None:
     options = SimpleNamespace(seed=7, episodes=None, ONLINE_EPISODES=6)
     found, count = guaranteed(Mutants(options=options), accepted())  # type: ignore[arg-type]
     assert (found["repaired"].episodes, count) == (6, 6)
 
 
-def test_the_bounds_of_equal_episodes_are_marked_as_not_varied() -> None:
+def test_bounds_of_equal_episodes_are_marked() -> None:
     found, _ = guaranteed(Mutants(equal=True), accepted())  # type: ignore[arg-type]
     assert not found["repaired"].varied
 

@@ -52,7 +52,7 @@ def test_the_phases_of_a_repair_never_exceed_the_budget(
         assert ran + charged == purse.spent <= budget
 
 
-def test_each_phase_has_its_share_of_the_time_that_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_phase_has_its_share_of_the_remaining_time(monkeypatch: pytest.MonkeyPatch) -> None:
     now, told = [100.0], []
     monkeypatch.setattr("pytest_tarl.repairing.budget.monotonic", lambda: now[0])
     order = SimpleNamespace(drift="mud", progress=lambda *one: told.append(one))
@@ -77,7 +77,7 @@ def test_each_phase_has_its_share_of_the_time_that_is_left(monkeypatch: pytest.M
     trials(candidate, 2)  # a known outcome needs no time
 
 
-def test_a_phase_without_a_limit_of_time_shows_its_episodes() -> None:
+def test_phase_without_a_time_limit_shows_its_episodes() -> None:
     told: list[Any] = []
     order = SimpleNamespace(drift="mud", progress=lambda *one: told.append(one))
     ran: list[Any] = []

@@ -56,14 +56,14 @@ def test_value_moves_towards_the_middle_of_good_values(best: float, off: float, 
         assert trials.spent <= SEEDS
 
 
-def test_smaller_steps_are_skipped_where_larger_steps_have_no_effect() -> None:
+def test_smaller_steps_are_skipped_after_ineffective_ones() -> None:
     trials = Trials(lambda _, __: Outcome(9.0, True), 100)
     found = Candidate((Mutation(LITERAL, 4.4),), ALWAYS)
     assert centred(found, trials, mutations, GOAL, REFERENCE) == found
     assert trials.spent == SEEDS + 2 * BEHIND
 
 
-def test_values_are_compared_on_the_seeds_on_which_the_candidate_has_run() -> None:
+def test_values_are_compared_on_known_seeds() -> None:
     trials = world(2.0, 0.3)
     goal = replace(GOAL, pairs=tuple(Pair(seed, 0.0) for seed in range(9)))
     found = Candidate((Mutation(LITERAL, 4.0),), ALWAYS)
@@ -94,7 +94,7 @@ def test_value_does_not_move_to_one_that_loses_missions() -> None:
     assert centred(found, trials, mutations, GOAL, REFERENCE) == found
 
 
-def test_a_candidate_that_fails_on_a_known_seed_is_unchanged() -> None:
+def test_candidate_that_fails_on_a_known_seed_stays() -> None:
     trials = world(4.0, 0.1)
     found = Candidate((Mutation(LITERAL, 2.2),), ALWAYS)
     assert centred(found, trials, mutations, GOAL, REFERENCE) == found
@@ -102,7 +102,7 @@ def test_a_candidate_that_fails_on_a_known_seed_is_unchanged() -> None:
 
 
 @pytest.mark.parametrize("value", [-2.0, True])
-def test_a_change_of_a_sign_or_a_boolean_has_no_neighbouring_values(value: float) -> None:
+def test_signs_and_booleans_have_no_neighbours(value: float) -> None:
     constant = operand(5, "False", False) if value is True else LITERAL
     found = Candidate((Mutation(constant, value),), ALWAYS)
     trials = Trials(lambda _, __: Outcome(9.4, passed=True), 100)

@@ -69,7 +69,7 @@ def test_goal_has_failing_episodes_and_designed_mean_length() -> None:
 @pytest.mark.parametrize(
     ("sizes", "world", "ranged"), [(("",), True, True), (("",), False, False), ((), True, False)]
 )
-def test_the_first_episodes_span_the_whole_range_of_drift_sizes(
+def test_first_episodes_span_the_range_of_sizes(
     monkeypatch: pytest.MonkeyPatch, sizes: tuple[str, ...], world: bool, ranged: bool
 ) -> None:
     monkeypatch.setattr(request, "sizes", lambda world, drift, seed: {"": float(seed % 50)})
@@ -139,7 +139,7 @@ def test_a_candidate_that_cannot_be_written_is_refused(monkeypatch: pytest.Monke
     assert one.refused.reason == "cannot be written"
 
 
-def test_a_smoother_form_of_a_candidate_is_accepted_in_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_smoother_form_of_a_candidate_is_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
     one, field, trials = examiner(["good", "good"], monkeypatch)
     first, nicer = field.candidates
     monkeypatch.setattr(accepting, "smoothed", lambda _, candidate: [nicer] if candidate == first else [])
@@ -239,7 +239,7 @@ def test_repair_that_earns_less_is_reported(
     assert one._named(reason, totals) == expected
 
 
-def test_candidates_that_still_wait_at_the_end_are_reported_as_never_tested(
+def test_waiting_candidates_are_reported_as_untested(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     one, field, _ = examiner(["good", "good", "good"], monkeypatch)
@@ -269,7 +269,7 @@ def test_candidates_that_still_wait_at_the_end_are_reported_as_never_tested(
         (0, 40, 2, True),
     ],
 )
-def test_a_search_ends_after_five_tests_or_twenty_candidates_on_fresh_seeds(
+def test_search_ends_after_five_tests(
     monkeypatch: pytest.MonkeyPatch, tested: int, screened: int, turns: int, over: bool
 ) -> None:
     one, field, _ = examiner(["good"], monkeypatch)
@@ -300,7 +300,7 @@ def test_a_plainer_candidate_that_waits_is_tested_first(monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize("breaks", [False, True])
-def test_a_value_that_cannot_be_written_counts_as_a_failure_everywhere(breaks: bool) -> None:
+def test_unwritable_value_fails_everywhere(breaks: bool) -> None:
     pairs = tuple(Pair(seed, 1.0) for seed in range(5))
     goal = Goal(pairs, near=8.0, enough=9.0, online=1.0)
     asked: list[int] = []
@@ -420,7 +420,7 @@ def test_a_permanent_drift_needs_no_condition(monkeypatch: pytest.MonkeyPatch) -
     assert phases.guards == (ALWAYS,)
 
 
-def test_all_sites_are_listed_and_sites_of_the_slices_come_first() -> None:
+def test_sites_of_the_slices_come_first() -> None:
     def step(name: str) -> Any:
         site = SiteId("node", "run", name, 0)
         return SimpleNamespace(
@@ -448,7 +448,7 @@ def test_all_sites_are_listed_and_sites_of_the_slices_come_first() -> None:
     assert [place.id for place, _ in repair._ranked(of, {})] == [ranked.site.id, str(a.site)]
 
 
-def test_a_tenth_of_the_last_phase_is_left_for_examinations(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_tenth_of_the_last_phase_is_for_examinations(monkeypatch: pytest.MonkeyPatch) -> None:
     budgets: list[int] = []
     trials = Trials(lambda *_: Outcome(1.0, passed=True), 60, limit=60)
 

@@ -34,7 +34,7 @@ from tests.plugin.searching.test_search import operand
 NO_ORDER: Any = None  # edits of constants need no order
 
 
-def test_uses_of_one_definition_share_the_edit_of_that_definition() -> None:
+def test_uses_of_one_definition_share_its_edit() -> None:
     low = replace(operand(5, "LIMIT", 1.0), definition=operand(1, "1.0", 1.0).span)
     high = replace(low, span=replace(low.span, column=low.span.column + 9))
     place = Place("node.py", 8, 11, 1, "LIMIT", 1.0)
@@ -80,7 +80,7 @@ def test_edits_have_the_new_value_or_a_factor() -> None:
         )
 
 
-def test_the_reward_of_a_repair_in_the_designed_world_is_described() -> None:
+def test_reward_of_a_repair_as_designed_is_described() -> None:
     told = _designed_and_repaired(order(permanent=True), [3.0])
     assert (
         told
@@ -92,7 +92,7 @@ def test_the_reward_of_a_repair_in_the_designed_world_is_described() -> None:
     assert _designed_and_repaired(order(), []).endswith("because the condition never holds there")
 
 
-def test_a_refused_candidate_is_reported_with_its_mean_if_it_was_tested(
+def test_tested_refused_candidate_has_its_mean(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(delivering, "_guard", lambda *_: "wet")
@@ -122,7 +122,7 @@ def test_attempts_have_the_mean_of_their_episodes(monkeypatch: pytest.MonkeyPatc
     )
 
 
-def test_a_condition_that_the_node_cannot_evaluate_is_described_by_its_sensors(
+def test_condition_without_variables_is_described_by_sensors(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def unable(*_: Any) -> str:

@@ -62,7 +62,7 @@ class Structures:
         (9.0, LATER, True, ["factors", f"changes {MOST} False"]),
     ],
 )
-def test_phases_begin_after_their_number_of_episodes_unless_a_constant_helps(
+def test_phases_begin_late_if_a_constant_helps(
     best: float, spent: int, recorded: bool, expected: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(early, "Structures", Structures)

@@ -75,7 +75,7 @@ def never(candidate: Candidate, seed: int) -> Outcome:
 
 
 @pytest.mark.parametrize("share", [0.08, 0.12, 0.3])
-def test_recorded_missions_that_visit_the_bins_of_failed_missions_are_found(share: float) -> None:
+def test_recorded_missions_in_failed_bins_are_found(share: float) -> None:
     road: Any = Road(share)
     trials = Trials(never, 300)
     goal = enriched(road, trials)
@@ -88,7 +88,7 @@ def test_recorded_missions_that_visit_the_bins_of_failed_missions_are_found(shar
     assert not any(road.hard(pair.seed) for pair in goal.controls)
 
 
-def test_a_failing_mission_is_compared_with_its_own_designed_reward() -> None:
+def test_failing_mission_is_compared_with_its_designed_reward() -> None:
     road: Any = Road(0.12)
     goal = enriched(road, Trials(never, 300))
     seed, easy = goal.pairs[0].seed, goal.controls[0].seed
@@ -116,7 +116,7 @@ def test_repair_may_earn_less_on_a_few_missions(share: float) -> None:
         assert not goal.reached(Outcome(DESIGNED - 1.1 * margin, passed=True), control.seed)
 
 
-def test_a_repair_must_restore_half_of_what_a_mission_lost() -> None:
+def test_repair_must_restore_half_of_a_loss() -> None:
     road: Any = Road(0.05)
     road.order.goal = replace(
         road.order.goal, pairs=tuple(replace(one, total=HARD - 2.0) for one in road.order.goal.pairs)
@@ -127,7 +127,7 @@ def test_a_repair_must_restore_half_of_what_a_mission_lost() -> None:
     assert not goal.reached(Outcome(HARD - 1.01, passed=True), seed)
 
 
-def test_no_extra_episodes_run_if_most_missions_or_no_missions_lose_reward() -> None:
+def test_no_extra_episodes_if_most_missions_lose() -> None:
     for share in (0.0, 0.9):
         road: Any = Road(share)
         assert enriched(road, Trials(never, 300)) == road.order.goal

@@ -97,7 +97,7 @@ def test_spikes_indicate_a_median_where_the_value_is_received(tmp_path: Path) ->
     assert ("median", "msg.data") in tried(order, {received: spiky})
 
 
-def test_spikes_in_a_comparison_suggest_a_template_that_confirms_its_result(tmp_path: Path) -> None:
+def test_spikes_suggest_a_confirming_template(tmp_path: Path) -> None:
     order = order_of(tmp_path)
     told = tried(order, {site(order, "self.near = "): {"spikes": 0.9, "swing": 0.2}})
     assert told == [("confirmed", "self.range < 0.5")]
@@ -193,7 +193,7 @@ def test_seeds_with_a_loss_run_in_both_worlds(
     assert found.strength("elsewhere", ("spikes",)) == 0.0
 
 
-def test_without_episodes_or_without_a_drift_no_symptoms_are_measured(tmp_path: Path) -> None:
+def test_symptoms_need_episodes_and_a_drift(tmp_path: Path) -> None:
     order, rollout = missions(tmp_path)
     assert signs(order, mission_pairs.mission_pairs(order, Trials(unhelpful, 1))) == Signs()
     order.drift = None
@@ -202,7 +202,7 @@ def test_without_episodes_or_without_a_drift_no_symptoms_are_measured(tmp_path: 
     assert not rollout.plans
 
 
-def test_a_sensor_is_compared_only_over_the_steps_that_both_missions_reached(tmp_path: Path) -> None:
+def test_sensor_is_compared_over_common_steps(tmp_path: Path) -> None:
     order = order_of(tmp_path)
     same = Signs(cells=((((1,), (1,)), ((1,), (1,))),))
     other = Signs(cells=((((1,), (1,)), ((1,), (2,))),))
@@ -231,7 +231,7 @@ def test_changes_with_symptoms_come_before_all_other_structural_changes(tmp_path
     assert set(labels) > {"confirmed"}
 
 
-def test_changes_without_parameters_are_tried_first_and_once_even_without_any_symptom(tmp_path: Path) -> None:
+def test_changes_without_parameters_are_tried_first(tmp_path: Path) -> None:
     order = order_of(tmp_path)
     names: list[str] = []
 
@@ -258,7 +258,7 @@ def _quietly(structures: Structures) -> list[Candidate]:
         return []
 
 
-def test_early_changes_wait_longer_while_a_constant_gains_a_part(tmp_path: Path) -> None:
+def test_early_changes_wait_while_a_constant_gains(tmp_path: Path) -> None:
     order, _ = missions(tmp_path)
     trials = Trials(unhelpful, 200)
     early = Early(order, (ALWAYS,), trials)
@@ -318,7 +318,7 @@ def test_a_symptom_of_half_its_strength_indicates_a_change(
         (1.0, 0.94, ["cheap", "dear"]),
     ],
 )
-def test_the_cheaper_of_two_changes_with_about_equal_symptoms_comes_first(
+def test_cheaper_of_two_similar_changes_comes_first(
     tmp_path: Path, cheap: float, dear: float, expected: list[str]
 ) -> None:
     order = order_of(tmp_path)
@@ -327,7 +327,7 @@ def test_the_cheaper_of_two_changes_with_about_equal_symptoms_comes_first(
     assert [one.partition(" ")[0] for one in found] == expected
 
 
-def test_templates_without_a_symptom_or_of_a_published_value_are_not_indicated(tmp_path: Path) -> None:
+def test_templates_without_symptoms_are_not_indicated(tmp_path: Path) -> None:
     order = order_of(tmp_path)
     known = [flipping(1, symptom=""), flipping(1, on="sent by sensor")]
     assert changes(order, known, {site(order, "speed = 0.4"): {"runaway": 1.0, "": 1.0}}) == []

@@ -27,7 +27,7 @@ def totals(gain: float, nominal_gain: float) -> dict[str, tuple[float, ...]]:
     }
 
 
-def test_a_repair_that_only_compensates_the_drift_gets_no_note() -> None:
+def test_repair_that_only_compensates_gets_no_note() -> None:
     assert exceeding(compared(), totals(0.0, 0.0)) == []
     assert exceeding(compared(), totals(0.08, 0.08)) == []  # within the tolerance
     assert (
@@ -36,12 +36,12 @@ def test_a_repair_that_only_compensates_the_drift_gets_no_note() -> None:
 
 
 @pytest.mark.parametrize(("permanent", "world"), [(False, "designed world"), (True, "old world")])
-def test_a_repair_that_earns_more_in_the_designed_world_is_named(permanent: bool, world: str) -> None:
+def test_repair_that_earns_more_as_designed_is_named(permanent: bool, world: str) -> None:
     (note,) = exceeding(compared(permanent=permanent), totals(0.4, 0.4))
     assert note.startswith(f"in the {world} the repaired node earns 1.4")
     assert "more than the 1.0" in note
 
 
-def test_a_repair_that_earns_more_only_under_the_drift_is_named() -> None:
+def test_repair_that_earns_more_under_drift_is_named() -> None:
     (note,) = exceeding(compared(), totals(0.4, 0.0))
     assert note.startswith("in the drift scenario 'mud' the repaired node earns")

@@ -171,7 +171,7 @@ class _Values:
 NO_VALUES = _Values()
 
 
-def test_named_parameters_and_those_that_no_file_sets_are_not_added(tmp_path: Path) -> None:
+def test_named_or_unset_parameters_are_not_added(tmp_path: Path) -> None:
     named = {"first": 'self.gain = rospy.get_param("~gain_left", 1.0)', "use": "self.gain"}
     assert "gain_left" not in in_files(order_of(tmp_path, named))
     loop = FORMS["loop"]
@@ -209,7 +209,7 @@ def test_an_entry_of_a_parameter_is_one_constant_at_its_use_and_in_the_file(tmp_
     assert text[place.start : place.end] == "3.0"
 
 
-def test_a_repair_that_may_need_a_condition_keeps_the_call_as_well(tmp_path: Path) -> None:
+def test_repair_with_a_possible_condition_keeps_the_call(tmp_path: Path) -> None:
     for permanent in (True, False):
         codes = [
             one.code for one in operands(order_of(tmp_path, FORMS["list of calls"], permanent=permanent))
@@ -227,7 +227,7 @@ def test_a_parameter_in_a_file_cannot_have_a_condition(tmp_path: Path) -> None:
         rewrite(order.analysis, [mutation], guard, {}, files_of_packages(order))
 
 
-def test_the_label_and_the_accepted_change_name_the_place_in_the_file(tmp_path: Path) -> None:
+def test_accepted_change_names_the_place_in_the_file(tmp_path: Path) -> None:
     order = order_of(tmp_path, FORMS["loop"])
     mutation = mutations(in_files(order)["gain_left"], 2.0)
     assert mutation is not None
@@ -258,7 +258,7 @@ def test_the_label_and_the_accepted_change_name_the_place_in_the_file(tmp_path: 
         ("/keeper/gain", {"b.yaml": "gain: true\nother: [\n"}, []),
     ],
 )
-def test_the_value_in_force_is_the_entry_whose_keys_name_the_node(
+def test_value_in_force_is_the_entry_of_the_node(
     name: str, files: Mapping[str, str], expected: list[str]
 ) -> None:
     assert [f"{one.path}:{one.line}" for one in places_in_force(name, 2.0, files)] == expected
@@ -278,7 +278,7 @@ LIMITED = {
 
 
 @pytest.mark.parametrize(("read", "file"), [({}, "keeper.py"), (READ, "config/params.yaml")])
-def test_the_default_of_a_parameter_is_changed_if_nothing_sets_it(
+def test_default_changes_if_nothing_sets_the_parameter(
     read: Mapping[str, float], file: str, tmp_path: Path
 ) -> None:
     order = order_of(tmp_path, LIMITED, read)
@@ -287,14 +287,14 @@ def test_the_default_of_a_parameter_is_changed_if_nothing_sets_it(
     assert ('get_param("~gain_left", 5))' if file == "keeper.py" else "  gain_left: 5.0  #") in text
 
 
-def test_a_default_that_is_written_as_a_string_keeps_its_quotes(tmp_path: Path) -> None:
+def test_quoted_default_keeps_its_quotes(tmp_path: Path) -> None:
     quoted = {**LIMITED, "first": LIMITED["first"].replace('"~gain_left", 2)', '"~gain_left", "2")')}
     order = order_of(tmp_path, quoted, {})
     ((_, text),) = changed(order, in_files(order)["gain_left"], 2.5).items()
     assert 'get_param("~gain_left", "5"))' in text
 
 
-def test_the_default_of_a_parameter_that_is_an_operand_is_not_added(tmp_path: Path) -> None:
+def test_default_that_is_an_operand_is_not_added(tmp_path: Path) -> None:
     named = {"first": 'self.gain = rospy.get_param("~gain_left", 1.0)', "use": "self.gain"}
     assert in_files(order_of(tmp_path, named, {})) == {}
 

@@ -57,14 +57,14 @@ def forms(found: list[Candidate]) -> list[tuple[str, str, dict[str, float]]]:
     ]
 
 
-def test_the_exponent_is_fitted_to_the_old_value_and_the_value_found() -> None:
+def test_exponent_is_fitted_to_old_and_new_value() -> None:
     # designed 1.5, drifted 6: four times the sensor and four times the constant
     found = list(following(order((1,), (6,), SPEED), FOUR_TIMES))
     assert forms(found) == [("above", "speed", {"power": pytest.approx(0.945, abs=0.01), "usual": 1.5})]
     assert found[0].guard == ALWAYS
 
 
-def test_a_constant_that_shrinks_as_the_sensor_grows_has_a_negative_exponent() -> None:
+def test_inverse_constant_has_a_negative_exponent() -> None:
     smaller = Candidate((Mutation(NAMED, 0.25),), FAST)
     assert forms(list(following(order((1,), (6,), SPEED), smaller)))[0][2]["power"] < 0.0
 
@@ -81,7 +81,7 @@ def test_the_sensor_of_the_condition_comes_first() -> None:
 
 
 @pytest.mark.parametrize("mutation", [Mutation(NAMED, 1.2), Mutation(NAMED, 1000.0)])
-def test_exponents_with_little_effect_or_extreme_values_are_left_out(mutation: Mutation) -> None:
+def test_weak_and_extreme_exponents_are_left_out(mutation: Mutation) -> None:
     assert list(following(order((1,), (6,), SPEED), Candidate((mutation,), FAST))) == []
 
 
@@ -93,7 +93,7 @@ def test_exponents_with_little_effect_or_extreme_values_are_left_out(mutation: M
         Candidate((Mutation(operand(5, "True", True), value=False),), FAST),
     ],
 )
-def test_zeros_booleans_and_combinations_of_constants_do_not_follow_a_sensor(candidate: Candidate) -> None:
+def test_zeros_and_booleans_do_not_follow_a_sensor(candidate: Candidate) -> None:
     assert list(following(order((1,), (6,), SPEED), candidate)) == []
 
 
@@ -141,14 +141,14 @@ def spread(designed: list[int], drifted: list[int], *sensors: Sensor) -> Any:
     return found
 
 
-def test_a_constant_is_proportional_to_a_sensor_that_varies_more_than_designed() -> None:
+def test_constant_is_proportional_to_a_varying_sensor() -> None:
     (found,) = proportional(spread([4], [2, 3, 4, 5], SPEED), [NAMED])
     ((mutation),) = found.mutations
     assert form_values(mutation) == {"power": 1.0, "usual": 4.5}
     assert found.guard == ALWAYS
 
 
-def test_the_variable_at_the_uses_of_the_constant_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_variable_at_the_uses_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "variables", lambda *_: [("distance", 10.0, 11.0), ("floor", 9.0, 9.5)])
     found = list(proportional(spread([4], [2, 3, 4, 5], SPEED), [NAMED]))
     assert [one.mutations[0].form.variable for one in found if one.mutations[0].form] == ["distance", ""]

@@ -64,7 +64,7 @@ def test_a_value_inside_the_range_stays(low: float, high: float, by: float) -> N
     assert trials.spent - begun <= 1
 
 
-def test_a_value_stays_if_the_values_inside_the_range_earn_less() -> None:
+def test_value_stays_if_inner_values_earn_less() -> None:
     trials = world(1.1, 4.0, slope=1.0)
     for tried in (1.05, 4.2):
         trials(changed(tried), 0)

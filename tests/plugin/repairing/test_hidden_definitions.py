@@ -34,7 +34,7 @@ PLACE = Place("a.py", 0, 3, 1, "FORCE", 2.0)
         (False, True, False, 3),
     ],
 )
-def test_a_change_of_a_definition_is_tried_together_with_other_changes(
+def test_definition_change_is_tried_with_other_changes(
     used: bool, hidden: bool, expected: bool, most: int
 ) -> None:
     ran: list[Candidate] = []

@@ -54,7 +54,7 @@ def test_a_value_is_moved_back_until_all_missions_succeed(low: float, high: floa
     assert spent <= 8
 
 
-def test_without_a_window_or_a_lost_mission_no_value_is_proposed() -> None:
+def test_nothing_is_proposed_without_a_lost_mission() -> None:
     assert inward(4.0, 3.0)[0] == []
     assert inward(2.4, 3.4, lost=False) == ([], 0)
 
@@ -119,7 +119,7 @@ def test_harmful_change_is_reduced_a_few_times() -> None:
     assert len(ran) == 6
 
 
-def test_no_smaller_values_are_proposed_for_a_change_without_a_condition() -> None:
+def test_unconditional_change_gets_no_smaller_values() -> None:
     mutants: Any = SimpleNamespace(mutate=mutations, order=SimpleNamespace(goal=GOAL))
     trials = Trials(lambda *_: Outcome(10.0, True), 50)
     assert list(Others(mutants, Ledger(), Missed()).unguarded(FOUND, "gain too small", trials)) == []

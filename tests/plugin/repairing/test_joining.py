@@ -22,7 +22,7 @@ def test_a_single_patch_is_applied_unchanged(robot: Path) -> None:
     assert found.commands == (f"git apply .tarl/patches/{patch.name}",)
 
 
-def test_patches_without_conflict_are_merged_with_the_evidence_of_both(robot: Path) -> None:
+def test_merged_patches_keep_both_evidence(robot: Path) -> None:
     first = repair(robot, {"node.py": guarded(NODE)})
     second = repair(robot, {"node.py": NODE.replace("low = 1", "low = 3")}, "wind")
     found = joined([first, second], robot)
@@ -39,7 +39,7 @@ def test_patches_without_conflict_are_merged_with_the_evidence_of_both(robot: Pa
     assert found_at == sorted(found_at)
 
 
-def test_a_conflict_is_reported_with_its_line_and_both_patches_stay(robot: Path) -> None:
+def test_conflict_is_reported_and_both_patches_stay(robot: Path) -> None:
     first = repair(robot, {"node.py": guarded(NODE)})
     second = repair(robot, {"node.py": NODE.replace("GAIN * x", "0.4 * GAIN * x")}, "wind")
     found = joined([first, second], robot)
@@ -72,7 +72,7 @@ IMPORTING = NODE.replace("import rospy\n", "import rospy\nfrom std_msgs.msg impo
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n"])
-def test_names_that_two_repairs_add_to_one_import_are_merged(robot: Path, ending: str) -> None:
+def test_names_added_to_one_import_are_merged(robot: Path, ending: str) -> None:
     (robot / "node.py").write_bytes(IMPORTING.replace("\n", ending).encode())
     git("commit", "-qam", "it imports", cwd=robot)
     bool_too = IMPORTING.replace("import Float64", "import Bool, Float64").replace("low = 1", "low = 3")
@@ -157,7 +157,7 @@ def test_patches_of_a_parameter_file_are_merged(robot: Path) -> None:
     assert (robot / "params.yaml").read_text() == text.replace("2.0", "3.0").replace("0.0", "0.1")
 
 
-def test_the_output_of_a_run_with_one_change_ends_with_one_command(tank: pytest.Pytester) -> None:
+def test_run_with_one_change_ends_with_one_command(tank: pytest.Pytester) -> None:
     test = (tank.path / "test_tank.py").read_text()
     (tank.path / "test_twin.py").write_text(
         test[: test.index("def test_ordinary")].replace("test_fills", "test_twin")

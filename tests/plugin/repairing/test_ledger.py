@@ -8,7 +8,7 @@ from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, furthest
 from tests.plugin.repairing.test_results import OTHER, WET, scaled
 
 
-def test_the_ledger_knows_which_values_were_examined_under_a_condition() -> None:
+def test_ledger_knows_examined_values() -> None:
     ledger = Ledger()
     ledger.enter(Tried(scaled(2.0), "not shown", ()))
     ledger.enter(Tried(scaled(3.0, WET), "not shown", ()))
@@ -19,7 +19,7 @@ def test_the_ledger_knows_which_values_were_examined_under_a_condition() -> None
     assert not Ledger().examined(scaled(2.0))
 
 
-def test_the_refused_candidate_that_passed_in_more_worlds_is_reported() -> None:
+def test_refused_candidate_with_more_worlds_is_reported() -> None:
     nothing, low = Refused(None, "budget"), Refused(scaled(2.0), "not shown", 1.0, 5)
     high = Refused(scaled(3.0), "gain too small", 2.0, 5)
     drifted, both = (

@@ -93,7 +93,7 @@ def suggested(folder: Path, *missions: dict[str, tuple[float, float]]) -> list[d
     return [{operand.code: factor for operand, factor in hint} for hint in found]
 
 
-def test_constants_with_the_same_measured_factor_change_together_and_then_alone(tmp_path: Path) -> None:
+def test_constants_with_one_measured_factor_change_together(tmp_path: Path) -> None:
     weak = {FLEXOR: (0.8, 0.36), EXTENSOR: (0.6, 0.27)}
     found = suggested(tmp_path, weak, {FLEXOR: (0.7, 0.315), EXTENSOR: (0.5, 0.225)})
     assert found[:3] == [{"FLEXOR_ON": 0.45, "EXTENSOR_ON": 0.45}, {"FLEXOR_ON": 0.45}, {"EXTENSOR_ON": 0.45}]
@@ -108,7 +108,7 @@ def test_constant_changes_by_the_difference_of_a_like_value(tmp_path: Path) -> N
     assert {"TARGET": 0.94} in found
 
 
-def test_a_multiplier_changes_by_the_factor_of_its_result_in_either_direction(tmp_path: Path) -> None:
+def test_multiplier_changes_by_the_factor_of_its_result(tmp_path: Path) -> None:
     assert suggested(tmp_path, {PUSH: (2.0, 6.0)}, {PUSH: (1.0, 3.1)}) == [{"GAIN": 0.328}, {"GAIN": 3.05}]
 
 
@@ -142,7 +142,7 @@ def test_vanished_value_has_a_difference_but_no_factor(tmp_path: Path) -> None:
     assert suggested(tmp_path, {LEVEL: (0.0, 0.0)}) == []
 
 
-def test_changes_of_five_percent_suggest_a_step_and_smaller_changes_suggest_none(tmp_path: Path) -> None:
+def test_small_measured_changes_suggest_no_step(tmp_path: Path) -> None:
     assert suggested(tmp_path, {PUSH: (1.0, 1.06)}) == [{"GAIN": 0.943}, {"GAIN": 1.06}]
     assert suggested(tmp_path, {PUSH: (1.0, 1.04)}) == []
     assert {"GAIN": 19.0} in suggested(tmp_path, {PUSH: (1.0, 19.0)})
@@ -193,9 +193,7 @@ rospy.spin()
         ("(charging.data > CHARGER) == msg.data", None),
     ],
 )
-def test_a_threshold_of_a_received_number_stays_between_its_groups(
-    code: str, expected: float | None, tmp_path: Path
-) -> None:
+def test_threshold_stays_between_its_groups(code: str, expected: float | None, tmp_path: Path) -> None:
     (tmp_path / "contacts.py").write_text(CONTACTS.format(code=code))
     analysis = analyse([tmp_path / "contacts.py"], root=tmp_path)
     (number,) = [number for number, one in enumerate(plan(analysis).places) if one.role == "receive"]
@@ -243,7 +241,7 @@ rospy.spin()
 @pytest.mark.parametrize(
     ("ends", "expected"), [((0.005, 0.06), [{"0.01": 7.5}]), ((0.06, 0.06), []), ((0.005, 0.002), [])]
 )
-def test_a_literal_tolerance_that_drifted_missions_never_reach_is_widened(
+def test_unreached_literal_tolerance_is_widened(
     tmp_path: Path, ends: tuple[float, float], expected: list[dict[str, float]]
 ) -> None:
     (tmp_path / "turning.py").write_text(TURNING)

@@ -104,7 +104,7 @@ def recorded(folder: Path, numbers: Any, **given: Any) -> tuple[Any, Recorded]:
     return rollout.order, rollout
 
 
-def test_symptoms_are_measured_in_steps_in_which_both_missions_have_values(tmp_path: Path) -> None:
+def test_symptoms_use_steps_of_both_missions(tmp_path: Path) -> None:
     def numbers(seed: int, drifted: bool) -> dict[str, int]:
         return {
             "self.range = ": 2,
@@ -209,15 +209,13 @@ def test_episodes_of_changes_and_pairs_are_counted_together(
 
 
 @pytest.mark.parametrize(("best", "once"), [(0.0, True), (PARTLY * 10.0, False)])
-def test_changes_without_parameters_are_left_out_while_a_constant_gains_a_part(
-    early: Early, best: float, once: bool
-) -> None:
+def test_parameterless_changes_wait_while_a_constant_gains(early: Early, best: float, once: bool) -> None:
     list(charged(early, LATER).candidates(best))
     made = Fake.made[-1]
     assert made.once is once
 
 
-def test_the_search_is_still_waiting_after_a_candidate_is_accepted(early: Early) -> None:
+def test_search_waits_after_an_accepted_candidate(early: Early) -> None:
     found = charged(early, FROM).candidates()
     next(found)
     charged(early, 2)
@@ -225,7 +223,7 @@ def test_the_search_is_still_waiting_after_a_candidate_is_accepted(early: Early)
     assert (early.spent, early.waiting) == (6, True)
 
 
-def test_the_mission_pairs_are_recorded_once_and_passed_to_the_structural_changes(early: Early) -> None:
+def test_mission_pairs_are_recorded_once(early: Early) -> None:
     other = Trials(lambda *_: Outcome(0.0, False), 1000)
     assert early.signs(other) is early.signs(early.trials)
     assert (other.spent, early.trials.spent) == (1, 0)
@@ -244,7 +242,7 @@ def test_effects_are_empty_until_changes_were_tried(early: Early) -> None:
     assert len(Fake.made) == 2  # the surest changes, and the others
 
 
-def test_changes_suggested_by_missions_reuse_the_mission_pairs_of_the_early_search(early: Early) -> None:
+def test_suggested_changes_reuse_the_mission_pairs(early: Early) -> None:
     found: Any = early.measured(["GAIN"])  # type: ignore[list-item]
     assert found == [("pair",), ["GAIN"]]
     assert early.trials.spent == 1

@@ -51,7 +51,7 @@ if __name__ == "__main__":
 """
 
 
-def test_uses_are_combined_only_where_a_name_means_the_same(tmp_path: Path) -> None:
+def test_uses_are_combined_within_one_scope(tmp_path: Path) -> None:
     (tmp_path / "turner.py").write_text(NODE)
     (tmp_path / "gains.py").write_text("KP = 1.5\n")
     analysis = analyse([tmp_path / "turner.py", tmp_path / "gains.py"], root=tmp_path)
@@ -115,7 +115,7 @@ def test_scope_of_a_name_is_the_file_class_or_function(text: str, code: str, exp
     assert scopes(text)(code, "Node.run") == expected
 
 
-def test_the_scope_of_self_is_the_class_at_any_depth() -> None:
+def test_scope_of_self_is_the_class() -> None:
     of = scopes("GAIN = 2.0\n")
     assert of("self.kp", "Outer.Inner.run") == "Outer.Inner"
     assert of("self.kp", "run") == ""

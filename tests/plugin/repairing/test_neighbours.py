@@ -90,7 +90,7 @@ def test_condition_that_never_holds_runs_no_episode() -> None:
     assert "the condition never holds there" in found.held[0]
 
 
-def test_the_first_episodes_run_if_the_recording_lacks_the_sensor() -> None:
+def test_first_episodes_run_without_a_recorded_sensor() -> None:
     mutants = Mutants([neighbour(sensors=(Y,))])
     assert beside(mutants, guard(7.0, 8.0)).episodes == EPISODES  # type: ignore[arg-type]
     assert [seed for _, seed in mutants.ran] == [FIRST + 2 * n for n in range(EPISODES)]
@@ -103,7 +103,7 @@ def test_mission_is_lost_if_its_loss_exceeds_the_margin(change: float, lost: boo
     assert bool(found.held) is not lost
 
 
-def test_a_mission_that_now_fails_is_a_loss_regardless_of_its_reward() -> None:
+def test_newly_failing_mission_is_a_loss() -> None:
     found = beside(Mutants([neighbour()], 5.0, fails=4), guard(7.0, 8.0))  # type: ignore[arg-type]
     assert "1 of them now fail" in found.lost[0]
 
@@ -115,7 +115,7 @@ def test_no_further_test_is_run_after_a_loss() -> None:
     assert found.episodes == EPISODES
 
 
-def test_a_limited_number_of_other_tests_runs_and_the_rest_is_counted() -> None:
+def test_limited_number_of_other_tests_runs() -> None:
     mutants = Mutants([neighbour(n) for n in range(MOST + 3)])
     found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
     assert len({rollout for rollout, _ in mutants.ran}) == MOST
@@ -123,7 +123,7 @@ def test_a_limited_number_of_other_tests_runs_and_the_rest_is_counted() -> None:
     assert found.episodes == MOST * EPISODES
 
 
-def test_a_test_with_its_own_drift_is_compared_with_the_unrepaired_node() -> None:
+def test_test_with_its_own_drift_is_compared_unrepaired() -> None:
     mutants = Mutants([neighbour(drift="mud")], -0.4)
     found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
     assert len(mutants.ran) == 2 * EPISODES

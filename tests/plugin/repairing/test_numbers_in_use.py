@@ -105,7 +105,7 @@ class Prepared:
         ({7, 14, 16}, 0, {7, 14, 16}),
     ],
 )
-def test_only_numbers_that_take_part_in_the_missions_are_changed(
+def test_only_used_numbers_are_changed(
     used: set[int], unrewarded: int, expected: set[int], tmp_path: Path
 ) -> None:
     world = Prepared(tmp_path, used, unrewarded)

@@ -105,7 +105,7 @@ if __name__ == "__main__":
         ("left = Wheel(0.16)", "left.speed(msg.data)", ["self.radius"]),
     ],
 )
-def test_constants_of_several_objects_of_a_class_are_searched_one_by_one(
+def test_constants_of_several_objects_are_searched_singly(
     setup: str, use: str, expected: list[str], tmp_path: Path
 ) -> None:
     path = tmp_path / "keeper.py"

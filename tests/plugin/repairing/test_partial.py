@@ -57,7 +57,7 @@ def test_a_partial_repair_is_applied_only_on_explicit_request(halfway: Path, tan
         read(halfway)
 
 
-def test_a_candidate_without_a_certain_gain_is_not_a_partial_repair(tank: pytest.Pytester) -> None:
+def test_candidate_without_a_certain_gain_is_no_partial_repair(tank: pytest.Pytester) -> None:
     changed(
         tank,
         "test_tank",
@@ -70,7 +70,7 @@ def test_a_candidate_without_a_certain_gain_is_not_a_partial_repair(tank: pytest
     assert not list(tank.path.glob(".tarl/patches/*"))
 
 
-def test_a_partial_repair_changes_the_definition_also_if_the_search_ended_early(
+def test_partial_repair_changes_the_definition(
     tank: pytest.Pytester,
 ) -> None:
     changed(tank, "keeper", "missing = 1.0 - level", "missing = (level < 9.0) - level")

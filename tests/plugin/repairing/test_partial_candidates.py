@@ -35,7 +35,7 @@ def best(
     return partial.best(mutants, judge, found)
 
 
-def test_the_first_candidate_that_helps_is_returned_with_its_gains() -> None:
+def test_first_helpful_candidate_is_returned() -> None:
     found, spent = best({ONE: (5.0, 0.5), TWO: (7.0, -0.25)})
     assert found == Best(TWO, Gained(7.0, 7.0, 0), Gained(-0.25, -0.25, 0))
     assert spent == KNOWN + BOTH
@@ -58,14 +58,14 @@ def test_at_most_two_candidates_are_tested() -> None:
 
 
 @pytest.mark.parametrize(("lost", "episodes"), [(1.0, BOTH), (1.01, 0)])
-def test_a_candidate_may_lose_the_margin_in_the_designed_world(lost: float, episodes: int) -> None:
+def test_candidate_may_lose_the_margin_as_designed(lost: float, episodes: int) -> None:
     found, spent = best({ONE: (5.0, -lost)})
     assert (found is not None) == bool(episodes)
     assert spent == KNOWN + episodes
 
 
 @pytest.mark.parametrize(("lost", "tested"), [(2.0, True), (2.01, False)])
-def test_a_candidate_that_loses_more_may_lose_a_fifth_of_its_gain(lost: float, tested: bool) -> None:
+def test_costlier_candidate_may_lose_a_fifth_of_its_gain(lost: float, tested: bool) -> None:
     found, spent = best(
         {ONE: (10.0, -lost)}, lambda mutants, _, __: setattr(mutants.order, "permanent", False)
     )
@@ -73,7 +73,7 @@ def test_a_candidate_that_loses_more_may_lose_a_fifth_of_its_gain(lost: float, t
     assert spent == KNOWN + (BOTH if tested else 0)
 
 
-def test_a_costly_candidate_without_a_result_in_the_search_is_dropped() -> None:
+def test_costly_unsearched_candidate_is_dropped() -> None:
     def refuse(mutants: Any, judge: Any, watch: Watch) -> None:
         judge.refused = Refused(ONE, "not shown")
         watch.seen.clear()
@@ -126,7 +126,7 @@ def test_a_candidate_that_cannot_run_is_skipped() -> None:
     assert (found.candidate, spent) == (THREE, 2 * KNOWN + DRIFTED + BOTH)  # the failed test counts as one
 
 
-def test_under_a_permanent_drift_losses_in_the_designed_world_do_not_matter() -> None:
+def test_permanent_drift_ignores_designed_losses() -> None:
     def permanent(mutants: Any, _: Any, __: Watch) -> None:
         mutants.order.permanent = True
 
@@ -135,7 +135,7 @@ def test_under_a_permanent_drift_losses_in_the_designed_world_do_not_matter() ->
     assert found.designed.mean == -9.0
 
 
-def test_a_candidate_moves_to_its_definition_within_a_dozen_episodes() -> None:
+def test_candidate_moves_to_its_definition_in_few_episodes() -> None:
     mutants, judge, _ = of_partial({})
     judge.placing = lambda candidate, trials: [trials.charge() for _ in range(5)] and TWO
     assert _placed(mutants, judge, ONE) == (TWO, 5)

@@ -37,7 +37,7 @@ def worn(tank: pytest.Pytester) -> pytest.Pytester:
 
 
 @pytest.mark.usefixtures("quick_acceptance")
-def test_a_permanent_drift_is_repaired_unconditionally_and_the_old_world_is_shown(
+def test_permanent_drift_is_repaired_unconditionally(
     worn: pytest.Pytester,
 ) -> None:
     done = worn.runpytest(*REPAIR, *WORN)
@@ -55,7 +55,7 @@ def test_a_permanent_drift_is_repaired_unconditionally_and_the_old_world_is_show
     assert "# record: pytest test_tank.py::test_fills --tarl-record --tarl-drift worn\n" in header
 
 
-def test_the_same_repair_of_a_temporary_drift_is_refused_with_two_suggestions(worn: pytest.Pytester) -> None:
+def test_same_repair_of_a_temporary_drift_is_refused(worn: pytest.Pytester) -> None:
     changed(worn, "test_tank", "Drift(0.1, permanent=True)", "0.1")
     done = worn.runpytest(*REPAIR, *WORN, "--tarl-budget=60")
     assert not result(worn)["repair"]["accepted"]
@@ -67,7 +67,7 @@ def test_the_same_repair_of_a_temporary_drift_is_refused_with_two_suggestions(wo
 
 
 @pytest.mark.usefixtures("quick_acceptance")
-def test_an_applied_repair_and_a_new_recording_make_the_drift_the_design(worn: pytest.Pytester) -> None:
+def test_applied_repair_makes_the_drift_the_design(worn: pytest.Pytester) -> None:
     worn.runpytest(*REPAIR, *WORN)
     (patch,) = worn.path.glob(".tarl/patches/*.patch")
     applied = worn.run(*TARL, "apply", str(patch))
@@ -95,7 +95,7 @@ def test_an_applied_repair_and_a_new_recording_make_the_drift_the_design(worn: p
     assert "the design has the drift 'worn', but tarl_drift held only 'clogged'" in told
 
 
-def test_recordings_under_a_permanent_drift_are_the_same_with_workers(worn: pytest.Pytester) -> None:
+def test_workers_record_a_permanent_drift_identically(worn: pytest.Pytester) -> None:
     changed(worn, "keeper", "GAIN = 2.0", "GAIN = 20.0")
     worn.runpytest(*RECORD, *WORN).assert_outcomes(passed=1, deselected=1)
     alone = fixture_file(worn).read_bytes()
@@ -154,7 +154,7 @@ def test_keeps_full(tarl, tarl_drift):
         ("{}", "so it ran in the old world, in which losses are allowed"),
     ],
 )
-def test_other_tests_that_declare_the_drift_run_in_the_new_world(
+def test_tests_that_declare_the_drift_run_in_its_world(
     worn: pytest.Pytester, declared: str, words: str
 ) -> None:
     path = worn.path / "test_tank.py"

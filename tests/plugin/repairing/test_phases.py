@@ -124,7 +124,7 @@ def test_first_accepted_candidate_is_the_repair(
     assert [one.method for one in found.curves] == ["halving", "bayes"]
 
 
-def test_the_effects_come_from_the_first_search_that_found_any_effects(
+def test_effects_come_from_the_first_effective_search(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     found = _Findings()
@@ -186,7 +186,7 @@ def before() -> Any:
     return SimpleNamespace(trials=trials, signs=lambda _: Signs({"here": {}}))
 
 
-def test_a_structural_search_gets_the_symptoms_and_outcomes_of_the_previous_search(
+def test_structural_search_gets_earlier_symptoms(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     found, (guards, trials, effects, signs), examiner = restructured(monkeypatch, before())
@@ -204,7 +204,7 @@ def test_constant_from_a_structural_search_is_no_structure(
     assert (found.accepted, found.effects, found.method, found.structure) == (ONE, {"old": []}, "", 0)
 
 
-def test_a_structural_search_without_time_or_a_previous_search_has_no_symptoms(
+def test_structural_search_without_a_predecessor_has_no_symptoms(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert restructured(monkeypatch, before(), late=True)[1][3] == NO_SIGNS
@@ -224,7 +224,7 @@ def test_a_structural_search_without_success_keeps_the_effects(monkeypatch: pyte
     assert (found.accepted, found.interrupted, found.structure, len(found.curves)) == (None, True, 1, 1)
 
 
-def test_structural_changes_are_tried_without_a_condition_and_under_the_first_condition() -> None:
+def test_structural_changes_use_no_or_the_first_condition() -> None:
     assert _chief((ALWAYS, WET)) == (ALWAYS,)
     assert _chief((WET, ALWAYS)) == (ALWAYS, WET)
 
@@ -336,7 +336,7 @@ def test_timed_out_search_names_a_sufficient_budget(
     assert told[-1].endswith("use --tarl-budget 33")
 
 
-def test_candidates_that_work_in_a_part_of_the_range_are_named_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_candidates_for_part_of_the_range_are_named_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(repair, "fits_a_part", lambda _, runs: f"{len(runs)} runs")
     of = order()
     watch = Watch(of)

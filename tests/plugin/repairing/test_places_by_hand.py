@@ -147,7 +147,7 @@ def test_the_first_seed_decides_whether_the_outcomes_are_equal(tmp_path: Path) -
     assert not trials.equated
 
 
-def test_a_change_at_the_definition_runs_on_three_seeds_only(tmp_path: Path) -> None:
+def test_change_at_the_definition_runs_on_three_seeds(tmp_path: Path) -> None:
     of, trials = placing(tmp_path), Scripted(lambda moved, seed: (9.5 if seed < 13 else 0.0) + (not moved))
     found: Any = of(tripled(of), trials)  # type: ignore[arg-type]
     assert found.mutations[0].place is not None
@@ -294,7 +294,7 @@ def test_only_the_alternative_that_the_test_uses_is_changed(
     )
 
 
-def test_a_changed_number_and_a_factor_on_its_use_become_one_change(tmp_path: Path) -> None:
+def test_number_and_factor_become_one_change(tmp_path: Path) -> None:
     of = placing(tmp_path, text=HELPER.format(first="0.0", second="0.1"))
     uses = [one for one in operands(of.order) if one.code == "speed" and one.site.qualname.endswith("turn")]
     span = next(one for one in uses[0].definitions if one.line == 17)
@@ -312,7 +312,7 @@ def test_parameter_stays_changed_if_a_call_passes_no_number(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("edit", ["auto", "definition"])
-def test_two_uses_with_different_values_are_not_moved_to_one_definition(tmp_path: Path, edit: str) -> None:
+def test_uses_with_different_values_are_not_moved(tmp_path: Path, edit: str) -> None:
     of, trials = placing(tmp_path, edit), Scripted(lambda moved, seed: 9.5)
     one, other = gains(of)
     differ = Candidate((Mutation(one, 3.0), Mutation(other, 2.0)), ALWAYS)

@@ -167,7 +167,7 @@ def test_a_parameter_default_in_rclpy_code_is_changed(worn: pytest.Pytester, dec
     assert f"+        {declaration[:-5].removesuffix('2')}" in lines
 
 
-def test_a_parameter_is_changed_in_the_file_that_the_command_line_names(worn: pytest.Pytester) -> None:
+def test_parameter_is_changed_in_the_named_file(worn: pytest.Pytester) -> None:
     (worn.path / "keeper.py").write_text(DECLARED.format(declaration=SEVERAL.replace("2.0", "0.7")))
     (worn.path / "params.yaml").write_text("keeper:\n  ros__parameters:\n    gain: 2.0\n")
     started = 'tarl.start("keeper.py", argv=["--ros-args", "--params-file", "params.yaml"])'
@@ -230,7 +230,7 @@ def test_parameter_is_changed_in_the_file_of_this_test(
     worn.runpytest(*RECORD, "--tarl-drift=worn").assert_outcomes(passed=1, deselected=1)
 
 
-def test_a_parameter_that_the_test_passes_is_reported_and_never_edited(worn: pytest.Pytester) -> None:
+def test_parameter_from_the_test_is_never_edited(worn: pytest.Pytester) -> None:
     node(worn, gain='rospy.get_param("~gain", 0.7)')
     (worn.path / "params.yaml").write_text("gain: 2.0\n")
     changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.start("keeper.py", parameters={"gain": 2.0})')
@@ -303,7 +303,7 @@ def test_the_flag_edit_chooses_between_use_and_definition(
     assert lines.startswith(first)
 
 
-def test_a_repair_without_a_definition_is_refused_if_one_is_required(worn: pytest.Pytester) -> None:
+def test_repair_without_a_required_definition_is_refused(worn: pytest.Pytester) -> None:
     node(worn, gain='rospy.get_param("~gain", 0.7)')
     changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.start("keeper.py", parameters={"gain": 2.0})')
     where, told, _ = repaired(worn, "--tarl-edit=definition", "--tarl-budget=60")
@@ -311,7 +311,7 @@ def test_a_repair_without_a_definition_is_refused_if_one_is_required(worn: pytes
     assert "it works only at one use of the constant" in told
 
 
-def test_an_unknown_value_of_the_flag_edit_is_refused_with_a_suggestion(worn: pytest.Pytester) -> None:
+def test_unknown_edit_value_is_refused_with_a_suggestion(worn: pytest.Pytester) -> None:
     done = worn.runpytest(*REPAIR, "--tarl-edit=defintion")
     done.stderr.fnmatch_lines(["*--tarl-edit does not know 'defintion'; did you mean 'definition'?*"])
 
@@ -345,7 +345,7 @@ def launched(worn: pytest.Pytester, gain: str) -> tuple[str, str, str]:
     return repaired(worn)
 
 
-def test_a_number_from_which_a_launch_file_computes_a_parameter_is_changed(worn: pytest.Pytester) -> None:
+def test_number_of_a_computed_launch_parameter_is_changed(worn: pytest.Pytester) -> None:
     where, _, lines = launched(worn, "2 * base")
     assert where == "keeper.launch.py:13 the 2 in 2 * base"
     removed, added = lines.splitlines()

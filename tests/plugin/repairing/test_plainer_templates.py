@@ -43,7 +43,7 @@ def found(name: str, tmp_path: Path) -> tuple[Any, list[Candidate]]:
     return analysis, list(factors(order, Candidate((Mutation(operand, 1.0, form=form),), ALWAYS)))
 
 
-def test_an_integral_is_replaced_by_a_factor_trying_the_smallest_factor_first(tmp_path: Path) -> None:
+def test_integral_is_replaced_by_the_smallest_factor(tmp_path: Path) -> None:
     analysis, plain = found("integral", tmp_path)
     assert [form_values(one.mutations[0]) for one in plain] == [{"gain": factor} for factor in FACTORS]
     assert plain[1].mutations[0].operand.code == "gain of max(-0.5, min(0.5, error)), gain"

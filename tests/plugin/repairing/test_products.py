@@ -51,9 +51,7 @@ if __name__ == "__main__":
         ("0.0 * GAIN + msg.data * 0.0", []),
     ],
 )
-def test_one_factor_of_a_product_is_searched_and_represents_the_other_factors(
-    use: str, same: list[str], tmp_path: Path
-) -> None:
+def test_one_factor_represents_its_product(use: str, same: list[str], tmp_path: Path) -> None:
     path = tmp_path / "keeper.py"
     path.write_text(NODE.format(use=use))
     analysis = analyse([path], root=tmp_path)
@@ -94,7 +92,7 @@ class Keeper:
 """
 
 
-def test_the_use_of_a_constant_that_a_constructor_stores_is_searched(tmp_path: Path) -> None:
+def test_use_of_a_stored_constant_is_searched(tmp_path: Path) -> None:
     path = tmp_path / "keeper.py"
     path.write_text(MADE_LATE)
     analysis = analyse([path], root=tmp_path)
@@ -131,7 +129,7 @@ class Use:
         ([Use("a", product="p"), Use("a", product="p"), Use("b", product="p")], "a a b"),  # used twice
     ],
 )
-def test_a_constant_that_is_equivalent_to_a_searched_constant_is_not_searched(
+def test_equivalent_constant_is_not_searched(
     operands: list[Use], kept: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(products, "_stored", lambda _, one: one.stored)

@@ -57,7 +57,7 @@ def test_repair_works_over_the_whole_range(
     assert text.count('<circle class="after"') >= 24
 
 
-def test_the_parts_of_a_dictionary_have_ranges_of_their_own(ranged: pytest.Pytester) -> None:
+def test_dictionary_parts_have_their_own_ranges(ranged: pytest.Pytester) -> None:
     changed(
         ranged,
         "test_tank",
@@ -99,7 +99,7 @@ def test_repair_does_not_depend_on_the_number_of_workers(ranged: pytest.Pytester
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=40))
-def test_the_first_pairs_of_episodes_span_the_sizes_of_the_drift(sizes: list[float]) -> None:
+def test_first_pairs_span_the_drift_sizes(sizes: list[float]) -> None:
     order = list(spread([(size, at) for at, size in enumerate(sizes)]))
     assert sorted(order) == list(range(len(sizes)))
     if len(sizes) >= 7:  # positions of the first pairs: the median, the quarters, the eighths
@@ -113,7 +113,7 @@ PARTS = {"": Drift.range(0.1, 0.6)}, {"a": Drift.range(-1, 1), "b": Drift.range(
 
 
 @pytest.mark.parametrize("parts", PARTS)
-def test_every_four_seeds_of_a_test_are_spread_over_the_range(parts: dict[str, Drift]) -> None:
+def test_every_four_seeds_span_the_range(parts: dict[str, Drift]) -> None:
     value = Drift(parts) if len(parts) > 1 else parts[""]
     spans = {part: one.value for part, one in parts.items()}
     order: Any = SimpleNamespace(

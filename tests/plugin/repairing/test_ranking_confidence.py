@@ -37,7 +37,7 @@ def ranked(budget: int) -> Ranking:
     return found
 
 
-def test_without_a_ranking_the_number_of_simulated_lines_is_stated() -> None:
+def test_missing_ranking_states_the_simulated_lines() -> None:
     told = ranking_confidence(ORDER, EFFECTS, accepted(GAIN), None)
     assert told.startswith(
         "the repair of the first line passed on 12 fresh seeds; 2 of 3 lines were simulated"
@@ -45,7 +45,7 @@ def test_without_a_ranking_the_number_of_simulated_lines_is_stated() -> None:
     assert "--tarl-localize=full" in told
 
 
-def test_a_ranking_states_by_how_much_the_first_line_leads() -> None:
+def test_ranking_states_the_lead_of_the_first_line() -> None:
     told = ranking_confidence(ORDER, ranked(300).effects(), accepted(GAIN), ranked(300))
     assert "1 of 3 lines with constants gain reward when changed alone" in told
     assert "the budget ended" not in told
@@ -110,7 +110,7 @@ def test_report_counts_the_competitors_of_the_first_line(changes: dict[str, Any]
     assert certain(**changes) == TOLD + end
 
 
-def test_without_a_repair_the_line_with_the_largest_effect_is_the_first() -> None:
+def test_largest_effect_leads_without_a_repair() -> None:
     asked = []
     ranking: Any = SimpleNamespace(whole=False, certainty=asked.append)
     told = ranking_confidence(ORDER, EFFECTS, None, ranking)

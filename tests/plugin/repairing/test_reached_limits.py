@@ -89,7 +89,7 @@ def limits(
         (SAME, 1.0, []),
     ],
 )
-def test_a_limit_is_relaxed_so_that_its_comparison_has_its_designed_result(
+def test_limit_is_relaxed_to_the_designed_result(
     code: str, new: float, expected: list[tuple[str, float]], tmp_path: Path
 ) -> None:
     usual = [1.0 - new] * 30

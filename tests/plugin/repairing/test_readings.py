@@ -87,17 +87,13 @@ def corrected(
     ]
 
 
-def test_a_sensor_offset_is_subtracted_where_the_message_is_received(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_sensor_offset_is_subtracted_on_receipt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     bent = {HEADING: (0.3, 0.44), TURN: (-0.6, -0.88)}
     found = corrected(tmp_path, monkeypatch, bent, {HEADING: (-0.1, 0.04), TURN: (0.2, -0.08)})
     assert found[0] == (14, "offset", pytest.approx(-0.14))
 
 
-def test_a_wrong_scale_of_a_sensor_is_corrected_by_a_factor(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_wrong_sensor_scale_is_corrected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     found = corrected(tmp_path, monkeypatch, {WEIGHT: (4.0, 5.0)}, {WEIGHT: (8.0, 10.0)})
     assert found == [(19, "gain", pytest.approx(0.8))]
 
@@ -112,7 +108,7 @@ def test_a_wrong_scale_of_a_sensor_is_corrected_by_a_factor(
         ([{WEIGHT: (4.0, 5.0)}, {WEIGHT: (8.0, 10.0)}], 3),  # commands may have had an effect
     ],
 )
-def test_readings_that_are_not_clearly_wrong_from_the_start_are_not_corrected(
+def test_initially_right_readings_are_not_corrected(
     missions: Sequence[Missions], step: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert corrected(tmp_path, monkeypatch, *missions, step=step) == []
@@ -138,7 +134,7 @@ def tried(monkeypatch: pytest.MonkeyPatch, total: Any, values: Sequence[float]) 
     return yielded, found
 
 
-def test_each_correction_is_confirmed_once_even_if_the_first_seed_is_hard(
+def test_each_correction_is_confirmed_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     yielded, found = tried(monkeypatch, lambda value, seed: 10.0 if value == 2.0 else 0.0, (3.0, 2.0))
@@ -158,7 +154,7 @@ def test_a_correction_that_cannot_be_written_is_left_out(monkeypatch: pytest.Mon
     assert tried(monkeypatch, total, (3.0, 2.0))[0] == [2.0]
 
 
-def test_factors_on_published_fields_are_tried_once_before_an_extreme_change(
+def test_factors_on_published_fields_are_tried_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(early, "corrections", lambda *_: ())

@@ -106,7 +106,7 @@ def test_costly_value_is_reduced_while_it_succeeds(
 
 
 @pytest.mark.parametrize(("low", "share"), [(1.3, 0.375), (1.15, 0.25), (1.09, 0.25)])
-def test_of_several_smaller_values_that_succeed_the_middle_one_is_proposed(low: float, share: float) -> None:
+def test_middle_of_several_smaller_values_is_proposed(low: float, share: float) -> None:
     # the bisection tries 2.2**0.5 and 2.2**0.25 first, and then goes on below or between them
     assert nearer((low, 3.0)) == pytest.approx([2.2**share], rel=1e-3)
 

@@ -32,9 +32,7 @@ INTERRUPT = """
         pytest.param("        if level > 1.5:\n            tarl.reward(float('nan'))\n", marks=slow),
     ],
 )
-def test_a_candidate_that_breaks_the_test_is_refused_without_an_error(
-    tank: pytest.Pytester, breaking: str
-) -> None:
+def test_candidate_that_breaks_the_test_is_refused(tank: pytest.Pytester, breaking: str) -> None:
     changed(tank, "test_tank", "        tarl.reward(", f"{breaking}        tarl.reward(")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     tank.runpytest(*REPAIR).assert_outcomes(failed=1, deselected=1)
@@ -43,7 +41,7 @@ def test_a_candidate_that_breaks_the_test_is_refused_without_an_error(
 
 @slow
 @pytest.mark.usefixtures("quick_acceptance")
-def test_a_candidate_that_silences_the_node_is_refused_without_an_error(tank: pytest.Pytester) -> None:
+def test_candidate_that_silences_the_node_is_refused(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "if level is not None:", "if level is not None and 0.5 < 1.0 - 0.1 * level:")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     tank.runpytest(*REPAIR).assert_outcomes(failed=1, deselected=1)
@@ -62,7 +60,7 @@ def test_each_site_names_the_search_that_found_it(tank: pytest.Pytester) -> None
 
 @slow
 @pytest.mark.usefixtures("quick_acceptance")
-def test_a_site_added_after_the_recording_can_be_the_culprit(tank: pytest.Pytester) -> None:
+def test_new_site_can_be_the_culprit(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     changed(tank, "keeper", "flow = GAIN * missing", "flow = 2.0 * missing")
     tank.runpytest(*REPAIR)
@@ -72,7 +70,7 @@ def test_a_site_added_after_the_recording_can_be_the_culprit(tank: pytest.Pytest
     assert (found["culprits"][0]["path"], found["culprits"][0]["line"]) in edited
 
 
-def test_a_search_that_runs_out_of_time_says_how_to_repeat_it(
+def test_timed_out_search_says_how_to_repeat_it(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock = count()
@@ -98,7 +96,7 @@ def test_a_budget_is_a_number_or_a_time(tank: pytest.Pytester, budget: str) -> N
     done.stderr.fnmatch_lines(["*--tarl-budget*"])
 
 
-def test_an_interrupted_search_reports_its_best_candidate_and_ends_the_run(tank: pytest.Pytester) -> None:
+def test_interrupted_search_reports_its_best_candidate(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "    draws = ", f"{INTERRUPT}    draws = ")
     tank.runpytest(*RECORD)
     done = tank.runpytest_subprocess(*REPAIR)
@@ -173,7 +171,7 @@ def test_{name}(tarl, shared):
 
 
 @pytest.mark.usefixtures("quick_acceptance")
-def test_another_recorded_test_of_the_node_must_not_lose_reward(tank: pytest.Pytester) -> None:
+def test_other_test_of_the_node_must_not_lose(tank: pytest.Pytester) -> None:
     tank.makepyfile(test_pipe=TEST[: TEST.index("@pytest")] + NEIGHBOUR.format(name="pipe", most=2.3))
     tank.runpytest(*RECORD).assert_outcomes(passed=2, deselected=1)
     done = tank.runpytest(
@@ -188,7 +186,7 @@ def test_another_recorded_test_of_the_node_must_not_lose_reward(tank: pytest.Pyt
 
 
 @pytest.mark.usefixtures("quick_acceptance")
-def test_a_patch_names_the_other_tests_that_it_leaves_unharmed(tank: pytest.Pytester) -> None:
+def test_patch_names_the_unharmed_tests(tank: pytest.Pytester) -> None:
     with (tank.path / "test_tank.py").open("a") as file:
         file.write(NEIGHBOUR.format(name="wide_pipe", most=99.0))
     tank.runpytest(*RECORD).assert_outcomes(passed=2, deselected=1)
@@ -201,7 +199,7 @@ def test_a_patch_names_the_other_tests_that_it_leaves_unharmed(tank: pytest.Pyte
 
 
 @pytest.mark.usefixtures("quick_acceptance")
-def test_a_module_of_the_flow_that_the_marker_omits_is_reported(tank: pytest.Pytester) -> None:
+def test_omitted_module_of_the_flow_is_reported(tank: pytest.Pytester) -> None:
     tank.makepyfile(gains="GAIN = 2.0\n\n\ndef wanted(missing):\n    return GAIN * missing\n")
     changed(tank, "keeper", "flow = GAIN * missing", "flow = wanted(missing)")
     changed(tank, "keeper", "import rospy\n", "import rospy\nfrom gains import wanted\n")
@@ -252,7 +250,7 @@ def test_an_unknown_search_is_reported_before_anything_runs(tank: pytest.Pyteste
     done.stderr.fnmatch_lines(["*--tarl-search=nowhere:Draws: No module named 'nowhere'*"])
 
 
-def test_a_search_that_raises_fails_the_test_with_one_sentence(tank: pytest.Pytester) -> None:
+def test_raising_search_fails_the_test(tank: pytest.Pytester) -> None:
     tank.makepyfile(mine="class Silent:\n    def __init__(self, constants, seed):\n        pass\n")
     tank.runpytest(*RECORD)
     done = tank.runpytest(*REPAIR, "--tarl-search=mine:Silent")
@@ -262,7 +260,7 @@ def test_a_search_that_raises_fails_the_test_with_one_sentence(tank: pytest.Pyte
 
 @slow
 @pytest.mark.usefixtures("quick_acceptance")
-def test_a_full_ranking_continues_after_the_repair_and_states_its_certainty(tank: pytest.Pytester) -> None:
+def test_full_ranking_follows_the_repair(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     done = tank.runpytest(*REPAIR)
     alone, told = result(tank), " ".join(done.stdout.str().split())
@@ -282,7 +280,7 @@ def test_a_full_ranking_continues_after_the_repair_and_states_its_certainty(tank
     assert "Confidence in this ranking: the repair of the first line passed on" in page.read_text()
 
 
-def test_the_flag_localize_accepts_its_values_and_requires_the_flag_repair(tank: pytest.Pytester) -> None:
+def test_localize_flag_requires_repair(tank: pytest.Pytester) -> None:
     done = tank.runpytest(*ONLINE, "--tarl-localize=full")
     done.stderr.fnmatch_lines(["*--tarl-localize needs --tarl-repair*"])
     done = tank.runpytest(*REPAIR, "--tarl-localize=ful")

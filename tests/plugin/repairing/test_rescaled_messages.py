@@ -84,17 +84,17 @@ def corrected(
     ]
 
 
-def test_a_unit_is_converted_at_every_read_of_a_message(tmp_path: Path) -> None:
+def test_unit_is_converted_at_every_read(tmp_path: Path) -> None:
     degrees = {WIND: (1.0, 180 / pi)}, {WIND: (0.3, 0.3 * 180 / pi)}
     assert corrected(tmp_path, *degrees) == [[(17, "msg.data", 0.01745)] * 2]
 
 
-def test_a_stored_message_is_converted_where_it_is_read_later(tmp_path: Path) -> None:
+def test_stored_message_is_converted_when_read(tmp_path: Path) -> None:
     found = corrected(tmp_path, {GOAL: (4.0, 4000.0)}, {GOAL: (7.0, 7000.0)})
     assert found == [[(22, "self.goal.x", 0.001), (22, "self.goal.y", 0.001)]]
 
 
-def test_a_factor_that_is_not_a_ratio_of_units_is_used_unchanged(tmp_path: Path) -> None:
+def test_factor_without_a_unit_ratio_is_unchanged(tmp_path: Path) -> None:
     found = corrected(tmp_path, {WIND: (4.0, 5.0)}, {WIND: (8.0, 10.0)})
     assert [by for _, _, by in found[0]] == [0.8, 0.8]
 

@@ -55,7 +55,7 @@ def watch(*seen: tuple[Candidate, int, float]) -> Watch:
     return found
 
 
-def test_a_candidate_with_few_runs_rarely_becomes_the_best_so_far() -> None:
+def test_rarely_run_candidate_seldom_becomes_best() -> None:
     one, two = scaled(2.0), scaled(3.0)
     found = watch((one, 0, 4.0), (two, 0, 3.0))
     assert found.best == one
@@ -99,14 +99,12 @@ def test_one_good_mission_of_three_leaves_a_candidate_unconfirmed() -> None:
         (scaled(-2.0), scaled(-2.1), True),
     ],
 )
-def test_candidates_whose_values_differ_by_at_most_five_percent_count_as_equal(
-    one: Candidate, other: Candidate, expected: bool
-) -> None:
+def test_candidates_within_five_percent_are_equal(one: Candidate, other: Candidate, expected: bool) -> None:
     assert alike(one, other) is expected
     assert alike(other, one) is expected
 
 
-def test_the_ledger_finds_similar_candidates_and_counts_tests_of_the_same_operands() -> None:
+def test_ledger_finds_similar_candidates() -> None:
     ledger = Ledger()
     first = ledger.enter(Tried(scaled(2.0), "not shown", (1.0,), fresh=True, tested=True))
     ledger.enter(Tried(scaled(4.0), "gain too small", (), fresh=True))
@@ -147,9 +145,7 @@ def test_stronger_candidate_changes_the_same_constants_more(
         (Mutation(replace(GAIN, value=True), value=False), None),
     ],
 )
-def test_a_changed_constant_has_the_factor_between_its_new_and_old_value(
-    mutation: Mutation, expected: float | None
-) -> None:
+def test_changed_constant_has_the_factor_of_its_values(mutation: Mutation, expected: float | None) -> None:
     if not mutation.operand.literal:
         assert mutation.operand.code == "KP"
     assert factor(mutation) == expected
@@ -160,7 +156,7 @@ def factors(of: Candidate | None) -> list[float]:
     return [factor(one) or math.nan for one in of.mutations]
 
 
-def test_a_bisection_halves_the_exponents_until_no_result_shows_the_direction() -> None:
+def test_bisection_halves_exponents() -> None:
     both = Candidate((*scaled(16.0).mutations, *scaled(1 / 16.0, of=OTHER).mutations), ALWAYS)
     between = Between(both, mutations)
     assert factors(between.middle()) == pytest.approx([4.0, 0.25], rel=0.01)
@@ -173,7 +169,7 @@ def test_a_bisection_halves_the_exponents_until_no_result_shows_the_direction() 
     assert between.middle() is None  # four steps
 
 
-def test_a_bisection_begins_at_the_furthest_candidate_that_is_too_weak() -> None:
+def test_bisection_begins_at_the_furthest_weak_candidate() -> None:
     between = Between(scaled(16.0), mutations)
     for weak in (scaled(4.0), scaled(2.0), scaled(0.5), scaled(3.0, of=OTHER), scaled(20.0)):
         between.beyond(weak)
@@ -181,7 +177,7 @@ def test_a_bisection_begins_at_the_furthest_candidate_that_is_too_weak() -> None
     assert factors(between.middle()) == pytest.approx([8.0], rel=0.01)
 
 
-def test_a_change_of_sign_and_a_small_step_are_not_bisected() -> None:
+def test_sign_changes_and_small_steps_are_not_bisected() -> None:
     assert Between(scaled(-2.0), mutations).middle() is None
     assert Between(scaled(1.04), mutations).middle() is None
     assert Between(scaled(1 / 1.04), mutations).middle() is None
@@ -201,7 +197,7 @@ def test_parameter_of_a_structural_change_is_bisected() -> None:
     assert middle.mutations[0].value == pytest.approx(-0.8 * WEAKEST**0.25)
 
 
-def test_a_stronger_candidate_has_its_factors_raised_to_a_power() -> None:
+def test_stronger_candidate_has_larger_factors() -> None:
     both = Candidate((*scaled(2.0).mutations, *scaled(0.5, of=OTHER).mutations), WET)
     found = stronger(both, 2.0, mutations)
     assert factors(found) == pytest.approx([4.0, 0.25])
@@ -211,7 +207,7 @@ def test_a_stronger_candidate_has_its_factors_raised_to_a_power() -> None:
         assert stronger(scaled(by), 2.0, mutations) is None
 
 
-def test_a_value_is_moved_only_if_it_belongs_to_a_single_site() -> None:
+def test_only_single_site_values_are_moved() -> None:
     assert factors(moved(scaled(2.0), 1.5, mutations)) == [3.0]
     beside = replace(OTHER, site=GAIN.site)
     both = Candidate((*scaled(2.0).mutations, *scaled(0.5, of=beside).mutations), ALWAYS)
@@ -293,9 +289,7 @@ def test_mission_is_lost_if_its_loss_exceeds_the_slack() -> None:
 @pytest.mark.parametrize(
     ("lost", "expected", "runs"), [((0, 1), True, 2), ((0, 2), True, 3), ((0,), False, 3), ((3,), False, 3)]
 )
-def test_a_candidate_fails_again_if_it_loses_most_of_the_latest_missions(
-    lost: Sequence[int], expected: bool, runs: int
-) -> None:
+def test_candidate_fails_again_after_recent_losses(lost: Sequence[int], expected: bool, runs: int) -> None:
     missed = Missed([(9, 99.0), *((seed, 8.0) for seed in range(3))])
     trials = Trials(lambda _, seed: Outcome(7.9 if seed in lost else 8.0, True), 9)
     assert missed.again(scaled(2.0), trials, GOAL) is expected
@@ -448,7 +442,7 @@ BANDS = [Band("", 0.0, 1.0), Band("", 1.0, 2.0), Band("", 2.0, 3.0)]
         ({10: 0.5, 12: 1.4, 25: 0.0}, True, "", (0, 1, 2), ""),  # an end belongs to both parts
     ],
 )
-def test_a_repair_must_hold_in_every_part_of_the_range(
+def test_repair_must_hold_in_every_part(
     losses: dict[int, float], accepted: bool, reason: Reason, held: tuple[int, ...], expected: Reason
 ) -> None:
     result = acceptance(losses, accepted=accepted, reason=reason)
@@ -516,7 +510,7 @@ def test_search_goal_is_the_designed_reward_minus_tolerance() -> None:
     assert (nothing.pairs, nothing.near) == ((Pair(4, 10.0),), 8.5)
 
 
-def test_a_sensor_distinguishes_two_worlds_if_its_values_in_them_hardly_overlap(
+def test_sensor_with_separate_values_distinguishes_worlds(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     worlds = {
@@ -534,7 +528,7 @@ def test_a_sensor_distinguishes_two_worlds_if_its_values_in_them_hardly_overlap(
     assert telling_sensors._overlap(order, sensor) == 1.0
 
 
-def test_a_step_on_a_logarithmic_scale_is_reported_as_a_factor() -> None:
+def test_logarithmic_step_is_reported_as_a_factor() -> None:
     share = operand(3, "0.95", 0.95)
     step = stepped(share, 2.0, SHARE, mutations)
     assert step is not None

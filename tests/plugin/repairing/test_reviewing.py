@@ -41,9 +41,7 @@ NAMED = replace(operand(7, "LIMIT", 4.0), definition=operand(1, "4.0", 4.0).span
         ([Mutation(GAIN, 0.1 * 3)], "2.0 from 2 to 0.3 (× 0.15)"),
     ],
 )
-def test_the_jump_of_each_constant_at_a_threshold_is_described(
-    mutations: list[Mutation], expected: str
-) -> None:
+def test_jump_at_a_threshold_is_described(mutations: list[Mutation], expected: str) -> None:
     guard = Guard((numeric("depth", 2.0, math.inf), WET, numeric("speed", -math.inf, 4.0)))
     told = f"jump at the threshold of depth and speed: {expected}"
     assert jumps(Candidate(tuple(mutations), guard)) == [told]

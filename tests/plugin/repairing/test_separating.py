@@ -14,7 +14,7 @@ DESIGNED = np.array([0.02, 0.05, 0.08, 0.03, 6.0])  # errors of a position, and 
 SLIPPED = np.array([0.02, 1.1, 1.15, 1.1, 4.9])
 
 
-def test_a_threshold_moves_between_the_values_with_slip_and_the_outliers() -> None:
+def test_threshold_moves_between_slip_and_outliers() -> None:
     by = separating(0.5, [(DESIGNED, SLIPPED)])
     assert by is not None
     assert 0.5 * by == pytest.approx(np.sqrt(1.15 * 4.9))
@@ -55,7 +55,7 @@ def test_missions_that_do_not_separate_values_move_no_threshold(
     st.lists(st.floats(0.01, 100.0), min_size=4, max_size=30, unique=True),
     st.floats(0.02, 50.0),
 )
-def test_the_new_threshold_leaves_the_designed_share_of_values_above_it(
+def test_new_threshold_keeps_the_designed_share(
     designed: list[float], drifted: list[float], threshold: float
 ) -> None:
     before, after = np.array(designed), np.array(drifted)
@@ -71,7 +71,7 @@ WORN = DOCKED - 5.0
 DOCKS, TRIES = np.concatenate([OPEN, DOCKED]), np.concatenate([OPEN, WORN, OPEN, WORN, OPEN])
 
 
-def test_a_threshold_stays_between_the_same_two_groups_of_values() -> None:
+def test_threshold_stays_between_the_same_groups() -> None:
     by = between_groups(26.5, [(DOCKS, TRIES)])
     assert by is not None
     assert 26.5 * by == pytest.approx((21.2 + 22.9) / 2.0)
@@ -126,7 +126,7 @@ def test_threshold_exceeded_only_as_designed_is_lowered() -> None:
     ],
     ids=["no pair", "no value", "crossed", "crossed once", "never crossed", "different sides"],
 )
-def test_no_threshold_is_proposed_unless_only_the_designed_missions_cross_it(
+def test_threshold_crossed_in_both_worlds_is_not_moved(
     pairs: list[tuple[Floats, Floats]],
 ) -> None:
     assert reaching(0.01, pairs) is None

@@ -56,7 +56,7 @@ def test_each_change_without_a_parameter_gets_one_episode(tmp_path: Path, share:
     assert all(of._found[one].parameter == "" for one in group.operands)
 
 
-def test_only_the_three_commands_nearest_to_the_publish_call_are_scaled_first(tmp_path: Path) -> None:
+def test_three_nearest_commands_are_scaled_first(tmp_path: Path) -> None:
     order = of_many(tmp_path)
     of, among = structures(order), commands(order)
     group = of._at_commands([template("any", on="number"), template("other")], among)
@@ -112,7 +112,7 @@ def test_changes_by_a_telling_sensor_get_fifty_episodes(
     assert first.share(share, left) == min(max(share, LEAST), left // 3)
 
 
-def test_a_sensor_that_differs_only_because_missions_end_early_is_left_out(
+def test_sensor_that_differs_by_early_ends_is_left_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     order = order_of(tmp_path)
@@ -179,9 +179,7 @@ def made(tmp_path: Path, budget: int) -> tuple[Structures, list[_Group]]:
     return structures(order_of(tmp_path), budget), [_Group(part) for part in parts]
 
 
-def test_each_group_gets_a_share_by_its_number_of_parameters(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_group_shares_follow_their_parameters(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     of, three = made(tmp_path, 120)
     sweeps = Sweeps(monkeypatch, [10], [4], [6])
     found = list(of._searched(three))
@@ -254,9 +252,7 @@ def test_next_group_follows_a_group_without_episodes(tmp_path: Path, monkeypatch
     assert (of.trials.budget, of.trials.reserve) == (120, 0)
 
 
-def test_early_changes_spend_at_most_twice_their_episodes_and_restore_the_budget(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_early_changes_restore_the_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     of = structures(order_of(tmp_path), 300)
     trials = of.trials
     trials.reserve, trials.worth = 9, of.order.goal
@@ -340,7 +336,7 @@ def test_parameter_moves_by_a_factor(
 @pytest.mark.parametrize(
     ("on", "signed", "allowed"), [("value", False, False), ("value", True, True), ("sensor", False, True)]
 )
-def test_only_signed_parameters_and_parameters_for_sensors_change_their_sign(
+def test_only_signed_parameters_change_their_sign(
     tmp_path: Path, on: str, signed: bool, allowed: bool
 ) -> None:
     of = structures(order_of(tmp_path))
@@ -388,15 +384,13 @@ def test_a_template_without_parameters_has_one_mutation(tmp_path: Path) -> None:
         ("larger", 0.0, False),
     ],
 )
-def test_a_step_is_weaker_if_it_reduces_the_effect_of_the_change(
-    tmp_path: Path, stronger: str, factor: float, weaker: bool
-) -> None:
+def test_weaker_step_reduces_the_effect(tmp_path: Path, stronger: str, factor: float, weaker: bool) -> None:
     of = structures(order_of(tmp_path))
     formed(of, Parameter("k", 2.0, stronger=stronger))
     assert of.weaker(operand(1, "x", 2.0), factor) is weaker
 
 
-def test_a_parameter_is_listed_with_the_fixed_parameters_of_the_same_change(tmp_path: Path) -> None:
+def test_parameter_is_listed_with_its_fixed_parameters(tmp_path: Path) -> None:
     of = structures(order_of(tmp_path))
     free, fixed = Parameter("k", 2.0), Parameter("base", 3.0, of="designed")
     made, other = template("made", parameters=(free, fixed)), template("other", parameters=(free, fixed))

@@ -84,7 +84,7 @@ def test_change_size_is_compared_with_the_sensor_mean() -> None:
     assert form_values(found[1].mutations[0]) == {"share": pytest.approx(0.25 / 0.5 / 0.45, rel=0.05)}
 
 
-def test_a_change_under_a_condition_that_never_held_is_not_smoothed() -> None:
+def test_idle_conditional_change_is_not_smoothed() -> None:
     asked = order(0, 3)
     asked.online.recorded.sample = visited((1, 30.0), (2, 100.0))
     assert list(smoothed(asked, Candidate((Mutation(NAMED, 1.5),), LONG))) == []

@@ -85,7 +85,7 @@ def tried(order: Any, code: str, steady: tuple[str, ...] = ()) -> set[str]:
     return {one.name for one in templates(order.root) if one.on != "field" and spot in fitting(one, found)}
 
 
-def test_a_constant_gets_only_templates_that_do_more_than_another_value(order: Any) -> None:
+def test_constant_gets_only_templates_beyond_another_value(order: Any) -> None:
     assert "rate_limit" in tried(order, "self.pace")  # a soft start
     assert tried(order, "self.pace") & STATEFUL == {"rate_limit"}
     assert not tried(order, "self.pace") & {"gain", "offset", "dead_band", "at_least"}
@@ -119,7 +119,7 @@ def test_an_expression_is_constant_if_all_its_parts_are(code: str, constant: boo
     assert is_constant(source, source.tree.body[0].value, {"LEAST"}) is constant  # type: ignore[attr-defined]
 
 
-def test_templates_with_a_sensor_or_without_parameters_are_always_tried() -> None:
+def test_sensor_templates_are_always_tried() -> None:
     known = {one.name: one for one in templates(Path())}
     assert all(has_effect(known[name], True, True, True) for name in ("sign", "term", "scale", "power"))
     assert not has_effect(known["gain"], True, True, False)

@@ -100,7 +100,7 @@ DRAWN = {1: {"": 1.0}, 2: {"": 2.0}, 3: {"": 4.0}, 4: {"": 5.0}}
         ({1: 9.0, 3: 9.0}, False, TOO_LITTLE[0], (), (LOW, HIGH), (False, TOO_LITTLE[0])),
     ],
 )
-def test_a_repair_must_hold_in_each_part_of_the_range(
+def test_repair_must_hold_in_each_stratum(
     losses: Any, accepted: bool, reason: str, held: Any, lost: Any, outcome: Any
 ) -> None:
     given = order("", drawn=DRAWN, bands=(LOW, HIGH))
@@ -134,7 +134,7 @@ def test_a_single_size_is_tested_on_consecutive_seeds() -> None:
         ({1: False, 2: False}, ""),
     ],
 )
-def test_a_repair_for_one_end_of_the_range_is_described(runs: Any, said: str) -> None:
+def test_repair_for_one_end_is_described(runs: Any, said: str) -> None:
     assert fits_a_part(order("", drawn=DRAWN), runs) == said
 
 

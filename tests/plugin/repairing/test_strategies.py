@@ -87,7 +87,7 @@ def codes(found: Any) -> list[str]:
     return [f"{one.code} in {one.span.line}" for one in found]
 
 
-def test_among_equally_readable_changes_constants_of_the_first_slices_come_first(order: Any) -> None:
+def test_constants_of_the_first_slices_come_first(order: Any) -> None:
     ranked(order, "self.out.publish", "speed = ")
     late = codes(operands(order))
     ranked(order, "speed = ", "self.out.publish")
@@ -107,7 +107,7 @@ def test_constants_of_several_objects_change_at_their_construction(
     assert len(found) == len(set(found))
 
 
-def test_the_rate_of_a_loop_is_a_constant_that_is_set_aside(order: Any) -> None:
+def test_loop_rate_is_set_aside(order: Any) -> None:
     assert codes(aside_operands(order, operands(order))) == ["20.0 in 29"]
     assert not set(aside_operands(order, operands(order))) & set(operands(order))
 

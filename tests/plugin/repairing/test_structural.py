@@ -140,7 +140,7 @@ REPAIRED = [
 
 @pytest.mark.usefixtures("quick_acceptance")
 @pytest.mark.parametrize(("case", "words"), REPAIRED if SLOW else REPAIRED[:2])
-def test_a_structural_change_repairs_a_drift_that_no_constant_repairs(
+def test_structural_change_repairs_what_no_constant_does(
     pytester: pytest.Pytester, case: str, words: tuple[str, ...]
 ) -> None:
     prepared(pytester, case)

@@ -50,9 +50,7 @@ def test_a_sensor_without_numbers_is_not_offered_to_templates() -> None:
 
 
 @pytest.mark.parametrize(("low", "high", "mean"), [(0, 1, 0.55), (-1, 0, 0.45), (-0.55, 0.45, 1.0)])
-def test_the_typical_size_of_a_sensor_is_measured_in_the_drifted_world(
-    low: float, high: float, mean: float
-) -> None:
+def test_typical_sensor_size_comes_from_the_drifted_world(low: float, high: float, mean: float) -> None:
     sensor = Sensor("tool", topic="/tool", field="data", low=low, high=high, bins=10)
     assert usual(order(0, 5, sensor), sensor) == pytest.approx(mean)
 
@@ -141,9 +139,7 @@ def test_templates_with_a_delay_apply_to_published_values(
     assert ("self.open", "sent") in found
 
 
-def test_a_call_that_returns_a_number_is_a_place_for_templates(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_number_returning_call_is_a_template_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "aiming.py").write_text(AIMING)
     (tmp_path / "table.py").write_text(TABLE)
     analysis = analyse([tmp_path / "aiming.py", tmp_path / "table.py"], root=tmp_path)

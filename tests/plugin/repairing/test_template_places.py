@@ -101,7 +101,7 @@ def test_returned_value_is_a_template_place_on_its_own_line() -> None:
         ("GAIN", set()),
     ],
 )
-def test_constants_at_the_top_level_of_an_expression_are_recognised(text: str, constants: set[str]) -> None:
+def test_top_level_constants_are_recognised(text: str, constants: set[str]) -> None:
     source = document("a.py", f"x = {text}\n")
     node = source.tree.body[0].value  # type: ignore[attr-defined]
     assert set(constants_of(source, node, {"GAIN"})) == constants
@@ -135,7 +135,7 @@ class Step:
         self.site = step.site
 
 
-def test_the_distance_to_a_publish_call_is_the_shortest_of_all_flows() -> None:
+def test_publish_distance_is_the_shortest_flow() -> None:
     away = _away(order([A, B, C], [A, C]))
     assert {one.text: distance for one, distance in away.items()} == {"a": 1, "b": 1, "c": 0}
 

@@ -243,7 +243,7 @@ SEARCHED = [
 
 
 @pytest.mark.parametrize("name", SEARCHED)
-def test_the_found_template_has_fitted_parameters_and_its_patch_runs(
+def test_found_template_is_fitted_and_runs(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     check_found(name, World(name, tmp_path), monkeypatch)

@@ -68,7 +68,7 @@ def test_typical_expression_size_comes_from_recorded_parts(
 
 
 @pytest.mark.parametrize(("drifted", "larger"), [(700.0, 10.0), (14.0, 2.0)])
-def test_a_typical_size_is_the_larger_of_the_sizes_in_both_worlds(
+def test_typical_size_is_the_larger_of_both_worlds(
     drifted: float, larger: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "tap.py").write_text(NODE)

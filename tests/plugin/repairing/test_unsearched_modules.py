@@ -44,7 +44,7 @@ def project(tmp_path: Path) -> Path:
         ("from .control import turn", "x = turn(y)", "control.py"),
     ],
 )
-def test_an_imported_file_whose_name_occurs_in_a_step_is_named(
+def test_imported_file_named_in_a_step_is_named(
     project: Path, imported: str, code: str, found: str | None
 ) -> None:
     told = sentences(project, {"node.py": f"{imported}\n"}, ("node.py", 7, code))

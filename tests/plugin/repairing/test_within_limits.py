@@ -149,9 +149,7 @@ class Sizes:
         return {"ex": 3.0, "ey": 2.0}.get(ast.unparse(node))
 
 
-def test_a_term_of_a_sensor_is_added_before_the_limits(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_sensor_term_is_added_before_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "pallet.py").write_text(NODE)
     analysis = analyse([tmp_path / "pallet.py"], root=tmp_path)
     monkeypatch.setattr(template_forms, "usual", lambda *_: 0.5)

@@ -69,7 +69,7 @@ def found(placing: Any, trials: Any) -> Any:
     return placing._found(CHANGED, Candidate((CHANGED,), ALWAYS), trials)
 
 
-def test_a_parameter_is_changed_at_the_first_place_that_has_an_effect(placing: Any) -> None:
+def test_parameter_is_changed_at_its_first_effective_place(placing: Any) -> None:
     one, two, three = (place(number) for number in (1, 2, 3))
     placing.places = [one, two, three]
     trials, tried = effective(two, three, breaks=(one,))
@@ -114,7 +114,7 @@ def test_values_of_the_same_kind_are_tried_in_a_few_files(placing: Any) -> None:
         (None, "", "this test sets it"),
     ],
 )
-def test_the_note_on_a_parameter_says_who_sets_its_value(
+def test_parameter_note_says_who_sets_it(
     placing: Any, tmp_path: Path, text: str | None, computed: str, says: str
 ) -> None:
     placing.computed = computed
@@ -135,7 +135,7 @@ def test_definitions_are_looked_for_once(placing: Any) -> None:
     assert len(tried) == 1
 
 
-def test_python_files_that_name_a_constant_and_its_module_use_it(placing: Any, tmp_path: Path) -> None:
+def test_file_that_names_constant_and_module_uses_it(placing: Any, tmp_path: Path) -> None:
     files = {
         "a.py": "from gains import KP",
         "b.py": "import gains\nprint(gains.KP)",
@@ -159,7 +159,7 @@ def test_python_files_that_name_a_constant_and_its_module_use_it(placing: Any, t
 
 
 @pytest.mark.parametrize("fails", ["source", "verify", "write", ""])
-def test_a_partial_repair_that_cannot_be_written_is_left_out(
+def test_unwritable_partial_repair_is_left_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str
 ) -> None:
     def unless(name: str, result: Any) -> Any:
@@ -209,9 +209,7 @@ def test_a_partial_repair_that_cannot_be_written_is_left_out(
 
 
 @pytest.mark.parametrize("fails", [False, True])
-def test_a_patch_that_cannot_be_written_is_shown_in_the_report(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: bool
-) -> None:
+def test_unwritable_patch_is_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: bool) -> None:
     def write(*_: Any) -> Path:
         if fails:
             raise RepairError("read-only")
@@ -232,7 +230,7 @@ def test_a_patch_that_cannot_be_written_is_shown_in_the_report(
     assert written == ([] if fails else [tmp_path / "patches" / "one.sarif"])
 
 
-def test_an_operand_whose_source_is_unknown_counts_as_a_quantity() -> None:
+def test_operand_of_unknown_source_is_a_quantity() -> None:
     analysis: Any = SimpleNamespace(sources={"node.py": "x = 1\n"})
     elsewhere = Operand(SiteId("n", "f", "x", 0), Span("other.py", 1, 5, 1, 6), "1", 1)
     lost = Operand(SiteId("n", "f", "x", 0), Span("node.py", 1, 9, 1, 12), "abc", 1)
